@@ -1,0 +1,39 @@
+# What every target of ours shares, and how an engine module is declared.
+
+# Warnings, contraction, sanitizers: for our own targets only, never for a consumer's.
+function(crofton_own_target target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF C_STANDARD 11)
+    # Contraction off: a*b+c rounds twice on every instruction set, so filters keep their proven bounds and verdicts agree.
+    target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+        $<$<COMPILE_LANGUAGE:CXX>:-Wconversion>
+        # g++ 12 takes the unused tail of a fixed-capacity array for a mistake.
+        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>
+        $<$<BOOL:${CROFTON_WERROR}>:-Werror>)
+    if(CROFTON_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=${CROFTON_SANITIZE} -fno-omit-frame-pointer
+                                                 -fno-sanitize-recover=all)
+        target_link_options(${target} PUBLIC -fsanitize=${CROFTON_SANITIZE})
+    endif()
+endfunction()
+
+# crofton_module(NAME cull DEPENDS scene tree SOURCES src/a.cpp … [LINK hwy] [NO_EXCEPTIONS OFF])
+# One engine module = one object library that sees its own headers and those of the modules it names, nothing else:
+# an include against the direction of docs/architecture.md does not compile.
+function(crofton_module)
+    cmake_parse_arguments(ARG "" "NAME" "DEPENDS;SOURCES;LINK" ${ARGN})
+    set(target crofton_${ARG_NAME})
+    add_library(${target} OBJECT ${ARG_SOURCES})
+    crofton_own_target(${target})
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                         PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET default)
+    target_link_libraries(${target} PUBLIC crofton_settings crofton_third_party PRIVATE ${ARG_LINK})
+    foreach(dependency IN LISTS ARG_DEPENDS)
+        target_link_libraries(${target} PUBLIC crofton_${dependency})
+    endforeach()
+    set_property(GLOBAL APPEND PROPERTY CROFTON_MODULES ${ARG_NAME})
+    set_property(GLOBAL APPEND PROPERTY CROFTON_PRIVATE_LINK ${ARG_LINK})
+    set_property(GLOBAL APPEND PROPERTY CROFTON_INCLUDE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include)
+endfunction()

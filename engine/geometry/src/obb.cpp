@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <glm/geometric.hpp>
+#include <string>
+
+namespace crofton {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// half_extents[k] · axes[k]: exact, a product of two floats fits a double.
+glm::dvec3 half_edge(const Obb& box, int k) { return glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]); }
+
+double half_extent(const Obb& box, int k) { return static_cast<double>(box.half_extents[k]); }
+
+bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+float float_at_least(double value) {
+    const float rounded = static_cast<float>(value);
+    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+}
+
+using Cross = std::array<Expansion<2>, 3>;
+
+Cross exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
+    const auto component = [&](int i, int j) { return exact(a[i] * b[j]) - exact(a[j] * b[i]); };
+    return {component(1, 2), component(2, 0), component(0, 1)};
+}
+
+}  // namespace
+
+Result<void> validate(const Obb& box, std::uint64_t item) {
+    const auto bad = [&](ErrorCode code, const char* why) { return fail(code, item, std::string("box: ") + why); };
+    for (int k = 0; k < 3; ++k) {
+        if (!is_finite(glm::dvec3(box.axes[k]))) return bad(ErrorCode::non_finite, "an axis is NaN or infinite");
+        if (!std::isfinite(box.half_extents[k])) return bad(ErrorCode::non_finite, "a half extent is NaN or infinite");
+        if (!(box.half_extents[k] >= 0.0f)) return bad(ErrorCode::invalid_argument, "a half extent is negative");
+        if (half_extent(box, k) > kMaxCoordinate) return bad(ErrorCode::out_of_range, "a half extent exceeds 1e30");
+    }
+    if (!is_finite(box.center)) return bad(ErrorCode::non_finite, "the centre is NaN or infinite");
+    for (int k = 0; k < 3; ++k)
+        if (std::abs(box.center[k]) > kMaxCoordinate) return bad(ErrorCode::out_of_range, "the centre exceeds 1e30");
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j) {
+            const double product = glm::dot(glm::dvec3(box.axes[i]), glm::dvec3(box.axes[j]));
+            if (std::abs(product - (i == j ? 1.0 : 0.0)) > kMaxAxisDeviation)
+                return bad(ErrorCode::invalid_argument, "the axes are not orthonormal to 1e-4; normalise them first");
+        }
+    return {};
+}
+
+std::array<glm::dvec3, 8> corners(const Obb& box) {
+    const glm::dvec3 u = half_edge(box, 0), v = half_edge(box, 1), w = half_edge(box, 2);
+    std::array<glm::dvec3, 8> result;
+    for (unsigned i = 0; i < 8; ++i)
+        result[i] = box.center + ((i & 1u) ? u : -u) + ((i & 2u) ? v : -v) + ((i & 4u) ? w : -w);
+    return result;
+}
+
+bool contains(const Obb& box, const glm::dvec3& point) {
+    // point − center = Σ s_k axes[k] with s_k = det(d, axes[i], axes[j]) / det(axes); inside iff |s_k| ≤ half_extents[k].
+    const std::array<Expansion<2>, 3> d = {exact_difference(point.x, box.center.x), exact_difference(point.y, box.center.y),
+                                           exact_difference(point.z, box.center.z)};
+    for (int k = 0; k < 3; ++k) {
+        const Cross normal = exact_cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
+        const glm::dvec3 axis(box.axes[k]);
+        auto reach = (normal[0] * axis.x + normal[1] * axis.y + normal[2] * axis.z) * half_extent(box, k);
+        auto distance = d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2];
+        if (reach.sign() < 0) reach = -reach;
+        if (distance.sign() < 0) distance = -distance;
+        if ((distance - reach).sign() > 0) return false;
+    }
+    return true;
+}
+
+glm::dvec3 support_point(const Obb& box, const glm::dvec3& direction) {
+    glm::dvec3 point = box.center;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 edge = half_edge(box, k);
+        point += glm::dot(edge, direction) >= 0.0 ? edge : -edge;
+    }
+    return point;
+}
+
+Aabb aabb_of(const Obb& box) {
+    Aabb result;
+    for (int i = 0; i < 3; ++i) {
+        double reach = 0.0;
+        for (int k = 0; k < 3; ++k) reach += std::abs(half_edge(box, k)[i]);
+        // Two rounded additions lie within 2^-52 relative of the exact sum; one more step outward covers the last addition.
+        reach += reach * 0x1p-51;
+        result.min[i] = std::nextafter(box.center[i] - reach, -kInfinity);
+        result.max[i] = std::nextafter(box.center[i] + reach, kInfinity);
+    }
+    return result;
+}
+
+Obb obb_of(const Aabb& box) {
+    Obb result;
+    result.center = box.center();
+    for (int i = 0; i < 3; ++i) {
+        const double reach = std::max(box.max[i] - result.center[i], result.center[i] - box.min[i]);
+        result.half_extents[i] = float_at_least(std::nextafter(reach, kInfinity));
+        if (box.min[i] == box.max[i]) result.half_extents[i] = 0.0f;
+    }
+    return result;
+}
+
+double volume(const Obb& box) { return 8.0 * half_extent(box, 0) * half_extent(box, 1) * half_extent(box, 2); }
+
+double surface_area(const Obb& box) {
+    const double a = half_extent(box, 0), b = half_extent(box, 1), c = half_extent(box, 2);
+    return 8.0 * (a * b + b * c + c * a);
+}
+
+double edge_sum(const Obb& box) { return 2.0 * (half_extent(box, 0) + half_extent(box, 1) + half_extent(box, 2)); }
+
+}  // namespace crofton

@@ -1,0 +1,29 @@
+// Volume, surface area and mean curvature of convex bodies: all that a uniformly random query can see of them.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/obb.hpp>
+
+namespace crofton::measure {
+
+// V, F and M = ∫ mean curvature (M = 2π · mean width), in the cube, square and first power of the coordinates' unit.
+struct IntrinsicVolumes {
+    double volume = 0.0;
+    double area = 0.0;
+    double mean_curvature = 0.0;
+};
+
+// THEORY.md section 1. A box of edges a, b, c: abc, 2(ab+bc+ca), π(a+b+c).
+[[nodiscard]] IntrinsicVolumes of_box(double a, double b, double c);
+[[nodiscard]] IntrinsicVolumes of_box(const Obb& box);
+[[nodiscard]] IntrinsicVolumes of_ball(double radius);
+[[nodiscard]] IntrinsicVolumes of_segment(double length);
+[[nodiscard]] IntrinsicVolumes of_flat_polygon(double area, double perimeter);
+
+// The view volume of a camera, a convex polytope with 8 corners. Errors: as validate(Camera); far must be finite.
+[[nodiscard]] Result<IntrinsicVolumes> of_frustum(const Camera& camera);
+
+// The principal kinematic formula (1): the measure of motions under which B hits K (rotations normalised to 1).
+[[nodiscard]] double kinematic_measure(const IntrinsicVolumes& b, const IntrinsicVolumes& k);
+
+}  // namespace crofton::measure

@@ -1,0 +1,20 @@
+// The sub-commands of `crofton`: each adds itself to the parser and, when chosen, returns the process's exit status.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace crofton::cli {
+
+// Exit statuses, the same for every sub-command.
+enum ExitStatus : int { kSuccess = 0, kCheckFailed = 1, kBadInput = 2 };
+
+// What the chosen sub-command returned; set by its callback.
+struct Outcome {
+    int status = kSuccess;
+};
+
+// (one line per sub-command: void add_frames_command(CLI::App& app, Outcome& outcome);)
+
+}  // namespace crofton::cli

@@ -1,0 +1,44 @@
+#include <crofton/core/memory.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <doctest/doctest.h>
+
+using namespace crofton;
+
+namespace {
+
+struct Counts {
+    std::size_t allocations = 0, releases = 0, live_bytes = 0;
+};
+
+void* counting_allocate(void* user, std::size_t bytes, std::size_t alignment) {
+    auto* counts = static_cast<Counts*>(user);
+    ++counts->allocations;
+    counts->live_bytes += bytes;
+    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+}
+
+void counting_release(void* user, void* memory, std::size_t bytes, std::size_t) {
+    auto* counts = static_cast<Counts*>(user);
+    ++counts->releases;
+    counts->live_bytes -= bytes;
+    std::free(memory);
+}
+
+}  // namespace
+
+TEST_SUITE("core/memory") {
+    TEST_CASE("containers take their memory from the host's hooks and give all of it back") {
+        Counts counts;
+        set_memory_hooks({counting_allocate, counting_release, &counts});
+        {
+            Vector<double> numbers;
+            for (int i = 0; i < 1000; ++i) numbers.push_back(i);
+            CHECK(counts.allocations > 0);
+            CHECK(reinterpret_cast<std::uintptr_t>(numbers.data()) % 64 == 0);
+        }
+        reset_memory_hooks();
+        CHECK(counts.allocations == counts.releases);
+        CHECK(counts.live_bytes == 0);
+    }
+}

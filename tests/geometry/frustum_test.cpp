@@ -1,0 +1,96 @@
+#include <cmath>
+#include <crofton/geometry/frustum.hpp>
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <random>
+
+using namespace crofton;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool holds(const Frustum& frustum, const glm::dvec3& point) {
+    for (const Plane& plane : frustum.view())
+        if (glm::dot(plane.normal, point - frustum.origin) + plane.offset < 0.0) return false;
+    return true;
+}
+
+// The clip volume itself, as the matrix defines it.
+bool in_clip_volume(const glm::dmat4& matrix, DepthRange depth, const glm::dvec3& point) {
+    const glm::dvec4 p = matrix * glm::dvec4(point, 1.0);
+    const double low = depth == DepthRange::minus_one_to_one ? -p.w : 0.0;
+    return std::abs(p.x) <= p.w && std::abs(p.y) <= p.w && low <= p.z && p.z <= p.w;
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/frustum") {
+    TEST_CASE("bad cameras and matrices are refused by name") {
+        Camera camera;
+        camera.up = camera.forward;
+        CHECK(frustum_of(camera).error().code == ErrorCode::degenerate);
+        camera = {};
+        camera.position.y = std::nan("");
+        CHECK(frustum_of(camera).error().code == ErrorCode::non_finite);
+        camera = {};
+        camera.near = 0.0;
+        CHECK(frustum_of(camera).error().code == ErrorCode::out_of_range);
+        glm::dmat4 matrix(1.0);
+        matrix[2][2] = 0.0;
+        CHECK(frustum_of(matrix, DepthRange::zero_to_one).error().code == ErrorCode::degenerate);
+        matrix[1][3] = std::nan("");
+        CHECK(frustum_of(matrix, DepthRange::zero_to_one).error().code == ErrorCode::non_finite);
+    }
+
+    TEST_CASE("parameters and matrices of every kind give the same volume as the clip conditions") {
+        std::mt19937_64 random(3);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        for (const Projection projection : {Projection::perspective, Projection::orthographic})
+            for (const DepthRange depth :
+                 {DepthRange::reversed_zero_to_one, DepthRange::zero_to_one, DepthRange::minus_one_to_one})
+                for (const double far : {30.0, kInfinity}) {
+                    if (projection == Projection::orthographic && far == kInfinity) continue;
+                    Camera camera;
+                    camera.projection = projection;
+                    camera.position = {3.0, -2.0, 5.0};
+                    camera.forward = {0.3, 0.2, -0.9};
+                    camera.near = 0.5;
+                    camera.far = far;
+                    const glm::dmat4 matrix = world_to_clip(camera, depth);
+                    const auto from_camera = frustum_of(camera);
+                    const auto from_matrix = frustum_of(matrix, depth);
+                    REQUIRE(from_camera.has_value());
+                    REQUIRE(from_matrix.has_value());
+                    CHECK(from_camera->plane_count == (far == kInfinity ? 5 : 6));
+                    CHECK(from_matrix->plane_count == from_camera->plane_count);
+                    int inside = 0;
+                    for (int trial = 0; trial < 4000; ++trial) {
+                        const glm::dvec3 point =
+                            camera.position + 20.0 * glm::dvec3(number(random), number(random), number(random));
+                        const bool truth = in_clip_volume(matrix, depth, point);
+                        inside += truth;
+                        CHECK(holds(*from_camera, point) == truth);
+                        CHECK(holds(*from_matrix, point) == truth);
+                    }
+                    CHECK(inside > 20);
+                }
+    }
+
+    TEST_CASE("corners project to the corners of the clip volume") {
+        Camera camera;
+        camera.position = {1.0, 2.0, 3.0};
+        const auto frustum = frustum_of(camera);
+        REQUIRE(frustum.has_value());
+        const auto corners = frustum_corners(*frustum);
+        REQUIRE(corners.has_value());
+        for (unsigned i = 0; i < 8; ++i) {
+            const glm::dvec4 p = world_to_clip(camera) * glm::dvec4(camera.position + (*corners)[i], 1.0);
+            CHECK(p.x / p.w == doctest::Approx((i & 1) ? 1.0 : -1.0));
+            CHECK(p.y / p.w == doctest::Approx((i & 2) ? 1.0 : -1.0));
+            CHECK(p.z / p.w == doctest::Approx((i & 4) ? 0.0 : 1.0).epsilon(1e-6));
+        }
+    }
+}

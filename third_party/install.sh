@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that Crofton needs and this machine lacks; says nothing when there are none.
+#   third_party/install.sh            what building, running and testing need
+#   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
+set -euo pipefail
+
+packages=(
+    # build
+    g++ cmake ninja-build pkg-config glslang-tools
+    # engine
+    libglm-dev libexpected-dev libhwy-dev libqhull-dev
+    # render: loader, headers, lavapipe, validation
+    libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
+    # samples
+    libglfw3-dev libimgui-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev
+    # tests
+    doctest-dev libgmp-dev xvfb
+)
+bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
+
+for argument in "$@"; do
+    case "$argument" in
+        --bench) packages+=("${bench_packages[@]}") ;;
+        *) echo "usage: third_party/install.sh [--bench]" >&2; exit 2 ;;
+    esac
+done
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    echo "third_party/install.sh: apt-get is not here, so nothing was installed. Install these (Debian's names) yourself:" >&2
+    echo "  ${packages[*]}" >&2
+    exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+    [[ $status == "install ok installed" ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+    if ! command -v sudo >/dev/null; then
+        echo "third_party/install.sh: not root and no sudo. Please run as root: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} packages: ${missing[*]}" >&2
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+install() {
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" >"$log" 2>&1
+}
+# Package lists may be absent or stale: refresh them once, and only if needed.
+if ! install; then
+    if ! { "${as_root[@]}" apt-get update >>"$log" 2>&1 && install; }; then
+        echo "third_party/install.sh: apt-get failed:" >&2
+        tail -n 20 "$log" >&2
+        exit 1
+    fi
+fi
