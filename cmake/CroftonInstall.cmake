@@ -1,8 +1,25 @@
-# cmake --install: headers, libraries and the package that find_package(crofton) reads.
+# cmake --install: headers, libraries, and the packages that find_package(crofton) and pkg-config read.
 include(CMakePackageConfigHelpers)
 
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/crofton)
 get_property(include_dirs GLOBAL PROPERTY CROFTON_INCLUDE_DIRS)
 foreach(dir IN LISTS include_dirs)
     install(DIRECTORY ${dir}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+install(TARGETS crofton EXPORT crofton-targets)
+install(EXPORT crofton-targets NAMESPACE crofton:: DESTINATION ${package_dir})
+if(TARGET crofton_render)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/render/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(TARGETS crofton_render EXPORT crofton-render-targets)
+    install(EXPORT crofton-render-targets NAMESPACE crofton:: DESTINATION ${package_dir})
+endif()
+
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in ${PROJECT_BINARY_DIR}/crofton-config.cmake
+    INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/crofton-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/crofton-config.cmake ${PROJECT_BINARY_DIR}/crofton-config-version.cmake
+        DESTINATION ${package_dir})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton.pc.in ${PROJECT_BINARY_DIR}/crofton.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/crofton.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
