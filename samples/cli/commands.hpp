@@ -15,6 +15,6 @@ struct Outcome {
     int status = kSuccess;
 };
 
-// (one line per sub-command: void add_frames_command(CLI::App& app, Outcome& outcome);)
+void add_verify_command(CLI::App& app, Outcome& outcome);
 
 }  // namespace crofton::cli
