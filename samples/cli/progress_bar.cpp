@@ -1,0 +1,30 @@
+#include "progress_bar.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <unistd.h>
+
+namespace crofton::cli {
+namespace {
+constexpr std::size_t kWidth = 40;
+}
+
+ProgressBar::ProgressBar(std::string label, std::size_t total)
+    : label_(std::move(label)), total_(std::max<std::size_t>(1, total)), terminal_(isatty(STDERR_FILENO) != 0) {
+    set(0);
+}
+
+ProgressBar::~ProgressBar() {
+    if (terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::set(std::size_t done) {
+    const std::size_t width = std::min(kWidth, kWidth * done / total_);
+    if (!terminal_ || width == shown_) return;
+    shown_ = width;
+    std::fprintf(stderr, "\r%s [%s%s] %zu/%zu", label_.c_str(), std::string(width, '#').c_str(),
+                 std::string(kWidth - width, '.').c_str(), std::min(done, total_), total_);
+    std::fflush(stderr);
+}
+
+}  // namespace crofton::cli

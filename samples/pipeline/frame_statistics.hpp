@@ -1,0 +1,58 @@
+// What one frame cost and found; the rows of `crofton frames` and of the viewer's panel.
+#pragma once
+#include <crofton/geometry/camera.hpp>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crofton::pipeline {
+
+// As the GPU counted them (docs/render.md says what each counts on lavapipe).
+struct GpuCounts {
+    std::uint64_t input_assembly_primitives = 0;
+    std::uint64_t clipping_invocations = 0;
+    std::uint64_t clipping_primitives = 0;
+    std::uint64_t samples_passed = 0;
+};
+
+struct FrameStatistics {
+    std::uint32_t index = 0;
+    Camera camera;
+    std::uint64_t instances = 0;    // alive
+    std::uint64_t visible = 0;      // inside + straddling
+    std::uint64_t inside = 0;       // the bound lies in the frustum
+    std::uint64_t straddling = 0;   // the bound meets the frustum's boundary
+    std::uint64_t improper = 0;     // the bound straddles, the object itself does not
+    std::uint64_t nodes_tested = 0;
+    std::uint64_t triangles_submitted = 0;  // of the visible instances
+    std::uint64_t triangles_passed = 0;     // that meet the frustum
+    std::uint64_t triangles_clipped = 0;    // predicted Σ (vertices of the clipped polygon − 2)
+    std::optional<GpuCounts> gpu;           // absent without drawing
+    std::uint64_t colliding_pairs = 0;
+    double update_us = 0.0, cull_us = 0.0, collide_us = 0.0, draw_us = 0.0;
+    std::vector<std::uint32_t> visible_ids;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> colliding_ids;
+};
+
+// What --verify found: mismatches by kind, with a line on each of the first few.
+struct Verification {
+    std::uint64_t frames = 0;
+    std::uint64_t culled_but_visible = 0;
+    std::uint64_t wrong_verdicts = 0;
+    std::uint64_t wrong_pairs = 0;
+    std::uint64_t wrong_counts = 0;
+    std::uint64_t unclear = 0;  // answers that double arithmetic cannot check
+    std::vector<std::string> messages;
+
+    [[nodiscard]] std::uint64_t mismatches() const { return culled_but_visible + wrong_verdicts + wrong_pairs + wrong_counts; }
+};
+
+[[nodiscard]] nlohmann::json to_json(const FrameStatistics& frame, bool with_ids);
+[[nodiscard]] nlohmann::json summary_json(std::span<const FrameStatistics> frames, const std::optional<Verification>& verification);
+[[nodiscard]] std::string to_csv(std::span<const FrameStatistics> frames);
+
+}  // namespace crofton::pipeline
