@@ -1,0 +1,71 @@
+// Which of many moving boxes meet?
+#pragma once
+#include <compare>
+#include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace crofton::collide {
+
+// Indices into the caller's boxes, first < second; ordered by first, then second.
+struct Pair {
+    std::uint32_t first = 0, second = 0;
+    auto operator<=>(const Pair&) const = default;
+};
+
+// Two items are tested iff each one's layers meet what the other collides with.
+struct Filter {
+    std::uint32_t layers = 1;
+    std::uint32_t collides_with = ~0u;
+};
+[[nodiscard]] constexpr bool passes(const Filter& a, const Filter& b) {
+    return (a.layers & b.collides_with) != 0 && (b.layers & a.collides_with) != 0;
+}
+
+struct BroadphaseOptions {
+    bool exact_boxes = true;  // pairs of boxes that meet; false: pairs whose axis-aligned bounds meet
+    std::size_t max_pairs = std::size_t{1} << 28;  // of bounds; more is an error, not an exhausted memory
+};
+
+struct BroadphaseStatistics {
+    std::uint64_t bound_pairs =
+        0;  // pairs whose axis-aligned bounds meet and whose filters pass: given to the exact test
+    std::uint64_t box_pairs = 0;  // of those, pairs listed
+    std::uint64_t nodes_tested = 0;
+    std::uint32_t rejected = 0;  // items whose box is invalid
+    bool rebuilt = false;        // the order of the items was made anew in this update
+};
+
+// Keeps, between updates, an order of the items in which neighbours in space are neighbours in memory; it is made anew
+// only when motion has worn it out. Answers do not depend on that history.
+class Broadphase {
+  public:
+    explicit Broadphase(const BroadphaseOptions& options = {});
+    ~Broadphase();
+    Broadphase(Broadphase&&) noexcept;
+    Broadphase& operator=(Broadphase&&) noexcept;
+
+    // Finds all pairs of boxes that meet (exactly; touching counts) and that `filters` let pass. boxes[i] is the same
+    // item as in the update before; items may be added at the end or dropped from it. `filters` is empty, which lets
+    // all pass, or has one entry a box. A box that validate(Obb) refuses meets nothing and is listed in rejected().
+    // Errors: filters of another size; 2^32 − 1 boxes or more; max_pairs exceeded (no pairs are kept then).
+    Result<void> update(std::span<const Obb> boxes, std::span<const Filter> filters = {},
+                        Executor& executor = serial_executor());
+
+    [[nodiscard]] std::span<const Pair> pairs() const;  // all, in order
+    [[nodiscard]] std::span<const Pair> began() const;  // in pairs() now, not after the update before
+    [[nodiscard]] std::span<const Pair> stayed() const;
+    [[nodiscard]] std::span<const Pair> ended() const;
+    [[nodiscard]] std::span<const std::uint32_t> rejected() const;  // ascending
+    [[nodiscard]] const BroadphaseStatistics& statistics() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace crofton::collide

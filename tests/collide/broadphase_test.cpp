@@ -1,0 +1,131 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/obb_obb.hpp>
+#include <limits>
+#include <vector>
+
+#include "random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+std::vector<Obb> random_boxes(std::mt19937_64& random, int count, double place) {
+    std::vector<Obb> boxes;
+    for (int i = 0; i < count; ++i) boxes.push_back(random_box(random, place));
+    return boxes;
+}
+
+std::vector<Pair> brute_force(std::span<const Obb> boxes, std::span<const Filter> filters = {}) {
+    std::vector<Pair> pairs;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
+            if (validate(boxes[i]) && validate(boxes[j]) && (filters.empty() || passes(filters[i], filters[j])) &&
+                intersects(boxes[i], boxes[j]))
+                pairs.push_back({i, j});
+    return pairs;
+}
+
+bool same(std::span<const Pair> a, std::span<const Pair> b) {
+    return std::ranges::equal(a, b);
+}
+
+}  // namespace
+
+TEST_SUITE("collide/broadphase") {
+    TEST_CASE("no boxes and one box make no pairs") {
+        Broadphase broadphase;
+        CHECK(broadphase.update({}).has_value());
+        CHECK(broadphase.pairs().empty());
+        const Obb box;
+        CHECK(broadphase.update({&box, 1}).has_value());
+        CHECK(broadphase.pairs().empty());
+    }
+
+    TEST_CASE("invalid boxes are listed by index, meet nothing, and spoil nothing") {
+        std::mt19937_64 random(1);
+        auto boxes = random_boxes(random, 200, 3.0);
+        boxes[17].center.x = std::numeric_limits<double>::quiet_NaN();
+        boxes[40].half_extents.y = std::numeric_limits<float>::infinity();
+        boxes[199].axes[2] = glm::vec3(0.0f);
+        Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes).has_value());
+        CHECK(std::ranges::equal(broadphase.rejected(), std::vector<std::uint32_t>{17, 40, 199}));
+        CHECK(broadphase.statistics().rejected == 3);
+        CHECK(same(broadphase.pairs(), brute_force(boxes)));
+    }
+
+    TEST_CASE("too many pairs are an error that keeps none, and the next update works again") {
+        std::vector<Obb> boxes(1000);
+        for (Obb& box : boxes) box.half_extents = glm::vec3(1.0f);
+        Broadphase broadphase({.max_pairs = 1000});
+        const auto result = broadphase.update(boxes);
+        REQUIRE_FALSE(result.has_value());
+        CHECK(result.error().code == ErrorCode::budget_exceeded);
+        CHECK(broadphase.pairs().empty());
+        boxes.resize(10);
+        REQUIRE(broadphase.update(boxes).has_value());
+        CHECK(broadphase.pairs().size() == 45);
+        CHECK(broadphase.update(boxes, std::vector<Filter>(3)).error().code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("identical boxes, geometric series of sizes and places, and boxes at 1e30 lose no pair") {
+        std::mt19937_64 random(2);
+        std::vector<Obb> boxes(50, random_box(random));
+        for (int i = 0; i < 100; ++i) {
+            Obb box = random_box(random);
+            box.center *= std::exp2(i - 50);
+            box.half_extents *= std::exp2(float(i - 50));
+            boxes.push_back(box);
+        }
+        for (int i = 0; i < 4; ++i) {
+            Obb box = random_box(random);
+            box.center = glm::dvec3(9e29, 0.0, -9e29) * (i % 2 ? 1.0 : -1.0);
+            boxes.push_back(box);
+        }
+        Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes).has_value());
+        CHECK(broadphase.pairs().size() > 50 * 49 / 2);
+        CHECK(same(broadphase.pairs(), brute_force(boxes)));
+    }
+
+    TEST_CASE("filters keep pairs apart, both ways") {
+        std::mt19937_64 random(3);
+        const auto boxes = random_boxes(random, 400, 4.0);
+        std::vector<Filter> filters;
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            filters.push_back({1u << (i % 3), static_cast<std::uint32_t>(random() % 8)});
+        Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes, filters).has_value());
+        CHECK_FALSE(broadphase.pairs().empty());
+        CHECK(same(broadphase.pairs(), brute_force(boxes, filters)));
+        CHECK(broadphase.pairs().size() < brute_force(boxes).size());
+    }
+
+    TEST_CASE("frame after frame of moving boxes: all pairs, in order, and who began, stayed and ended") {
+        std::mt19937_64 random(4);
+        auto boxes = random_boxes(random, 600, 6.0);
+        Broadphase broadphase;
+        std::vector<Pair> before;
+        for (int frame = 0; frame < 20; ++frame) {
+            if (frame == 10) boxes.resize(500);
+            if (frame == 12) boxes.push_back(random_box(random, 1.0));
+            REQUIRE(broadphase.update(boxes).has_value());
+            const auto now = brute_force(boxes);
+            CHECK(same(broadphase.pairs(), now));
+            std::vector<Pair> began, stayed, ended;
+            std::ranges::set_difference(now, before, std::back_inserter(began));
+            std::ranges::set_intersection(now, before, std::back_inserter(stayed));
+            std::ranges::set_difference(before, now, std::back_inserter(ended));
+            CHECK(same(broadphase.began(), began));
+            CHECK(same(broadphase.stayed(), stayed));
+            CHECK(same(broadphase.ended(), ended));
+            before = now;
+            const double step = frame == 15 ? 20.0 : 0.1;
+            for (Obb& box : boxes) box.center += step * random_vector(random);
+        }
+    }
+}

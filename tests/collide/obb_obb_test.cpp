@@ -1,0 +1,121 @@
+#include <doctest/doctest.h>
+#include <crofton/collide/obb_obb.hpp>
+#include <limits>
+
+#include "oracle/exact_boxes.hpp"
+#include "random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+Obb unit_box(const glm::dvec3& center) {
+    Obb box;
+    box.center = center;
+    box.half_extents = glm::vec3(0.5f);
+    return box;
+}
+
+}  // namespace
+
+TEST_SUITE("collide/obb_obb") {
+    TEST_CASE("a box that is not finite meets nothing, not even itself") {
+        Obb bad = unit_box({});
+        bad.center.y = std::numeric_limits<double>::quiet_NaN();
+        CHECK_FALSE(intersects(bad, unit_box({})));
+        CHECK_FALSE(intersects(unit_box({}), bad));
+        CHECK_FALSE(intersects(bad, bad));
+        bad = unit_box({});
+        bad.axes[1].x = std::numeric_limits<float>::infinity();
+        CHECK_FALSE(intersects(bad, unit_box({})));
+    }
+
+    TEST_CASE("points, segments and rectangles are boxes with zero extents") {
+        Obb point = unit_box({0.5, 0.5, 0.5});
+        point.half_extents = glm::vec3(0.0f);
+        CHECK(intersects(point, unit_box({})));
+        CHECK(intersects(point, point));
+        point.center.x = std::nextafter(0.5, 1.0);
+        CHECK_FALSE(intersects(point, unit_box({})));
+        Obb segment = point;
+        segment.center = {0.0, 0.0, 0.0};
+        segment.half_extents = {1.0f, 0.0f, 0.0f};
+        Obb other = segment;
+        other.axes = glm::mat3(glm::vec3(0, 1, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 0, 1));
+        CHECK(intersects(segment, other));
+        other.center.z = std::numeric_limits<double>::denorm_min();
+        CHECK_FALSE(intersects(segment, other));
+    }
+
+    TEST_CASE("touching is a hit, one bit further is not, also far from the origin") {
+        for (const double place : {0.0, 1e7, -1e15}) {
+            const Obb a = unit_box({place, 0.0, 0.0});
+            CHECK(intersects(a, unit_box({place + 1.0, 1.0, -1.0})));
+            CHECK_FALSE(intersects(a, unit_box({std::nextafter(place + 1.0, 1e30), 0.0, 0.0})));
+        }
+    }
+
+    TEST_CASE("the smallest and the largest boxes that are allowed keep their exact answers") {
+        Obb large = unit_box({-1e30, 0.0, 0.0}), other = large;
+        large.half_extents = other.half_extents = glm::vec3(1e30f);
+        other.center.x = large.center.x + 2.0 * double(1e30f);
+        CHECK(intersects(large, other));
+        other.center.x = std::nextafter(other.center.x, 2e30);
+        CHECK_FALSE(intersects(large, other));
+        Obb tiny = unit_box({});
+        tiny.half_extents = glm::vec3(std::numeric_limits<float>::denorm_min());
+        Obb next = tiny;
+        next.center.y = 2.0 * double(std::numeric_limits<float>::denorm_min());
+        CHECK(intersects(tiny, next));
+        next.center.y = std::nextafter(next.center.y, 1.0);
+        CHECK_FALSE(intersects(tiny, next));
+    }
+
+    TEST_CASE("tells each of the fifteen axes apart, in either order of the boxes") {
+        std::mt19937_64 random(5);
+        std::uint32_t seen = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            const auto [a, b] = nearly_touching(random, {});
+            const int axis = separating_axis(a, b);
+            if (axis >= 0) seen |= 1u << axis;
+            CHECK((separating_axis(b, a) == kNotSeparated) == (axis == kNotSeparated));
+            if (axis >= 0) CHECK(separating_axis(a, b, axis) == axis);
+            CHECK((separating_axis(a, b, 14) == kNotSeparated) == (axis == kNotSeparated));
+        }
+        CHECK(seen == 0x7fffu);
+    }
+
+    TEST_CASE("the two oracles agree with each other and with us, degenerate boxes included") {
+        std::mt19937_64 random(11);
+        int hits = 0;
+        for (int trial = 0; trial < 300; ++trial) {
+            auto [a, b] = nearly_touching(random, {.parallel = trial % 2 == 0, .float_centers = true});
+            if (trial % 3 == 0) a.half_extents[trial % 2] = 0.0f;
+            if (trial % 5 == 0) b.half_extents = glm::vec3(0.0f, 0.3f, 0.0f);
+            const bool truth = oracle::boxes_meet_by_vertices(a, b);
+            hits += truth;
+            CHECK(oracle::boxes_meet_by_axes(a, b) == truth);
+            CHECK(intersects(a, b) == truth);
+        }
+        CHECK(hits > 50);
+    }
+
+    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15 and angles of 1e-1 to 1e-12: no wrong answer in any class") {
+        std::mt19937_64 random(2024);
+        int wrong[4] = {}, hits[4] = {};
+        for (int trial = 0; trial < 60000; ++trial) {
+            const int kind = trial % 4;
+            const auto [a, b] = nearly_touching(random, {.parallel = kind >= 2, .float_centers = kind % 2 == 1});
+            const bool truth = oracle::boxes_meet_by_axes(a, b);
+            wrong[kind] += intersects(a, b) != truth;
+            hits[kind] += truth;
+        }
+        for (int kind = 0; kind < 4; ++kind) {
+            CHECK(wrong[kind] == 0);
+            CHECK(hits[kind] > 6000);
+            CHECK(hits[kind] < 9000);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+// Pairs of boxes that nearly touch, made so that the gap is known to rounding: the inputs that break separating-axis
+// tests.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/obb.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <random>
+
+namespace crofton::testing {
+
+inline glm::dquat random_rotation(std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    return glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
+}
+
+inline glm::dvec3 random_vector(std::mt19937_64& random, double low = -1.0, double high = 1.0) {
+    std::uniform_real_distribution<double> number(low, high);
+    return {number(random), number(random), number(random)};
+}
+
+inline Obb random_box(std::mt19937_64& random, double place = 1.0) {
+    Obb box;
+    box.center = place * random_vector(random);
+    box.axes = glm::mat3(glm::mat3_cast(random_rotation(random)));
+    box.half_extents = glm::vec3(random_vector(random, 0.1, 1.0));
+    return box;
+}
+
+// How far b, starting at a's centre, has to move along `direction` until the boxes only touch, as far as double can
+// say: the smallest of the distances at which one of the fifteen axes begins to separate them.
+inline double touching_distance(const Obb& a, const Obb& b, const glm::dvec3& direction) {
+    glm::dvec3 edge[6];
+    for (int k = 0; k < 6; ++k) edge[k] = glm::dvec3((k < 3 ? a : b).axes[k % 3]);
+    double distance = 1e300;
+    for (int p = 0; p < 6; ++p)
+        for (int q = p + 1; q < 6; ++q) {
+            const glm::dvec3 n = glm::cross(edge[p], edge[q]);
+            const double speed = std::abs(glm::dot(n, direction));
+            if (speed < 1e-14 * glm::length(n) || speed == 0.0) continue;
+            double reach = 0.0;
+            for (int k = 0; k < 6; ++k)
+                if (k != p && k != q)
+                    reach += double((k < 3 ? a : b).half_extents[k % 3]) * std::abs(glm::dot(edge[k], n));
+            distance = std::min(distance, reach / speed);
+        }
+    return distance;
+}
+
+struct NearTouch {
+    bool parallel = false;       // b's frame is a's, turned by 1e-1 … 1e-12 rad
+    bool float_centers = false;  // centres rounded to float
+};
+
+inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTouch& kind) {
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    Obb a = random_box(random), b = random_box(random);
+    if (kind.parallel) {
+        const glm::dquat frame = random_rotation(random);
+        const double angle = std::pow(10.0, -1.0 - 11.0 * unit(random));
+        a.axes = glm::mat3(glm::mat3_cast(frame));
+        b.axes = glm::mat3(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(random_vector(random))) * frame));
+    }
+    const double gap = std::pow(10.0, -1.0 - 14.0 * unit(random)) * (random() % 2 ? 1.0 : -1.0);
+    // Along an axis in some trials, so that faces lie flat on each other.
+    const glm::dvec3 direction = random() % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[2]);
+    b.center = a.center + (touching_distance(a, b, direction) + gap) * direction;
+    if (kind.float_centers) {
+        a.center = glm::dvec3(glm::vec3(a.center));
+        b.center = glm::dvec3(glm::vec3(b.center));
+    }
+    return {a, b};
+}
+
+}  // namespace crofton::testing

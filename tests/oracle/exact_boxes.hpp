@@ -1,0 +1,84 @@
+// Oracle: do two boxes meet, in exact rational arithmetic (GMP), by two unrelated methods.
+#pragma once
+#include <gmpxx.h>
+
+#include <array>
+#include <crofton/geometry/obb.hpp>
+#include <vector>
+
+namespace crofton::oracle {
+
+using Rational = mpq_class;
+using Vec3q = std::array<Rational, 3>;
+
+inline Rational dot(const Vec3q& a, const Vec3q& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vec3q cross(const Vec3q& a, const Vec3q& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline Vec3q minus(const Vec3q& a, const Vec3q& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <class V>
+Vec3q rational(const V& v) {
+    return {Rational(double(v.x)), Rational(double(v.y)), Rational(double(v.z))};
+}
+
+// The separating-axis theorem for the zonotope of the six scaled edges.
+inline bool boxes_meet_by_axes(const Obb& a, const Obb& b) {
+    std::array<Vec3q, 6> edge;
+    std::array<Rational, 6> half;
+    for (int k = 0; k < 6; ++k) {
+        const Obb& box = k < 3 ? a : b;
+        edge[std::size_t(k)] = rational(box.axes[k % 3]);
+        half[std::size_t(k)] = double(box.half_extents[k % 3]);
+    }
+    const Vec3q offset = minus(rational(b.center), rational(a.center));
+    for (std::size_t p = 0; p < 6; ++p)
+        for (std::size_t q = p + 1; q < 6; ++q) {
+            const Vec3q n = cross(edge[p], edge[q]);
+            Rational reach = 0;
+            for (std::size_t k = 0; k < 6; ++k)
+                if (k != p && k != q) reach += half[k] * abs(dot(edge[k], n));
+            if (abs(dot(offset, n)) > reach) return false;
+        }
+    return true;
+}
+
+// Linear programming by brute force: the points common to both boxes form a polytope of twelve half-spaces; it is empty
+// iff no intersection of three of the planes lies in all half-spaces.
+inline bool boxes_meet_by_vertices(const Obb& a, const Obb& b) {
+    struct HalfSpace {
+        Vec3q normal;  // dot(normal, x) <= offset
+        Rational offset;
+    };
+    std::vector<HalfSpace> sides;
+    for (const Obb* box : {&a, &b})
+        for (int k = 0; k < 3; ++k) {
+            const Vec3q u = rational(box->axes[k]);
+            Vec3q n = cross(rational(box->axes[(k + 1) % 3]), rational(box->axes[(k + 2) % 3]));
+            const Rational reach = abs(dot(u, n)) * Rational(double(box->half_extents[k]));
+            const Rational center = dot(n, rational(box->center));
+            sides.push_back({n, center + reach});
+            for (Rational& c : n) c = -c;
+            sides.push_back({n, reach - center});
+        }
+    for (std::size_t i = 0; i < 12; ++i)
+        for (std::size_t j = i + 1; j < 12; ++j)
+            for (std::size_t k = j + 1; k < 12; ++k) {
+                const Vec3q jk = cross(sides[j].normal, sides[k].normal), ki = cross(sides[k].normal, sides[i].normal),
+                            ij = cross(sides[i].normal, sides[j].normal);
+                const Rational det = dot(sides[i].normal, jk);
+                if (det == 0) continue;
+                Vec3q x;
+                for (std::size_t c = 0; c < 3; ++c)
+                    x[c] = (sides[i].offset * jk[c] + sides[j].offset * ki[c] + sides[k].offset * ij[c]) / det;
+                bool inside = true;
+                for (const HalfSpace& side : sides) inside = inside && dot(side.normal, x) <= side.offset;
+                if (inside) return true;
+            }
+    return false;
+}
+
+}  // namespace crofton::oracle
