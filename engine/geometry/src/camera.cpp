@@ -6,7 +6,9 @@
 namespace crofton {
 namespace {
 
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 }  // namespace
 
@@ -22,10 +24,12 @@ Result<void> validate(const Camera& camera) {
             return bad(ErrorCode::out_of_range, "fov_y must lie in (1e-6, pi - 1e-6) radians");
         if (!(camera.near > 0.0)) return bad(ErrorCode::out_of_range, "near must be positive");
     } else {
-        if (!(camera.height > 0.0 && std::isfinite(camera.height))) return bad(ErrorCode::out_of_range, "height must be positive");
+        if (!(camera.height > 0.0 && std::isfinite(camera.height)))
+            return bad(ErrorCode::out_of_range, "height must be positive");
         if (!std::isfinite(camera.far)) return bad(ErrorCode::out_of_range, "an orthographic far must be finite");
     }
-    if (!(camera.aspect > 0.0 && std::isfinite(camera.aspect))) return bad(ErrorCode::out_of_range, "aspect must be positive");
+    if (!(camera.aspect > 0.0 && std::isfinite(camera.aspect)))
+        return bad(ErrorCode::out_of_range, "aspect must be positive");
     if (!std::isfinite(camera.near)) return bad(ErrorCode::non_finite, "near is NaN or infinite");
     if (!(camera.far > camera.near)) return bad(ErrorCode::out_of_range, "far must be greater than near");
     return {};

@@ -12,7 +12,9 @@ void add(Frustum& frustum, const glm::dvec3& normal, double offset) {
     frustum.planes[frustum.plane_count++] = Plane{normal / length, offset / length};
 }
 
-glm::dvec4 row(const glm::dmat4& m, int r) { return {m[0][r], m[1][r], m[2][r], m[3][r]}; }
+glm::dvec4 row(const glm::dmat4& m, int r) {
+    return {m[0][r], m[1][r], m[2][r], m[3][r]};
+}
 
 // The point where three planes meet; the caller knows that they do.
 glm::dvec3 meet(const Plane& a, const Plane& b, const Plane& c) {
@@ -56,7 +58,8 @@ Result<Frustum> frustum_of(const glm::dmat4& to_clip, DepthRange depth, const gl
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r)
             if (!std::isfinite(to_clip[c][r]))
-                return fail(ErrorCode::non_finite, static_cast<std::uint64_t>(4 * c + r), "view matrix: an entry is NaN or infinite");
+                return fail(ErrorCode::non_finite, static_cast<std::uint64_t>(4 * c + r),
+                            "view matrix: an entry is NaN or infinite");
     if (!std::isfinite(origin.x) || !std::isfinite(origin.y) || !std::isfinite(origin.z))
         return fail(ErrorCode::non_finite, kNoItem, "view matrix: the origin is NaN or infinite");
     const glm::dvec4 x = row(to_clip, 0), y = row(to_clip, 1), z = row(to_clip, 2), w = row(to_clip, 3);
@@ -68,7 +71,8 @@ Result<Frustum> frustum_of(const glm::dmat4& to_clip, DepthRange depth, const gl
     const bool reversed = depth == DepthRange::reversed_zero_to_one;
     Frustum frustum;
     frustum.origin = origin;
-    for (const glm::dvec4& half_space : {w + x, w - x, w + y, w - y, reversed ? high_z : low_z, reversed ? low_z : high_z}) {
+    for (const glm::dvec4& half_space :
+         {w + x, w - x, w + y, w - y, reversed ? high_z : low_z, reversed ? low_z : high_z}) {
         const double size = glm::length(glm::dvec3(half_space));
         // A plane at infinity: 0·x + offset ≥ 0, up to the rounding of the row sums.
         const double rounding = 4e-16 * (glm::length(glm::dvec3(w)) + glm::length(glm::dvec3(z)));

@@ -11,15 +11,22 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // half_extents[k] · axes[k]: exact, a product of two floats fits a double.
-glm::dvec3 half_edge(const Obb& box, int k) { return glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]); }
+glm::dvec3 half_edge(const Obb& box, int k) {
+    return glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]);
+}
 
-double half_extent(const Obb& box, int k) { return static_cast<double>(box.half_extents[k]); }
+double half_extent(const Obb& box, int k) {
+    return static_cast<double>(box.half_extents[k]);
+}
 
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 float float_at_least(double value) {
     const float rounded = static_cast<float>(value);
-    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                                : rounded;
 }
 
 using Cross = std::array<Expansion<2>, 3>;
@@ -59,20 +66,22 @@ std::array<glm::dvec3, 8> corners(const Obb& box) {
     return result;
 }
 
+bool contains_along(const Obb& box, const glm::dvec3& point, int k) {
+    // point − center = Σ s_k axes[k] with s_k = det(d, axes[i], axes[j]) / det(axes); inside iff |s_k| ≤
+    // half_extents[k].
+    const Cross normal = exact_cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
+    const glm::dvec3 axis(box.axes[k]);
+    auto reach = (normal[0] * axis.x + normal[1] * axis.y + normal[2] * axis.z) * half_extent(box, k);
+    auto distance = exact_difference(point.x, box.center.x) * normal[0] +
+                    exact_difference(point.y, box.center.y) * normal[1] +
+                    exact_difference(point.z, box.center.z) * normal[2];
+    if (reach.sign() < 0) reach = -reach;
+    if (distance.sign() < 0) distance = -distance;
+    return (distance - reach).sign() <= 0;
+}
+
 bool contains(const Obb& box, const glm::dvec3& point) {
-    // point − center = Σ s_k axes[k] with s_k = det(d, axes[i], axes[j]) / det(axes); inside iff |s_k| ≤ half_extents[k].
-    const std::array<Expansion<2>, 3> d = {exact_difference(point.x, box.center.x), exact_difference(point.y, box.center.y),
-                                           exact_difference(point.z, box.center.z)};
-    for (int k = 0; k < 3; ++k) {
-        const Cross normal = exact_cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
-        const glm::dvec3 axis(box.axes[k]);
-        auto reach = (normal[0] * axis.x + normal[1] * axis.y + normal[2] * axis.z) * half_extent(box, k);
-        auto distance = d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2];
-        if (reach.sign() < 0) reach = -reach;
-        if (distance.sign() < 0) distance = -distance;
-        if ((distance - reach).sign() > 0) return false;
-    }
-    return true;
+    return contains_along(box, point, 0) && contains_along(box, point, 1) && contains_along(box, point, 2);
 }
 
 glm::dvec3 support_point(const Obb& box, const glm::dvec3& direction) {
@@ -89,7 +98,8 @@ Aabb aabb_of(const Obb& box) {
     for (int i = 0; i < 3; ++i) {
         double reach = 0.0;
         for (int k = 0; k < 3; ++k) reach += std::abs(half_edge(box, k)[i]);
-        // Two rounded additions lie within 2^-52 relative of the exact sum; one more step outward covers the last addition.
+        // Two rounded additions lie within 2^-52 relative of the exact sum; one more step outward covers the last
+        // addition.
         reach += reach * 0x1p-51;
         result.min[i] = std::nextafter(box.center[i] - reach, -kInfinity);
         result.max[i] = std::nextafter(box.center[i] + reach, kInfinity);
@@ -108,13 +118,17 @@ Obb obb_of(const Aabb& box) {
     return result;
 }
 
-double volume(const Obb& box) { return 8.0 * half_extent(box, 0) * half_extent(box, 1) * half_extent(box, 2); }
+double volume(const Obb& box) {
+    return 8.0 * half_extent(box, 0) * half_extent(box, 1) * half_extent(box, 2);
+}
 
 double surface_area(const Obb& box) {
     const double a = half_extent(box, 0), b = half_extent(box, 1), c = half_extent(box, 2);
     return 8.0 * (a * b + b * c + c * a);
 }
 
-double edge_sum(const Obb& box) { return 2.0 * (half_extent(box, 0) + half_extent(box, 1) + half_extent(box, 2)); }
+double edge_sum(const Obb& box) {
+    return 2.0 * (half_extent(box, 0) + half_extent(box, 1) + half_extent(box, 2));
+}
 
 }  // namespace crofton

@@ -6,7 +6,8 @@ namespace crofton {
 
 Result<void> validate(const TriangleMesh& mesh) {
     if (mesh.indices.size() % 3 != 0)
-        return fail(ErrorCode::invalid_argument, mesh.indices.size(), "mesh: the index count is not a multiple of three");
+        return fail(ErrorCode::invalid_argument, mesh.indices.size(),
+                    "mesh: the index count is not a multiple of three");
     if (!mesh.colors.empty() && mesh.colors.size() != mesh.positions.size())
         return fail(ErrorCode::invalid_argument, mesh.colors.size(), "mesh: colours and positions differ in number");
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

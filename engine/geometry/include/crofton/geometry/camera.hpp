@@ -12,9 +12,9 @@ enum class Projection : std::uint8_t { perspective, orthographic };
 
 // How depth comes out of the projection. Ours is reversed-Z: near → 1, far → 0 (docs/conventions.md).
 enum class DepthRange : std::uint8_t {
-    reversed_zero_to_one,   // Vulkan/Direct3D clip volume 0 ≤ z ≤ w, near at w: the default
-    zero_to_one,            // Vulkan/Direct3D clip volume 0 ≤ z ≤ w, near at 0
-    minus_one_to_one,       // OpenGL clip volume −w ≤ z ≤ w, near at −w
+    reversed_zero_to_one,  // Vulkan/Direct3D clip volume 0 ≤ z ≤ w, near at w: the default
+    zero_to_one,           // Vulkan/Direct3D clip volume 0 ≤ z ≤ w, near at 0
+    minus_one_to_one,      // OpenGL clip volume −w ≤ z ≤ w, near at −w
 };
 
 // Right-handed: looks along `forward`, `up` need not be perpendicular to it. Angles in radians, lengths in metres.

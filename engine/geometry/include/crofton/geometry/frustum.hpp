@@ -11,8 +11,8 @@
 namespace crofton {
 
 // The exact set { x : dot(planes[i].normal, x − origin) + planes[i].offset ≥ 0 for all i < plane_count } of the stored
-// numbers, taken as reals. Six planes for a camera, five when far is infinite, up to twelve for extruded shadow volumes.
-// Normals are unit length up to rounding. Order for cameras: left, right, bottom, top, near, far.
+// numbers, taken as reals. Six planes for a camera, five when far is infinite, up to twelve for extruded shadow
+// volumes. Normals are unit length up to rounding. Order for cameras: left, right, bottom, top, near, far.
 struct Frustum {
     static constexpr std::uint32_t kMaxPlanes = 12;
     glm::dvec3 origin{0.0};
@@ -22,7 +22,8 @@ struct Frustum {
     [[nodiscard]] std::span<const Plane> view() const { return {planes.data(), plane_count}; }
 };
 
-// From parameters: planes relative to camera.position, so nothing is lost at large coordinates. Errors: as validate(Camera).
+// From parameters: planes relative to camera.position, so nothing is lost at large coordinates. Errors: as
+// validate(Camera).
 [[nodiscard]] Result<Frustum> frustum_of(const Camera& camera);
 
 // From any invertible matrix that takes positions relative to `origin` to clip space: perspective, orthographic,
@@ -35,8 +36,8 @@ struct Frustum {
 // Errors: not a camera's six planes (far infinite, extruded).
 [[nodiscard]] Result<std::array<glm::dvec3, 8>> frustum_corners(const Frustum& frustum);
 
-// True iff the triangle, taken as the exact convex hull of its three points, meets the closed frustum. Exact: decided by a
-// filter in double and by rational clipping where that cannot tell. Points are world positions, finite.
+// True iff the triangle, taken as the exact convex hull of its three points, meets the closed frustum. Exact: decided
+// by a filter in double and by rational clipping where that cannot tell. Points are world positions, finite.
 [[nodiscard]] bool intersects(const Frustum& frustum, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 }  // namespace crofton

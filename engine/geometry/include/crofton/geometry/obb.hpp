@@ -9,9 +9,9 @@
 
 namespace crofton {
 
-// The exact parallelepiped { center + Σ t_k · half_extents[k] · axes[k] : |t_k| ≤ 1 } of the stored numbers, taken as reals.
-// `axes[k]` is column k, unit length up to float rounding and linearly independent; half_extents ≥ 0, zero allowed.
-// The centre is double, so that boxes keep their place at planetary coordinates; the shape is float.
+// The exact parallelepiped { center + Σ t_k · half_extents[k] · axes[k] : |t_k| ≤ 1 } of the stored numbers, taken as
+// reals. `axes[k]` is column k, unit length up to float rounding and linearly independent; half_extents ≥ 0, zero
+// allowed. The centre is double, so that boxes keep their place at planetary coordinates; the shape is float.
 struct Obb {
     glm::dvec3 center{0.0};
     glm::mat3 axes{1.0f};
@@ -32,6 +32,9 @@ inline constexpr double kMaxAxisDeviation = 1e-4;
 
 // True iff `point` lies in the exact parallelepiped, boundary included; decided exactly. `point` is finite.
 [[nodiscard]] bool contains(const Obb& box, const glm::dvec3& point);
+
+// The same for the slab between the two faces across axes[k] alone: the point is in the box iff it is in all three.
+[[nodiscard]] bool contains_along(const Obb& box, const glm::dvec3& point, int k);
 
 // The farthest point of the box along `direction` (any length), rounded to double.
 [[nodiscard]] glm::dvec3 support_point(const Obb& box, const glm::dvec3& direction);

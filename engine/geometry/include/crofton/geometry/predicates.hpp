@@ -5,7 +5,8 @@
 
 namespace crofton {
 
-// Inputs must be finite; exact while |coordinates| lie in [1e-70, 1e70] or are 0 (degree-4 products stay within double).
+// Inputs must be finite; exact while |coordinates| lie in [1e-70, 1e70] or are 0 (degree-4 products stay within
+// double).
 
 // > 0 if a, b, c turn counter-clockwise, < 0 if clockwise, 0 if collinear.
 [[nodiscard]] int orientation(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);

@@ -16,8 +16,8 @@ struct TriangleMesh {
     [[nodiscard]] std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
-// Errors: non-finite position, index out of range, index count not a multiple of three, colour count; item = first culprit.
-// An empty mesh is valid here; who needs triangles says so.
+// Errors: non-finite position, index out of range, index count not a multiple of three, colour count; item = first
+// culprit. An empty mesh is valid here; who needs triangles says so.
 [[nodiscard]] Result<void> validate(const TriangleMesh& mesh);
 
 }  // namespace crofton

@@ -1,0 +1,196 @@
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/fit/fit.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <random>
+#include <vector>
+
+using namespace crofton;
+using fit::Quality;
+
+namespace {
+
+constexpr Quality kQualities[] = {Quality::fast, Quality::tight, Quality::exact};
+
+template <class Point>
+std::span<const Point> view(const std::vector<Point>& points) {
+    return points;
+}
+
+template <class Point>
+bool contains_all(const Obb& box, const std::vector<Point>& points) {
+    for (const Point& p : points)
+        if (!contains(box, glm::dvec3(p))) return false;
+    return true;
+}
+
+glm::dmat3 random_rotation(std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    const glm::dvec3 a = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    const glm::dvec3 b = glm::normalize(glm::cross(a, glm::dvec3(normal(random), normal(random), normal(random))));
+    return {a, b, glm::cross(a, b)};
+}
+
+std::vector<glm::dvec3> box_points(std::mt19937& random, const glm::dvec3& half, std::size_t inner) {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    std::vector<glm::dvec3> points;
+    for (unsigned i = 0; i < 8; ++i)
+        points.push_back(half * glm::dvec3(i & 1u ? 1.0 : -1.0, i & 2u ? 1.0 : -1.0, i & 4u ? 1.0 : -1.0));
+    for (std::size_t i = 0; i < inner; ++i)
+        points.push_back(half * glm::dvec3(unit(random), unit(random), unit(random)));
+    return points;
+}
+
+}  // namespace
+
+TEST_SUITE("fit/fit") {
+    TEST_CASE("no points, NaN, infinite or huge points are refused by their first index") {
+        CHECK(fit::fit_obb(std::span<const glm::vec3>()).error().code == ErrorCode::empty);
+        std::vector<glm::vec3> points(10, glm::vec3(1.0f));
+        points[7].y = std::numeric_limits<float>::quiet_NaN();
+        points[8].x = std::numeric_limits<float>::infinity();
+        auto result = fit::fit_obb(view(points));
+        REQUIRE(!result);
+        CHECK(result.error().code == ErrorCode::non_finite);
+        CHECK(result.error().item == 7);
+        points[3].z = -std::numeric_limits<float>::infinity();
+        CHECK(fit::fit_obb(view(points)).error().item == 3);
+        points[1].z = 2e30f;
+        CHECK(fit::fit_obb(view(points)).error().item == 1);
+        CHECK(fit::fit_obb(view(points)).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("a criterion with no weight or a negative one is refused") {
+        const std::vector<glm::vec3> points(3, glm::vec3(1.0f));
+        CHECK(!fit::fit_obb(view(points), {measure::Criterion{0.0, 0.0, 0.0}}));
+        CHECK(!fit::fit_obb(view(points), {measure::Criterion{1.0, -1.0, 0.0}}));
+    }
+
+    TEST_CASE("one point, however often, gives a box of no size at that point") {
+        for (const Quality quality : kQualities)
+            for (const std::size_t count : {1, 2, 100}) {
+                const std::vector<glm::dvec3> points(count, glm::dvec3(1e8 + 0.3, -7.1, 1e-9));
+                const Obb box = fit::fit_obb(view(points), {.quality = quality}).value();
+                CHECK(box.center == points[0]);
+                CHECK(box.half_extents == glm::vec3(0.0f));
+                CHECK(validate(box).has_value());
+                CHECK(contains_all(box, points));
+            }
+    }
+
+    TEST_CASE("a segment gives a box as long as the segment and no thicker than float axes allow") {
+        std::mt19937 random(3);
+        std::normal_distribution<double> normal;
+        for (int run = 0; run < 50; ++run)
+            for (const Quality quality : kQualities) {
+                const glm::dvec3 a(normal(random), normal(random), normal(random)),
+                    b(normal(random), normal(random), normal(random));
+                std::vector<glm::dvec3> points;
+                for (int i = 0; i <= 4; ++i) points.push_back(glm::mix(a, b, 0.25 * i));
+                for (const measure::Criterion& criterion :
+                     {measure::minimal_volume(), measure::minimal_area(), measure::minimal_perimeter()}) {
+                    const Obb box = fit::fit_obb(view(points), {criterion, quality}).value();
+                    CHECK(contains_all(box, points));
+                    CHECK(edge_sum(box) <= glm::distance(a, b) * (1.0 + 1e-6));
+                }
+            }
+    }
+
+    TEST_CASE("a turned box is found again, whatever its proportions, its place and its scale") {
+        std::mt19937 random(5);
+        const glm::dvec3 shapes[] = {{1, 1, 1},       {3, 2, 1},       {1, 1, 0}, {1, 0.3, 1e-6},
+                                     {1, 1e-3, 1e-6}, {1, 1e-6, 1e-6}, {1, 0, 0}};
+        for (const glm::dvec3& half : shapes)
+            for (const double scale : {1e-30, 1e-6, 1.0, 1e6, 1e28})
+                for (const double offset : {0.0, scale > 1e20 ? 3.0 : 1e5, scale > 1e20 ? 9.0 : 1e8})
+                    for (const Quality quality : kQualities) {
+                        const glm::dmat3 turn = random_rotation(random);
+                        std::vector<glm::dvec3> points = box_points(random, half, 20);
+                        for (glm::dvec3& p : points)
+                            p = (turn * p + glm::dvec3(offset, -0.3 * offset, 0.1 * offset)) * scale;
+                        const Obb box = fit::fit_obb(view(points), {measure::minimal_perimeter(), quality}).value();
+                        INFO(half.x, " ", half.y, " ", half.z, " scale ", scale, " offset ", offset, " quality ",
+                             int(quality));
+                        CHECK(contains_all(box, points));
+                        CHECK(validate(box).has_value());
+                        CHECK(edge_sum(box) <=
+                              2.0 * (half.x + half.y + half.z) * scale * (1.0 + 1e-6 + 2e-16 * offset * 4.0));
+                    }
+    }
+
+    TEST_CASE("float points far from the origin are contained exactly") {
+        std::mt19937 random(7);
+        std::normal_distribution<float> normal;
+        for (const float offset : {1e5f, 1e7f})
+            for (const Quality quality : kQualities) {
+                std::vector<glm::vec3> points;
+                for (int i = 0; i < 200; ++i)
+                    points.push_back(glm::vec3(offset) +
+                                     10.0f * glm::vec3(normal(random), normal(random), normal(random)));
+                CHECK(contains_all(fit::fit_obb(view(points), {.quality = quality}).value(), points));
+            }
+    }
+
+    TEST_CASE("the same box, bit for bit, for any order and duplication of the points") {
+        std::mt19937 random(11);
+        std::normal_distribution<float> normal;
+        std::vector<glm::vec3> points;
+        for (int i = 0; i < 300; ++i)
+            points.push_back(glm::vec3(3.0f * normal(random), normal(random), 0.5f * normal(random)));
+        for (const Quality quality : kQualities) {
+            const Obb expected = fit::fit_obb(view(points), {.quality = quality}).value();
+            std::vector<glm::vec3> shuffled = points;
+            shuffled.insert(shuffled.end(), points.begin(), points.begin() + 100);
+            for (int run = 0; run < 5; ++run) {
+                std::shuffle(shuffled.begin(), shuffled.end(), random);
+                const Obb box = fit::fit_obb(view(shuffled), {.quality = quality}).value();
+                CHECK(box.center == expected.center);
+                CHECK(box.axes == expected.axes);
+                CHECK(box.half_extents == expected.half_extents);
+            }
+        }
+    }
+
+    TEST_CASE("fit_oriented keeps the axes and holds every point with no more than rounding to spare") {
+        std::mt19937 random(13);
+        std::normal_distribution<double> normal;
+        for (int run = 0; run < 100; ++run) {
+            const glm::mat3 axes(random_rotation(random));
+            std::vector<glm::dvec3> points;
+            for (int i = 0; i < 30; ++i) points.emplace_back(normal(random), normal(random), normal(random));
+            const Obb box = fit::fit_oriented(view(points), axes).value();
+            CHECK(box.axes == axes);
+            CHECK(contains_all(box, points));
+            for (int k = 0; k < 3; ++k) {
+                Obb smaller = box;
+                smaller.half_extents[k] *= 1.0f - 3e-7f;
+                CHECK(!contains_all(smaller, points));
+            }
+        }
+        CHECK(!fit::fit_oriented(view(std::vector<glm::dvec3>(1)), glm::mat3(2.0f)));
+    }
+
+    TEST_CASE("merge holds every corner of every box and one box is its own merge") {
+        std::mt19937 random(17);
+        std::normal_distribution<double> normal;
+        CHECK(fit::merge({}, measure::minimal_area()).error().code == ErrorCode::empty);
+        for (int run = 0; run < 100; ++run) {
+            std::vector<Obb> boxes(1 + static_cast<std::size_t>(run % 4));
+            for (Obb& box : boxes) {
+                box.center = {normal(random), normal(random), normal(random)};
+                box.axes = glm::mat3(random_rotation(random));
+                box.half_extents = glm::vec3(0.1f, 0.4f, 0.2f);
+            }
+            const Obb all = fit::merge(boxes, measure::minimal_perimeter()).value();
+            if (boxes.size() == 1) {
+                CHECK(all.center == boxes[0].center);
+                CHECK(all.axes == boxes[0].axes);
+                CHECK(all.half_extents == boxes[0].half_extents);
+                continue;
+            }
+            for (const Obb& box : boxes)
+                for (const glm::dvec3& corner : corners(box)) CHECK(contains(all, corner));
+        }
+    }
+}
