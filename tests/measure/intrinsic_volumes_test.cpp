@@ -1,7 +1,8 @@
+#include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/measure/criterion.hpp>
-#include <doctest/doctest.h>
 #include <numbers>
+#include <vector>
 
 using namespace crofton;
 using namespace crofton::measure;
@@ -13,6 +14,36 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(validate(Criterion{1.0, -1.0, 1.0}).error().item == 1);
         CHECK(validate(Criterion{}).error().code == ErrorCode::invalid_argument);
         CHECK(validate(minimal_perimeter()).has_value());
+    }
+
+    TEST_CASE("a surface that is open, torn or not finite is no polytope, and the culprit is named") {
+        const std::vector<glm::dvec3> v = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+        const std::vector<std::uint32_t> open = {0, 2, 1, 0, 1, 3, 1, 2, 3}, out = {0, 2, 9};
+        CHECK(of_polytope(v, open).error().code == ErrorCode::degenerate);
+        CHECK(of_polytope(v, out).error().item == 2);
+        CHECK(of_polytope(v, {}).error().code == ErrorCode::invalid_argument);
+        std::vector<glm::dvec3> bad = v;
+        bad[3].z = std::nan("");
+        CHECK(of_polytope(bad, open).error().item == 3);
+    }
+
+    TEST_CASE("a flat triangle given by both sides is a flat polygon") {
+        const std::vector<glm::dvec3> v = {{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}};
+        const std::vector<std::uint32_t> sides = {0, 1, 2, 0, 2, 1};
+        const IntrinsicVolumes triangle = *of_polytope(v, sides), flat = of_flat_polygon(6.0, 12.0);
+        CHECK(triangle.volume == 0.0);
+        CHECK(triangle.area == doctest::Approx(flat.area));
+        CHECK(triangle.mean_curvature == doctest::Approx(flat.mean_curvature));
+    }
+
+    TEST_CASE("a regular tetrahedron has M = 3·edge·arccos(−1/3)") {
+        const std::vector<glm::dvec3> v = {{1.0, 1.0, 1.0}, {1.0, -1.0, -1.0}, {-1.0, 1.0, -1.0}, {-1.0, -1.0, 1.0}};
+        const std::vector<std::uint32_t> faces = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+        const double edge = std::sqrt(8.0);
+        const IntrinsicVolumes k = *of_polytope(v, faces);
+        CHECK(k.volume == doctest::Approx(8.0 / 3.0));
+        CHECK(k.area == doctest::Approx(std::sqrt(3.0) * edge * edge));
+        CHECK(k.mean_curvature == doctest::Approx(3.0 * edge * std::acos(-1.0 / 3.0)));
     }
 
     TEST_CASE("a narrow view of a near-cube gives the cube's measures") {

@@ -6,11 +6,21 @@ namespace crofton::measure {
 
 using std::numbers::pi;
 
-Criterion minimal_volume() { return {1.0, 0.0, 0.0}; }
-Criterion minimal_area() { return {0.0, 1.0, 0.0}; }
-Criterion minimal_perimeter() { return {0.0, 0.0, 1.0 / pi}; }
-Criterion for_rays(double length) { return for_partner(of_segment(length)); }
-Criterion for_partner(const IntrinsicVolumes& b) { return {1.0, b.mean_curvature / (4.0 * pi), b.area / (4.0 * pi)}; }
+Criterion minimal_volume() {
+    return {1.0, 0.0, 0.0};
+}
+Criterion minimal_area() {
+    return {0.0, 1.0, 0.0};
+}
+Criterion minimal_perimeter() {
+    return {0.0, 0.0, 1.0 / pi};
+}
+Criterion for_rays(double length) {
+    return for_partner(of_segment(length));
+}
+Criterion for_partner(const IntrinsicVolumes& b) {
+    return {1.0, b.mean_curvature / (4.0 * pi), b.area / (4.0 * pi)};
+}
 
 Result<Criterion> for_frustum(const Camera& camera) {
     return of_frustum(camera).map([](const IntrinsicVolumes& b) { return for_partner(b); });

@@ -9,17 +9,25 @@ namespace crofton::measure {
 
 using std::numbers::pi;
 
-IntrinsicVolumes of_box(double a, double b, double c) { return {a * b * c, 2.0 * (a * b + b * c + c * a), pi * (a + b + c)}; }
+IntrinsicVolumes of_box(double a, double b, double c) {
+    return {a * b * c, 2.0 * (a * b + b * c + c * a), pi * (a + b + c)};
+}
 
-IntrinsicVolumes of_box(const Obb& box) { return {volume(box), surface_area(box), pi * edge_sum(box)}; }
+IntrinsicVolumes of_box(const Obb& box) {
+    return {volume(box), surface_area(box), pi * edge_sum(box)};
+}
 
 IntrinsicVolumes of_ball(double radius) {
     return {4.0 / 3.0 * pi * radius * radius * radius, 4.0 * pi * radius * radius, 4.0 * pi * radius};
 }
 
-IntrinsicVolumes of_segment(double length) { return {0.0, 0.0, pi * length}; }
+IntrinsicVolumes of_segment(double length) {
+    return {0.0, 0.0, pi * length};
+}
 
-IntrinsicVolumes of_flat_polygon(double area, double perimeter) { return {0.0, 2.0 * area, 0.5 * pi * perimeter}; }
+IntrinsicVolumes of_flat_polygon(double area, double perimeter) {
+    return {0.0, 2.0 * area, 0.5 * pi * perimeter};
+}
 
 Result<IntrinsicVolumes> of_frustum(const Camera& camera) {
     if (!std::isfinite(camera.far))
@@ -37,7 +45,8 @@ Result<IntrinsicVolumes> of_frustum(const Camera& camera) {
         const auto& q = faces[f];
         const double face_area = 0.5 * glm::length(glm::cross(p[q[2]] - p[q[0]], p[q[3]] - p[q[1]]));
         result.area += face_area;
-        // Pyramids from corner 0 over the faces not through it; normals point inward, so the height is dot(n, c0) + offset.
+        // Pyramids from corner 0 over the faces not through it; normals point inward, so the height is dot(n, c0) +
+        // offset.
         const Plane& plane = frustum->planes[f];
         result.volume += face_area * (glm::dot(plane.normal, p[0]) + plane.offset) / 3.0;
     }

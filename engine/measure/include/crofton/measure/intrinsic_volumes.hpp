@@ -3,6 +3,9 @@
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/triangle_mesh.hpp>
+#include <cstdint>
+#include <span>
 
 namespace crofton::measure {
 
@@ -19,6 +22,13 @@ struct IntrinsicVolumes {
 [[nodiscard]] IntrinsicVolumes of_ball(double radius);
 [[nodiscard]] IntrinsicVolumes of_segment(double length);
 [[nodiscard]] IntrinsicVolumes of_flat_polygon(double area, double perimeter);
+
+// A convex polytope by its surface: triangles (three vertex indices each) that close it, counter-clockwise from
+// outside; M = ½ Σ edge length × exterior angle. A flat polygon is given by both its sides. Convexity is the caller's
+// promise. Errors: NaN or infinite vertices, indices out of range, an edge that is not shared by exactly two triangles.
+[[nodiscard]] Result<IntrinsicVolumes> of_polytope(std::span<const glm::dvec3> vertices,
+                                                   std::span<const std::uint32_t> triangles);
+[[nodiscard]] Result<IntrinsicVolumes> of_polytope(const TriangleMesh& surface);
 
 // The view volume of a camera, a convex polytope with 8 corners. Errors: as validate(Camera); far must be finite.
 [[nodiscard]] Result<IntrinsicVolumes> of_frustum(const Camera& camera);

@@ -1,0 +1,65 @@
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/measure/planar.hpp>
+#include <crofton/measure/random_motion.hpp>
+#include <numbers>
+#include <vector>
+
+using namespace crofton;
+using namespace crofton::measure;
+using std::numbers::pi;
+
+TEST_SUITE("measure/planar") {
+    TEST_CASE("a hull of nothing, or of a NaN, is an error that names the culprit") {
+        CHECK(convex_hull({}).error().code == ErrorCode::empty);
+        const std::vector<glm::dvec2> points = {{0.0, 0.0}, {1.0, std::nan("")}};
+        CHECK(convex_hull(points).error().item == 1);
+    }
+
+    TEST_CASE("equal points have one corner, collinear points two") {
+        const std::vector<glm::dvec2> equal(5, {2.0, 3.0});
+        CHECK(convex_hull(equal)->size() == 1);
+        std::vector<glm::dvec2> line;
+        for (int i = 0; i < 9; ++i) line.emplace_back((i * 4) % 9, 2 * ((i * 4) % 9));
+        const auto hull = convex_hull(line);
+        REQUIRE(hull->size() == 2);
+        CHECK(of_convex_polygon(*hull).perimeter == doctest::Approx(2.0 * 8.0 * std::sqrt(5.0)));
+        CHECK(of_convex_polygon(*hull).area == 0.0);
+    }
+
+    TEST_CASE("the hull of a filled square is its four corners, counter-clockwise") {
+        std::vector<glm::dvec2> grid;
+        for (int y = 4; y >= 0; --y)
+            for (int x = 0; x < 5; ++x) grid.emplace_back(x, y);
+        const auto hull = convex_hull(grid);
+        REQUIRE(hull.has_value());
+        CHECK(std::vector<glm::dvec2>(hull->begin(), hull->end()) ==
+              std::vector<glm::dvec2>{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}});
+    }
+
+    TEST_CASE("a polygon of many corners has the measures of its circle") {
+        std::vector<glm::dvec2> points;
+        for (int i = 0; i < 4096; ++i) points.push_back(3.0 * circle_point(i / 4096.0) + glm::dvec2(10.0, -7.0));
+        const PlanarMeasures polygon = of_convex_polygon(points), disc = of_disc(3.0);
+        CHECK(polygon.area == doctest::Approx(disc.area).epsilon(1e-5));
+        CHECK(polygon.perimeter == doctest::Approx(disc.perimeter).epsilon(1e-6));
+    }
+
+    TEST_CASE("the kinematic formula gives Steiner's formula for a disc and the Minkowski sum of two segments") {
+        const PlanarMeasures rectangle = of_rectangle(2.0, 3.0);
+        const double steiner = 6.0 + 10.0 * 0.5 + pi * 0.25;
+        CHECK(kinematic_measure(of_disc(0.5), rectangle) == doctest::Approx(steiner));
+        CHECK(kinematic_measure(rectangle, of_disc(0.5)) == doctest::Approx(steiner));
+        // Segments a and b at angle φ: |ab sin φ|, whose mean is 2ab/π.
+        CHECK(kinematic_measure(of_planar_segment(2.0), of_planar_segment(5.0)) == doctest::Approx(2.0 * 10.0 / pi));
+    }
+
+    TEST_CASE("the kinematic formula is additive where the union is convex") {
+        // Two rectangles side by side share a segment: f(A ∪ B) + f(A ∩ B) = f(A) + f(B).
+        const PlanarMeasures b = of_disc(0.7);
+        const double whole = kinematic_measure(b, of_rectangle(5.0, 2.0)),
+                     common = kinematic_measure(b, of_planar_segment(2.0));
+        CHECK(whole + common == doctest::Approx(kinematic_measure(b, of_rectangle(3.0, 2.0)) +
+                                                kinematic_measure(b, of_rectangle(2.0, 2.0))));
+    }
+}
