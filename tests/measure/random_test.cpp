@@ -28,7 +28,7 @@ TEST_SUITE("measure/random") {
         CHECK(seen.size() == 900);
     }
 
-    TEST_CASE("uniform numbers lie in [0, 1) and have mean 1/2 and variance 1/12") {
+    TEST_CASE("uniform numbers lie between 0 and below 1 and have mean 1/2 and variance 1/12") {
         Random random(5);
         double sum = 0.0, squares = 0.0;
         const int n = 200'000;
