@@ -1,0 +1,39 @@
+// Affine maps in double, and the box of a box after one.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+namespace crofton::scene {
+
+// x ↦ linear · x + translation: any rotation, scale, shear or reflection; translation in double.
+struct Transform {
+    glm::dmat3 linear{1.0};
+    glm::dvec3 translation{0.0};
+};
+
+// outer ∘ inner.
+[[nodiscard]] Transform operator*(const Transform& outer, const Transform& inner);
+[[nodiscard]] glm::dvec3 operator*(const Transform& transform, const glm::dvec3& point);
+
+[[nodiscard]] Transform from_trs(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale);
+
+// The upper three rows of a column-vector matrix. Errors: as validate, and a last row other than (0, 0, 0, 1).
+[[nodiscard]] Result<Transform> from_matrix(const glm::dmat4& matrix);
+
+// Errors: NaN or infinite entries; a linear part that is singular, that is |det| ≤ 1e-12 · product of its columns'
+// lengths; column lengths or translations beyond [1e-15, 1e15]. The error's item is `item`.
+[[nodiscard]] Result<void> validate(const Transform& transform, std::uint64_t item = kNoItem);
+
+// A box that contains the exact image of every point of `box` under the stored numbers of `transform`. Similarities
+// keep the box's shape but for rounding; other maps turn it into a parallelepiped, around which the best box by
+// `criterion` with two adjacent flush faces is taken (THEORY.md section 3). Always right-handed, also for reflections.
+// Errors: as validate(Obb) for the result: not finite or too large.
+[[nodiscard]] Result<Obb> transformed_box(const Transform& transform, const Obb& box,
+                                          const measure::Criterion& criterion);
+
+}  // namespace crofton::scene

@@ -1,0 +1,52 @@
+#include <doctest/doctest.h>
+#include <crofton/scene/planar_polygon.hpp>
+#include <limits>
+
+using namespace crofton;
+using namespace crofton::scene;
+
+namespace {
+
+PlanarPolygon square() {
+    PlanarPolygon p;
+    p.polygon.points = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    p.polygon.ring_ends = {4};
+    return p;
+}
+constexpr std::array<std::array<std::uint32_t, 3>, 2> kTriangles = {{{0, 1, 2}, {0, 2, 3}}};
+
+}  // namespace
+
+TEST_SUITE("scene/planar_polygon") {
+    TEST_CASE("polygons with bad rings, numbers or axes are refused by name") {
+        PlanarPolygon p = square();
+        CHECK(validate(p).has_value());
+        CHECK(validate(PlanarPolygon{}).error().code == ErrorCode::empty);
+        p.polygon.ring_ends = {3, 9};
+        CHECK(validate(p).error().code == ErrorCode::out_of_range);
+        CHECK(validate(p).error().item == 1);
+        p.polygon.ring_ends = {2, 4};
+        CHECK(validate(p).error().code == ErrorCode::degenerate);
+        p.polygon.ring_ends = {3};
+        CHECK(validate(p).error().code == ErrorCode::invalid_argument);
+        p = square();
+        p.polygon.points[2].x = std::numeric_limits<double>::quiet_NaN();
+        CHECK(validate(p).error().item == 2);
+        p = square();
+        p.v = 2.0 * p.u;
+        CHECK(validate(p).error().code == ErrorCode::degenerate);
+        constexpr std::array<std::array<std::uint32_t, 3>, 1> beyond = {{{0, 1, 4}}};
+        CHECK(to_mesh(square(), beyond).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("its mesh stands where origin and axes say, vertex by vertex") {
+        PlanarPolygon p = square();
+        p.origin = {5.0, 1.0, 0.0};
+        p.u = {0.0, 0.0, -1.0};
+        p.v = {0.0, 2.0, 0.0};
+        const TriangleMesh mesh = to_mesh(p, kTriangles).value();
+        CHECK(mesh.positions[2] == glm::vec3(5.0f, 3.0f, -1.0f));
+        CHECK(mesh.triangle_count() == 2);
+        CHECK(mesh.colors.size() == 4);
+    }
+}
