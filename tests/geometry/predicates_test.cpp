@@ -1,0 +1,160 @@
+#include <gmp.h>
+
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/geometry/predicates.hpp>
+#include <random>
+
+using namespace crofton;
+
+namespace {
+
+// Dyadic rationals of any size: the obviously right reference.
+class Rational {
+  public:
+    Rational() { mpq_init(value_); }
+    Rational(double x) {
+        mpq_init(value_);
+        mpq_set_d(value_, x);
+    }
+    Rational(const Rational& other) {
+        mpq_init(value_);
+        mpq_set(value_, other.value_);
+    }
+    Rational& operator=(const Rational&) = delete;
+    ~Rational() { mpq_clear(value_); }
+    friend Rational operator+(const Rational& a, const Rational& b) { return apply(mpq_add, a, b); }
+    friend Rational operator-(const Rational& a, const Rational& b) { return apply(mpq_sub, a, b); }
+    friend Rational operator*(const Rational& a, const Rational& b) { return apply(mpq_mul, a, b); }
+    int sign() const { return mpq_sgn(value_); }
+
+  private:
+    static Rational apply(void (*f)(mpq_ptr, mpq_srcptr, mpq_srcptr), const Rational& a, const Rational& b) {
+        Rational result;
+        f(result.value_, a.value_, b.value_);
+        return result;
+    }
+    mpq_t value_;
+};
+
+int orientation_reference(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
+    const Rational ax(a.x), ay(a.y), bx(b.x), by(b.y), cx(c.x), cy(c.y);
+    return ((ax - cx) * (by - cy) - (ay - cy) * (bx - cx)).sign();
+}
+
+int in_circle_reference(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
+    const Rational dx(d.x), dy(d.y);
+    const Rational ax = Rational(a.x) - dx, ay = Rational(a.y) - dy, bx = Rational(b.x) - dx, by = Rational(b.y) - dy;
+    const Rational cx = Rational(c.x) - dx, cy = Rational(c.y) - dy;
+    return ((ax * ax + ay * ay) * (bx * cy - cx * by) + (bx * bx + by * by) * (cx * ay - ax * cy) +
+            (cx * cx + cy * cy) * (ax * by - bx * ay))
+        .sign();
+}
+
+int orientation_reference(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
+    const Rational dx(d.x), dy(d.y), dz(d.z);
+    const Rational ax = Rational(a.x) - dx, ay = Rational(a.y) - dy, az = Rational(a.z) - dz;
+    const Rational bx = Rational(b.x) - dx, by = Rational(b.y) - dy, bz = Rational(b.z) - dz;
+    const Rational cx = Rational(c.x) - dx, cy = Rational(c.y) - dy, cz = Rational(c.z) - dz;
+    return (az * (bx * cy - cx * by) + bz * (cx * ay - ax * cy) + cz * (ax * by - bx * ay)).sign();
+}
+
+// Moves by up to two units in the last place, so that determinants land on both sides of 0 and on it.
+double nudge(double x, std::mt19937_64& random) {
+    const auto steps = static_cast<int>(random() % 5) - 2;
+    for (int i = 0; i < std::abs(steps); ++i) x = std::nextafter(x, steps > 0 ? 1e300 : -1e300);
+    return x;
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/predicates") {
+    TEST_CASE("coincident points have no orientation and lie on every circle") {
+        const glm::dvec2 p(0.1, 0.7), q(3.0, -2.0);
+        CHECK(orientation(p, p, p) == 0);
+        CHECK(orientation(p, q, p) == 0);
+        CHECK(orientation(p, p, q) == 0);
+        CHECK(in_circle(p, q, glm::dvec2(5.0, 5.0), q) == 0);
+    }
+
+    TEST_CASE("works at both ends of the documented range of coordinates") {
+        for (const double scale : {1e-70, 1.0, 1e70}) {
+            const glm::dvec2 a(0.0, 0.0), b(scale, 0.0), c(scale, scale), d(0.0, scale);
+            CHECK(orientation(a, b, c) == 1);
+            CHECK(orientation(a, c, b) == -1);
+            CHECK(orientation(a, c, c * 0.5) == 0);
+            CHECK(in_circle(a, b, c, d) == 0);
+            CHECK(in_circle(a, b, c, d * 0.75) == 1);
+            CHECK(in_circle(a, b, c, d * 1.5) == -1);
+        }
+    }
+
+    TEST_CASE("sees that 0.1, 0.2, 0.3 on the diagonal are collinear, and one unit in the last place off is not") {
+        const double up = std::nextafter(0.3, 1.0);
+        CHECK(orientation(glm::dvec2(0.1, 0.1), glm::dvec2(0.2, 0.2), glm::dvec2(0.3, 0.3)) == 0);
+        CHECK(orientation(glm::dvec2(0.1, 0.1), glm::dvec2(0.2, 0.2), glm::dvec2(0.3, up)) == 1);
+        CHECK(orientation(glm::dvec2(0.1, 0.1), glm::dvec2(0.2, 0.2), glm::dvec2(up, 0.3)) == -1);
+    }
+
+    TEST_CASE("d below a counter-clockwise triangle is positive") {
+        const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+        CHECK(orientation(a, b, c, glm::dvec3(0.3, 0.3, -1)) == 1);
+        CHECK(orientation(a, b, c, glm::dvec3(0.3, 0.3, 1e-60)) == -1);
+        CHECK(orientation(a, b, c, glm::dvec3(7, 9, 0)) == 0);
+    }
+
+    TEST_CASE("agrees with rational arithmetic on nearly collinear points") {
+        std::mt19937_64 random(11);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        int zeros = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const glm::dvec2 a(number(random), number(random)), b(number(random), number(random));
+            const double t = trial % 2 ? 0.5 : number(random);
+            const glm::dvec2 m = a + (b - a) * t;
+            const glm::dvec2 c(nudge(m.x, random), nudge(m.y, random));
+            const int truth = orientation_reference(a, b, c);
+            zeros += truth == 0;
+            REQUIRE(orientation(a, b, c) == truth);
+        }
+        CHECK(zeros > 0);
+    }
+
+    TEST_CASE("agrees with rational arithmetic on nearly cocircular points, dyadic and not") {
+        std::mt19937_64 random(13);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        int zeros = 0;
+        for (int trial = 0; trial < 5000; ++trial) {
+            glm::dvec2 p[4];
+            for (auto& q : p) {
+                // Pythagorean points of the circle of radius 65 or the rounded unit circle, about a common centre.
+                if (trial % 2) {
+                    static constexpr int kPoints[][2] = {{16, 63}, {25, 60}, {33, 56}, {39, 52}, {0, 65}, {65, 0}};
+                    const auto& k = kPoints[random() % 6];
+                    q = glm::dvec2(random() % 2 ? k[0] : -k[0], random() % 2 ? k[1] : -k[1]) +
+                        glm::dvec2(1000.25, -7.5);
+                    if (trial % 4 == 1) q = glm::dvec2(nudge(q.x, random), nudge(q.y, random));
+                } else {
+                    const double angle = 3.14 * number(random);
+                    q = glm::dvec2(std::cos(angle) + 0.3, std::sin(angle) - 5.1);
+                }
+            }
+            const int truth = in_circle_reference(p[0], p[1], p[2], p[3]);
+            zeros += truth == 0;
+            REQUIRE(in_circle(p[0], p[1], p[2], p[3]) == truth);
+        }
+        CHECK(zeros > 100);
+    }
+
+    TEST_CASE("agrees with rational arithmetic on nearly coplanar points") {
+        std::mt19937_64 random(17);
+        std::uniform_real_distribution<double> number(-1.0, 1.0);
+        for (int trial = 0; trial < 5000; ++trial) {
+            glm::dvec3 p[3];
+            for (auto& q : p) q = glm::dvec3(number(random), number(random), number(random));
+            const double s = number(random), t = number(random);
+            const glm::dvec3 m = p[0] + (p[1] - p[0]) * s + (p[2] - p[0]) * t;
+            const glm::dvec3 d(nudge(m.x, random), nudge(m.y, random), nudge(m.z, random));
+            REQUIRE(orientation(p[0], p[1], p[2], d) == orientation_reference(p[0], p[1], p[2], d));
+        }
+    }
+}
