@@ -1,10 +1,11 @@
 // Polygons with holes to triangles: minimum weight, because that is what a frustum pays for (THEORY.md section 5).
 #pragma once
+#include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/polygon.hpp>
-#include <array>
 #include <cstdint>
+#include <memory>
 
 namespace crofton::triangulate {
 
@@ -14,7 +15,8 @@ struct Options {
     Method method = Method::minimum_weight;
 };
 
-// Triangles hold indices into polygon.points, counter-clockwise. Conforming: every vertex is used, collinear ones too.
+// Triangles hold indices into polygon.points, counter-clockwise. Conforming: every vertex is used, collinear ones too,
+// and no vertex lies in the interior of a triangle's side. The triangles' areas add up to the polygon's.
 struct Triangulation {
     Vector<std::array<std::uint32_t, 3>> triangles;
     double weight = 0.0;   // total length of the diagonals
@@ -22,7 +24,39 @@ struct Triangulation {
     double gap = 0.0;      // proven bound on (weight − minimum) / minimum, 0 when optimal, infinity when unknown
 };
 
-// Errors name ring, index and position: NaN/infinite points, fewer than three points, rings that cross, zero area, ….
+// What input means that is not a simple polygon with disjoint simple holes inside it:
+// - a point is inside a ring if an odd number of the ring's edges lie between it and infinity; rings may touch
+// themselves
+//   and each other, at points or along edges;
+// - points at one position are one vertex: triangles name the index of the ring whose corner they fill, and of
+// consecutive
+//   duplicates the first;
+// - a vertex on another edge splits that edge;
+// - an edge that one ring traverses there and back is no boundary: a spike pointing inside becomes a slit that
+// triangles
+//   do not cross, one pointing outside vanishes and its tip is used by no triangle;
+// - a hole of one point is a Steiner point, of two a slit, of none nothing.
+// Errors name ring, point and position: an outer ring of fewer than three points, positions not finite or differing by
+// more than 2^200 in size, edges that cross, holes outside, overlapping or nested, zero area.
 [[nodiscard]] Result<Triangulation> triangulate(const Polygon& polygon, const Options& options = {});
+
+// The same with memory kept between calls: allocates nothing once its buffers fit the largest polygon seen.
+class Triangulator {
+  public:
+    Triangulator();
+    ~Triangulator();
+    Triangulator(Triangulator&&) noexcept;
+    Triangulator& operator=(Triangulator&&) noexcept;
+
+    // On error `result` is empty.
+    [[nodiscard]] Result<void> triangulate(const Polygon& polygon, const Options& options, Triangulation& result);
+
+  private:
+    struct Workspace;
+    struct Release {
+        void operator()(Workspace* workspace) const;
+    };
+    std::unique_ptr<Workspace, Release> workspace_;
+};
 
 }  // namespace crofton::triangulate

@@ -1,0 +1,78 @@
+// From the caller's rings to a checked subdivision: which vertices there are, which triangles lie inside.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/geometry/polygon.hpp>
+
+#include "half_edge_mesh.hpp"
+
+namespace crofton::triangulate {
+
+// The constrained Delaunay triangulation of the polygon's convex hull with its inside marked.
+// Meaning of what is not a simple polygon with simple holes inside it:
+// - a point is inside a ring if an odd number of the ring's edges lie between it and infinity;
+// - input points at one position are one vertex; a vertex on another edge splits that edge;
+// - an edge traversed twice by one ring is no boundary: a spike that points inside becomes a slit, one outside
+// vanishes;
+// - a hole of one point is a Steiner point, of two a slit.
+// Errors: fewer than three points, non-finite or too widely spread coordinates, edges that cross, holes outside, nested
+// or overlapping, nothing inside; each names ring, point and position.
+class Domain {
+  public:
+    [[nodiscard]] Result<void> build(const Polygon& polygon);
+
+    [[nodiscard]] const HalfEdgeMesh& mesh() const { return mesh_; }
+    [[nodiscard]] bool inside(Index triangle) const { return inside_[triangle] != 0; }
+    [[nodiscard]] std::size_t inside_count() const { return inside_count_; }
+    // Lengths in the caller's units are those of `mesh().points` times this power of two.
+    [[nodiscard]] double scale() const { return scale_; }
+    // The caller's index for the corner of triangle e / 4 at origin[e]; e's triangle must be inside.
+    [[nodiscard]] Index input_index(Index e) const;
+    [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
+
+  private:
+    // A ring's edge from input point `input`; several may share one edge of the mesh. Records below the number of input
+    // points are implicit: record i is {i, kNone}. An edge's mark is its first record + 1.
+    struct Record {
+        Index input, next;
+    };
+    struct Keyed {
+        glm::dvec2 position;
+        Index input;
+    };
+    struct State {
+        Index outer = 0;  // parity of the outer ring
+        Index hole = 0;   // the hole that contains this triangle, or 0
+    };
+
+    [[nodiscard]] Result<void> check(const Polygon& polygon);
+    void merge_vertices(const Polygon& polygon);
+    [[nodiscard]] Result<void> insert_rings();
+    [[nodiscard]] Result<void> insert_edge(Index input, Index successor);
+    [[nodiscard]] Result<void> find_inside();
+    [[nodiscard]] Result<State> cross(State state, Index mark);
+    [[nodiscard]] tl::unexpected<Error> overlap(Index mark, Index a, Index b) const;
+    [[nodiscard]] Result<void> check_holes();
+    void claim(Index half_edge, Index input);
+    [[nodiscard]] Record record(Index id) const;
+    [[nodiscard]] Index ring_of(Index input) const;
+    [[nodiscard]] Index successor(Index input) const;
+    [[nodiscard]] std::string describe(Index input) const;
+    [[nodiscard]] tl::unexpected<Error> fail_at(ErrorCode code, Index input, const std::string& what) const;
+
+    const Polygon* polygon_ = nullptr;
+    double scale_ = 1.0;
+    HalfEdgeMesh mesh_;
+    DelaunayScratch scratch_;
+    Vector<Keyed> keys_;
+    Vector<glm::dvec2> points_;
+    Vector<Index> vertex_of_;  // input point → vertex
+    Vector<Index> input_of_;   // vertex → its first input point
+    Vector<Record> records_;   // the explicit ones
+    Vector<std::uint8_t> inside_;
+    Vector<State> states_;
+    Vector<std::uint8_t> used_;
+    Vector<Index> crossed_rings_;
+    std::size_t inside_count_ = 0;
+};
+
+}  // namespace crofton::triangulate

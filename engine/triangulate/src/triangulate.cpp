@@ -1,0 +1,66 @@
+#include <cmath>
+#include <crofton/triangulate/triangulate.hpp>
+#include <limits>
+#include <new>
+
+#include "domain.hpp"
+
+namespace crofton::triangulate {
+
+struct Triangulator::Workspace {
+    Domain domain;
+};
+
+Triangulator::Triangulator() : workspace_(new (Allocator<Workspace>().allocate(1)) Workspace) {}
+Triangulator::~Triangulator() = default;
+Triangulator::Triangulator(Triangulator&&) noexcept = default;
+Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
+
+void Triangulator::Release::operator()(Workspace* workspace) const {
+    workspace->~Workspace();
+    Allocator<Workspace>().deallocate(workspace, 1);
+}
+
+namespace {
+
+void write(const Domain& domain, Triangulation& result) {
+    const auto& mesh = domain.mesh();
+    result.triangles.reserve(domain.inside_count());
+    double weight = 0.0;
+    for (Index t = 0; t < mesh.triangle_count(); ++t) {
+        if (!domain.inside(t)) continue;
+        for (Index e = 4 * t; e < 4 * t + 3; ++e) {
+            const Index twin = mesh.twin[e];
+            if (twin == kNone || twin < e || !domain.inside(twin / 4)) continue;
+            const glm::dvec2 d = mesh.points[mesh.origin[e]] - mesh.points[mesh.destination(e)];
+            weight += std::sqrt(d.x * d.x + d.y * d.y);
+        }
+        result.triangles.push_back(
+            {domain.input_index(4 * t), domain.input_index(4 * t + 1), domain.input_index(4 * t + 2)});
+    }
+    result.weight = weight * domain.scale();
+}
+
+}  // namespace
+
+Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& options, Triangulation& result) {
+    result.triangles.clear();
+    result.weight = 0.0;
+    result.optimal = false;
+    result.gap = std::numeric_limits<double>::infinity();
+    (void)options;
+    if (auto built = workspace_->domain.build(polygon); !built) return built;
+    write(workspace_->domain, result);
+    return {};
+}
+
+Result<Triangulation> triangulate(const Polygon& polygon, const Options& options) {
+    Triangulator triangulator;
+    Triangulation result;
+    if (auto done = triangulator.triangulate(polygon, options, result); !done) {
+        return tl::unexpected<Error>(std::move(done.error()));
+    }
+    return result;
+}
+
+}  // namespace crofton::triangulate

@@ -1,0 +1,107 @@
+// What makes a list of triangles a conforming triangulation of a polygon, checked the slow way in exact arithmetic.
+#pragma once
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/geometry/polygon.hpp>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crofton::oracle {
+
+using Point = std::pair<double, double>;
+
+inline Point at(const Polygon& polygon, std::uint32_t i) {
+    return {polygon.points[i].x + 0.0, polygon.points[i].y + 0.0};
+}
+
+inline mpq_class twice_area(Point a, Point b, Point c) {
+    const mpq_class ax(a.first), ay(a.second), bx(b.first), by(b.second), cx(c.first), cy(c.second);
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+}
+
+// Twice the area by the shoelace formula: |outer ring| − Σ |holes|, right for simple rings.
+inline mpq_class twice_polygon_area(const Polygon& polygon) {
+    mpq_class total = 0;
+    for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+        const auto ring = polygon.ring(r);
+        mpq_class area = 0;
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const auto &p = ring[i], &q = ring[(i + 1) % ring.size()];
+            area += mpq_class(p.x) * mpq_class(q.y) - mpq_class(q.x) * mpq_class(p.y);
+        }
+        total += r == 0 ? mpq_class(abs(area)) : mpq_class(-abs(area));
+    }
+    return total;
+}
+
+// Empty if the triangles are positively oriented, their directed sides are distinct, every side without a partner lies
+// on a ring's edge, every used position is a vertex of no triangle's side (conforming) and the areas add up; else what
+// is wrong. `weakly_simple`: the shoelace formula does not apply, so the area is not checked.
+inline std::string check_triangulation(const Polygon& polygon, const auto& triangles, bool weakly_simple = false) {
+    std::set<std::pair<Point, Point>> sides;
+    std::set<Point> used;
+    mpq_class area = 0;
+    for (const auto& t : triangles) {
+        for (int k = 0; k < 3; ++k) {
+            if (t[k] >= polygon.points.size()) return "index out of range";
+        }
+        const mpq_class a = twice_area(at(polygon, t[0]), at(polygon, t[1]), at(polygon, t[2]));
+        if (a <= 0) return "a triangle is not counter-clockwise";
+        area += a;
+        for (int k = 0; k < 3; ++k) {
+            used.insert(at(polygon, t[k]));
+            if (!sides.insert({at(polygon, t[k]), at(polygon, t[(k + 1) % 3])}).second) return "a side occurs twice";
+        }
+    }
+    if (!weakly_simple && area != twice_polygon_area(polygon)) return "the areas do not add up";
+    // Sides without a partner form the boundary: each must lie on a ring edge.
+    std::vector<std::pair<Point, Point>> edges;
+    for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+        const auto ring = polygon.ring(r);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const auto &p = ring[i], &q = ring[(i + 1) % ring.size()];
+            edges.push_back({{p.x + 0.0, p.y + 0.0}, {q.x + 0.0, q.y + 0.0}});
+        }
+    }
+    const std::set<std::pair<Point, Point>> whole(edges.begin(), edges.end());
+    const auto on = [](Point p, const std::pair<Point, Point>& e) {
+        return std::min(e.first, e.second) <= p && p <= std::max(e.first, e.second) &&
+               twice_area(e.first, e.second, p) == 0;
+    };
+    for (const auto& side : sides) {
+        if (sides.count({side.second, side.first})) continue;
+        if (whole.count(side) || whole.count({side.second, side.first})) continue;
+        if (std::none_of(edges.begin(), edges.end(),
+                         [&](const auto& e) { return on(side.first, e) && on(side.second, e); })) {
+            return "a side without a partner is not on the boundary";
+        }
+    }
+    if (!weakly_simple) {
+        for (const auto& p : polygon.points) {
+            if (!used.count({p.x + 0.0, p.y + 0.0})) return "a vertex is not used";
+        }
+    }
+    return "";
+}
+
+// The total length of the sides that occur in both directions.
+inline double diagonal_length(const Polygon& polygon, const auto& triangles) {
+    std::set<std::pair<Point, Point>> sides;
+    double weight = 0.0;
+    for (const auto& t : triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const Point p = at(polygon, t[k]), q = at(polygon, t[(k + 1) % 3]);
+            if (sides.count({q, p})) weight += std::hypot(p.first - q.first, p.second - q.second);
+            sides.insert({p, q});
+        }
+    }
+    return weight;
+}
+
+}  // namespace crofton::oracle
