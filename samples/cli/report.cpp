@@ -23,8 +23,8 @@ tl::unexpected<Error> system_error(const std::string& path, const char* what) {
 }  // namespace
 
 int report_error(std::string_view subject, const Error& error) {
-    std::fprintf(stderr, "crofton: %.*s%s%s", static_cast<int>(subject.size()), subject.data(), subject.empty() ? "" : ": ",
-                 error.message.c_str());
+    std::fprintf(stderr, "crofton: %.*s%s%s", static_cast<int>(subject.size()), subject.data(),
+                 subject.empty() ? "" : ": ", error.message.c_str());
     if (error.item != kNoItem) std::fprintf(stderr, " (item %llu)", static_cast<unsigned long long>(error.item));
     std::fputc('\n', stderr);
     return kBadInput;
@@ -58,7 +58,8 @@ Result<std::string> read_file(const std::string& path) {
     if (!file) return system_error(path, "cannot open");
     std::string contents;
     char block[1 << 16];
-    for (std::size_t count; (count = std::fread(block, 1, sizeof block, file.get())) > 0;) contents.append(block, count);
+    for (std::size_t count; (count = std::fread(block, 1, sizeof block, file.get())) > 0;)
+        contents.append(block, count);
     if (std::ferror(file.get())) return system_error(path, "cannot read");
     return contents;
 }

@@ -10,7 +10,8 @@ namespace crofton::cli {
 // "crofton: FILE: message (item N)" to stderr; returns kBadInput.
 int report_error(std::string_view subject, const Error& error);
 
-// Writes `contents` to `path` through a temporary file beside it, renamed when complete, so that no partial file is left;
+// Writes `contents` to `path` through a temporary file beside it, renamed when complete, so that no partial file is
+// left;
 // "-" writes to stdout.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view contents);
 [[nodiscard]] Result<void> write_json(const std::string& path, const nlohmann::json& document);

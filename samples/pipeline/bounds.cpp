@@ -25,7 +25,8 @@ Sphere sphere_around(const TriangleMesh& mesh) {
     for (const glm::vec3& p : mesh.positions) box.include(glm::dvec3(p));
     if (box.is_empty()) return {};
     Sphere sphere{box.center(), 0.0};
-    for (const glm::vec3& p : mesh.positions) sphere.radius = std::max(sphere.radius, glm::distance(glm::dvec3(p), sphere.center));
+    for (const glm::vec3& p : mesh.positions)
+        sphere.radius = std::max(sphere.radius, glm::distance(glm::dvec3(p), sphere.center));
     sphere.radius *= 1.0 + 4.0 * kRounding;
     return sphere;
 }
@@ -60,7 +61,8 @@ Aabb world_aabb(const TriangleMesh& mesh, const scene::Transform& world) {
 Result<BoundsKind> bounds_kind_from(const std::string& name) {
     for (const auto& [known, kind] : kNames)
         if (name == known) return kind;
-    return fail(ErrorCode::invalid_argument, kNoItem, "bounds: '" + name + "' is not one of sphere, aabb, obb-volume, obb-area, obb-perimeter, obb-frustum");
+    return fail(ErrorCode::invalid_argument, kNoItem,
+                "bounds: '" + name + "' is not one of sphere, aabb, obb-volume, obb-area, obb-perimeter, obb-frustum");
 }
 
 const char* to_string(BoundsKind kind) {
@@ -71,24 +73,31 @@ const char* to_string(BoundsKind kind) {
 
 Result<measure::Criterion> criterion_for(BoundsKind kind, const Camera& camera) {
     switch (kind) {
-        case BoundsKind::obb_volume: return measure::minimal_volume();
-        case BoundsKind::obb_area: return measure::minimal_area();
-        case BoundsKind::obb_frustum: return measure::for_frustum(camera);
-        default: return measure::minimal_perimeter();
+        case BoundsKind::obb_volume:
+            return measure::minimal_volume();
+        case BoundsKind::obb_area:
+            return measure::minimal_area();
+        case BoundsKind::obb_frustum:
+            return measure::for_frustum(camera);
+        default:
+            return measure::minimal_perimeter();
     }
 }
 
 Bounds::Bounds(const scene::Scene& scene, BoundsKind kind) : scene_(scene), kind_(kind) {
     if (kind != BoundsKind::sphere && kind != BoundsKind::aabb) return;
     if (kind == BoundsKind::sphere) {
-        for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) mesh_spheres_.push_back(sphere_around(scene.mesh(mesh)));
+        for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh)
+            mesh_spheres_.push_back(sphere_around(scene.mesh(mesh)));
         spheres_.resize(scene.instance_count());
     }
     boxes_.resize(scene.instance_count());
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) recompute(i);
 }
 
-std::span<const Obb> Bounds::boxes() const { return boxes_.empty() ? scene_.world_boxes() : std::span<const Obb>(boxes_); }
+std::span<const Obb> Bounds::boxes() const {
+    return boxes_.empty() ? scene_.world_boxes() : std::span<const Obb>(boxes_);
+}
 
 void Bounds::update() {
     if (boxes_.empty()) return;

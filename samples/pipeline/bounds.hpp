@@ -15,8 +15,8 @@ enum class BoundsKind : std::uint8_t { sphere, aabb, obb_volume, obb_area, obb_p
 [[nodiscard]] Result<BoundsKind> bounds_kind_from(const std::string& name);  // "sphere", "aabb", "obb-volume", …
 [[nodiscard]] const char* to_string(BoundsKind kind);
 
-// The criterion by which the scene fits its boxes for this kind; `camera` is the frustum in use. Errors: for obb_frustum, a
-// camera whose frustum has no finite measures.
+// The criterion by which the scene fits its boxes for this kind; `camera` is the frustum in use. Errors: for
+// obb_frustum, a camera whose frustum has no finite measures.
 [[nodiscard]] Result<measure::Criterion> criterion_for(BoundsKind kind, const Camera& camera);
 
 struct Sphere {
@@ -24,8 +24,9 @@ struct Sphere {
     double radius = 0.0;
 };
 
-// The bound of every instance in world coordinates, kept up to date. For boxes of the scene's own kind these are the scene's world
-// boxes; AABBs and spheres are taken around the mesh's vertices, so that no kind is handicapped by another's slack.
+// The bound of every instance in world coordinates, kept up to date. For boxes of the scene's own kind these are the
+// scene's world boxes; AABBs and spheres are taken around the mesh's vertices, so that no kind is handicapped by
+// another's slack.
 class Bounds {
   public:
     Bounds(const scene::Scene& scene, BoundsKind kind);

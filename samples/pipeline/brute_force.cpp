@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <vector>
 
 namespace crofton::pipeline {
 namespace {
@@ -12,7 +10,9 @@ namespace {
 // Twenty-odd roundings of 2^-53 relative to the largest number involved stay well below this.
 constexpr double kRounding = 1e-13;
 
-double size_of(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double size_of(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 double signed_distance(const Frustum& frustum, const Plane& plane, const glm::dvec3& point) {
     return glm::dot(plane.normal, point - frustum.origin) + plane.offset;
@@ -46,7 +46,9 @@ double rounding_of(const Frustum& frustum, std::span<const glm::dvec3> points) {
     return kRounding * size;
 }
 
-Truth both(bool surely, bool possibly) { return surely ? Truth::yes : possibly ? Truth::unclear : Truth::no; }
+Truth both(bool surely, bool possibly) {
+    return surely ? Truth::yes : possibly ? Truth::unclear : Truth::no;
+}
 
 }  // namespace
 
@@ -85,38 +87,11 @@ BodyTruth clip_box(const Frustum& frustum, const Obb& box, const glm::dvec3& int
 }
 
 BodyTruth clip_sphere(const Frustum& frustum, const glm::dvec3& center, double radius) {
-    const auto planes = frustum.view();
-    const double rounding = 1e3 * rounding_of(frustum, std::array{center, center + glm::dvec3(radius)});
-    const glm::dvec3 c = center - frustum.origin;
-    const auto feasible = [&](const glm::dvec3& q) {
-        return std::all_of(planes.begin(), planes.end(),
-                           [&](const Plane& plane) { return glm::dot(plane.normal, q) + plane.offset >= -rounding; });
-    };
+    const double rounding = rounding_of(frustum, std::array{center, center + glm::dvec3(radius)});
     double lowest = INFINITY;
-    for (const Plane& plane : planes) lowest = std::min(lowest, glm::dot(plane.normal, c) + plane.offset);
-    double distance = lowest >= 0.0 ? 0.0 : INFINITY;
-    const auto consider = [&](const glm::dvec3& q) {
-        if (feasible(q)) distance = std::min(distance, glm::distance(q, c));
-    };
-    for (std::size_t i = 0; i < planes.size() && distance > 0.0; ++i) {
-        const glm::dvec3& n = planes[i].normal;
-        consider(c - (glm::dot(n, c) + planes[i].offset) * n);
-        for (std::size_t j = i + 1; j < planes.size(); ++j) {
-            // The foot of the perpendicular on the line where two planes meet: c − s·n − t·m.
-            const glm::dvec3& m = planes[j].normal;
-            const double nm = glm::dot(n, m), det = 1.0 - nm * nm;
-            if (det < 1e-12) continue;
-            const double dn = glm::dot(n, c) + planes[i].offset, dm = glm::dot(m, c) + planes[j].offset;
-            consider(c - (dn - nm * dm) / det * n - (dm - nm * dn) / det * m);
-            for (std::size_t k = j + 1; k < planes.size(); ++k) {
-                const glm::dmat3 rows = glm::transpose(glm::dmat3(n, m, planes[k].normal));
-                if (std::abs(glm::determinant(rows)) < 1e-12) continue;
-                consider(glm::inverse(rows) * -glm::dvec3(planes[i].offset, planes[j].offset, planes[k].offset));
-            }
-        }
-    }
-    return {both(distance < radius - rounding, distance <= radius + rounding),
-            both(lowest > radius + rounding, lowest >= radius - rounding)};
+    for (const Plane& plane : frustum.view()) lowest = std::min(lowest, signed_distance(frustum, plane, center));
+    return {both(lowest > rounding - radius, lowest >= -rounding - radius),
+            both(lowest > rounding + radius, lowest >= radius - rounding)};
 }
 
 Truth boxes_meet(const Obb& a, const Obb& b) {
@@ -126,8 +101,9 @@ Truth boxes_meet(const Obb& a, const Obb& b) {
         edges[static_cast<std::size_t>(k + 3)] = glm::dvec3(b.axes[k]);
     }
     const glm::dvec3 d = b.center - a.center;
-    const double size = std::max({size_of(a.center), size_of(b.center), double(a.half_extents.x), double(a.half_extents.y),
-                                  double(a.half_extents.z), double(b.half_extents.x), double(b.half_extents.y), double(b.half_extents.z)});
+    const double size = std::max({size_of(a.center), size_of(b.center), double(a.half_extents.x),
+                                  double(a.half_extents.y), double(a.half_extents.z), double(b.half_extents.x),
+                                  double(b.half_extents.y), double(b.half_extents.z)});
     const double rounding = kRounding * size;
     bool unclear = false, skipped = false;
     double widest = -INFINITY;

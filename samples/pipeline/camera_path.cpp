@@ -81,7 +81,8 @@ Camera random_camera(Camera camera, const Aabb& bounds, std::mt19937_64& random)
 Result<glm::dvec3> vector_from(const json& entry, const char* field, const glm::dvec3& otherwise, std::uint64_t item) {
     if (!entry.contains(field)) return otherwise;
     const json& value = entry[field];
-    if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); }))
+    if (!value.is_array() || value.size() != 3 ||
+        !std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); }))
         return fail(ErrorCode::parse, item, std::string("camera: ") + field + " must be three numbers");
     return glm::dvec3(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
 }
@@ -96,7 +97,8 @@ Result<double> number_from(const json& entry, const char* field, double otherwis
 
 }  // namespace
 
-Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const Aabb& bounds, std::span<const glm::dvec3> walk) {
+Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const Aabb& bounds,
+                                             std::span<const glm::dvec3> walk) {
     const bool built_in = options.kind == "orbit" || options.kind == "street" || options.kind == "random";
     if (!built_in) {
         if (!std::filesystem::exists(options.kind))
@@ -108,7 +110,8 @@ Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const A
         for (std::size_t i = 0; i < cameras.size(); ++i) cameras[i] = (*recorded)[i % recorded->size()];
         return cameras;
     }
-    if (bounds.is_empty()) return fail(ErrorCode::empty, kNoItem, "camera: the scene is empty, there is nothing to look at");
+    if (bounds.is_empty())
+        return fail(ErrorCode::empty, kNoItem, "camera: the scene is empty, there is nothing to look at");
     const Frame frame = frame_of(bounds);
     const Camera base = base_camera(options, frame);
     std::vector<glm::dvec3> path(walk.begin(), walk.end());
@@ -149,7 +152,8 @@ json to_json(const Camera& camera) {
 Result<Camera> camera_from_json(const json& entry, std::uint64_t item) {
     if (!entry.is_object()) return fail(ErrorCode::parse, item, "camera: an entry is not an object");
     Camera camera;
-    for (auto [field, value] : {std::pair{"position", &camera.position}, std::pair{"forward", &camera.forward}, std::pair{"up", &camera.up}}) {
+    for (auto [field, value] : {std::pair{"position", &camera.position}, std::pair{"forward", &camera.forward},
+                                std::pair{"up", &camera.up}}) {
         auto read = vector_from(entry, field, *value, item);
         if (!read) return tl::unexpected(read.error());
         *value = *read;
@@ -175,7 +179,8 @@ Result<std::vector<Camera>> load_camera_path(const std::string& path) {
         if (document.contains("frames")) list = &document["frames"];
     }
     if (!list->is_array() || list->empty())
-        return fail(ErrorCode::parse, kNoItem, path + ": no cameras; expected an array, {\"cameras\": […]} or the JSON of 'crofton frames'");
+        return fail(ErrorCode::parse, kNoItem,
+                    path + ": no cameras; expected an array, {\"cameras\": […]} or the JSON of 'crofton frames'");
     std::vector<Camera> cameras;
     for (const json& entry : *list) {
         const bool wrapped = entry.is_object() && entry.contains("camera");

@@ -1,9 +1,9 @@
 // Where the camera is in each frame: built-in paths around any scene, or one recorded in a file.
 #pragma once
-#include <cstdint>
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/aabb.hpp>
 #include <crofton/geometry/camera.hpp>
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -18,14 +18,16 @@ struct PathOptions {
     double aspect = 16.0 / 9.0;
 };
 
-// `bounds` frames the scene (y up); `walk` is where a pedestrian may go, for `street`, and may be empty: then the path leads along the
-// longer side of the bounds, low above the ground. Errors: an unknown kind, an unreadable or invalid file, empty bounds.
+// `bounds` frames the scene (y up); `walk` is where a pedestrian may go, for `street`, and may be empty: then the path
+// leads along the longer side of the bounds, low above the ground. Errors: an unknown kind, an unreadable or invalid
+// file, empty bounds.
 [[nodiscard]] Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const Aabb& bounds,
                                                            std::span<const glm::dvec3> walk);
 
 // {position, forward, up, fov_y, aspect, near, far}; far is the string "infinity" where it is infinite.
 [[nodiscard]] nlohmann::json to_json(const Camera& camera);
-// Fields that are absent keep Camera's defaults. Errors: wrong types, invalid values (validate(Camera)), the entry's number as item.
+// Fields that are absent keep Camera's defaults. Errors: wrong types, invalid values (validate(Camera)), the entry's
+// number as item.
 [[nodiscard]] Result<Camera> camera_from_json(const nlohmann::json& entry, std::uint64_t item);
 
 // A recorded path: an array of cameras, {"cameras": […]}, or the output of `crofton frames --json`.

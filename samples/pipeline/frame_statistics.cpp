@@ -17,10 +17,14 @@ struct Column {
     double (*value)(const FrameStatistics&);
 };
 
-#define CROFTON_COLUMN(field) \
-    Column { #field, [](const FrameStatistics& f) { return static_cast<double>(f.field); } }
-#define CROFTON_GPU_COLUMN(field) \
-    Column { "gpu_" #field, [](const FrameStatistics& f) { return f.gpu ? static_cast<double>(f.gpu->field) : 0.0; } }
+#define CROFTON_COLUMN(field)                                                         \
+    Column {                                                                          \
+#field, [](const FrameStatistics& f) { return static_cast<double>(f.field); } \
+    }
+#define CROFTON_GPU_COLUMN(field)                                                                               \
+    Column {                                                                                                    \
+        "gpu_" #field, [](const FrameStatistics& f) { return f.gpu ? static_cast<double>(f.gpu->field) : 0.0; } \
+    }
 
 constexpr std::array kColumns = {
     CROFTON_COLUMN(instances),
@@ -50,11 +54,14 @@ bool drawn(std::span<const FrameStatistics> frames) {
     return std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.gpu.has_value(); });
 }
 
-bool needs_gpu(const Column& column) { return std::string_view(column.name).substr(0, 4) == "gpu_"; }
+bool needs_gpu(const Column& column) {
+    return std::string_view(column.name).substr(0, 4) == "gpu_";
+}
 
 std::string number(double value) {
     char text[40];
-    std::snprintf(text, sizeof text, value == static_cast<double>(static_cast<long long>(value)) ? "%.0f" : "%.3f", value);
+    std::snprintf(text, sizeof text, value == static_cast<double>(static_cast<long long>(value)) ? "%.0f" : "%.3f",
+                  value);
     return text;
 }
 

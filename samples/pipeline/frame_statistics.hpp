@@ -22,11 +22,11 @@ struct GpuCounts {
 struct FrameStatistics {
     std::uint32_t index = 0;
     Camera camera;
-    std::uint64_t instances = 0;    // alive
-    std::uint64_t visible = 0;      // inside + straddling
-    std::uint64_t inside = 0;       // the bound lies in the frustum
-    std::uint64_t straddling = 0;   // the bound meets the frustum's boundary
-    std::uint64_t improper = 0;     // the bound straddles, the object itself does not
+    std::uint64_t instances = 0;   // alive
+    std::uint64_t visible = 0;     // inside + straddling
+    std::uint64_t inside = 0;      // the bound lies in the frustum
+    std::uint64_t straddling = 0;  // the bound meets the frustum's boundary
+    std::uint64_t improper = 0;    // the bound straddles, the object itself does not
     std::uint64_t nodes_tested = 0;
     std::uint64_t triangles_submitted = 0;  // of the visible instances
     std::uint64_t triangles_passed = 0;     // that meet the frustum
@@ -48,11 +48,14 @@ struct Verification {
     std::uint64_t unclear = 0;  // answers that double arithmetic cannot check
     std::vector<std::string> messages;
 
-    [[nodiscard]] std::uint64_t mismatches() const { return culled_but_visible + wrong_verdicts + wrong_pairs + wrong_counts; }
+    [[nodiscard]] std::uint64_t mismatches() const {
+        return culled_but_visible + wrong_verdicts + wrong_pairs + wrong_counts;
+    }
 };
 
 [[nodiscard]] nlohmann::json to_json(const FrameStatistics& frame, bool with_ids);
-[[nodiscard]] nlohmann::json summary_json(std::span<const FrameStatistics> frames, const std::optional<Verification>& verification);
+[[nodiscard]] nlohmann::json summary_json(std::span<const FrameStatistics> frames,
+                                          const std::optional<Verification>& verification);
 [[nodiscard]] std::string to_csv(std::span<const FrameStatistics> frames);
 
 }  // namespace crofton::pipeline

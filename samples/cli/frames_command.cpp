@@ -1,0 +1,249 @@
+// `crofton frames`: the main job. A scene, a camera path; each frame culled, collided, drawn and counted.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/render/device.hpp>
+#include <crofton/render/rasterizer.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "assets/scene_source.hpp"
+#include "commands.hpp"
+#include "frames_output.hpp"
+#include "pipeline/camera_path.hpp"
+#include "pipeline/draw_list.hpp"
+#include "pipeline/pipeline.hpp"
+#include "pipeline/verify.hpp"
+#include "progress_bar.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using pipeline::FrameStatistics;
+using Clock = std::chrono::steady_clock;
+
+struct FramesOptions {
+    std::string scene = "town", map, camera = "orbit", size = "1280x720", bounds = "obb-perimeter", cull = "tree";
+    std::uint32_t frames = 120, instances = 0;
+    std::uint64_t seed = 1;
+    unsigned threads = 1;
+    bool draw = false, no_draw = false, verify = false;
+    FramesOutput output;
+};
+
+double microseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// The rasterizer with what it draws; absent where there is no Vulkan driver and none was demanded.
+struct Drawing {
+    render::Device device;
+    render::Rasterizer rasterizer;
+    pipeline::DrawList list;
+    render::Image image;
+};
+
+Result<std::unique_ptr<Drawing>> make_drawing(const scene::Scene& scene, const pipeline::Pipeline& frames,
+                                              const ImageSize& size) {
+    auto device = render::Device::create({.kind = render::DeviceKind::any, .name = {}});
+    if (!device) return tl::unexpected(device.error());
+    auto rasterizer = render::Rasterizer::create(*device, {.width = size.width, .height = size.height});
+    if (!rasterizer) return tl::unexpected(rasterizer.error());
+    std::vector<std::uint8_t> is_mover(scene.instance_count(), 0);
+    for (const scene::InstanceId instance : frames.movers()) is_mover[instance] = 1;
+    pipeline::DrawList list(scene, frames.spatial_order(), is_mover);
+    if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
+    return std::make_unique<Drawing>(Drawing{std::move(*device), std::move(*rasterizer), std::move(list), {}});
+}
+
+Result<void> draw_frame(Drawing& drawing, std::span<const scene::InstanceId> visible, FrameStatistics& frame) {
+    const auto start = Clock::now();
+    drawing.list.select(visible, frame.camera);
+    const auto counters = drawing.rasterizer.draw(
+        {.camera = frame.camera, .transforms = drawing.list.transforms(), .ranges = drawing.list.ranges()});
+    frame.draw_us = microseconds_since(start);
+    if (!counters) return tl::unexpected(counters.error());
+    frame.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
+                                    counters->clipping_primitives, counters->samples_passed};
+    frame.triangles_clipped = drawing.list.predict_clipped();
+    return {};
+}
+
+Aabb bounds_of(const scene::Scene& scene) {
+    Aabb bounds;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        if (!scene.is_removed(i)) bounds.include(aabb_of(scene.world_boxes()[i]));
+    return bounds;
+}
+
+std::uint64_t triangles_of(const scene::Scene& scene) {
+    std::uint64_t sum = 0;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        if (!scene.is_removed(i)) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
+    return sum;
+}
+
+class FramesRun {
+  public:
+    explicit FramesRun(FramesOptions options) : options_(std::move(options)) {}
+
+    Result<int> run() {
+        if (auto prepared = prepare(); !prepared) return tl::unexpected(prepared.error());
+        std::optional<pipeline::Verification> verification;
+        if (options_.verify) verification.emplace();
+        std::vector<FrameStatistics> frames;
+        {
+            ProgressBar bar("frames", cameras_.size());
+            for (std::uint32_t index = 0; index < cameras_.size(); ++index) {
+                auto frame = run_frame(index);
+                if (!frame)
+                    return fail(frame.error().code, frame.error().item,
+                                "frame " + std::to_string(index) + ": " + frame.error().message);
+                if (verification)
+                    pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, *frame,
+                                           drawing_ && drawing_->device.counts_exactly(), *verification);
+                if (!options_.output.ids) {
+                    frame->visible_ids.clear();
+                    frame->colliding_ids.clear();
+                }
+                frames.push_back(std::move(*frame));
+                bar.set(index + 1);
+            }
+        }
+        const SceneFacts facts{source_->name, source_->scene.node_count(), source_->scene.instance_count(),
+                               triangles_of(source_->scene)};
+        if (auto written = write_results(options_.output, facts, frames, verification); !written)
+            return tl::unexpected(written.error());
+        if (verification)
+            for (const std::string& message : verification->messages)
+                std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
+        return verification && verification->mismatches() > 0 ? kCheckFailed : kSuccess;
+    }
+
+  private:
+    Result<void> prepare() {
+        const auto size = image_size_from(options_.size);
+        if (!size) return tl::unexpected(size.error());
+        const auto bounds = pipeline::bounds_kind_from(options_.bounds);
+        if (!bounds) return tl::unexpected(bounds.error());
+        const auto mode = pipeline::cull_mode_from(options_.cull);
+        if (!mode) return tl::unexpected(mode.error());
+        const double aspect = static_cast<double>(size->width) / size->height;
+        if (options_.frames == 0) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
+        if (auto writable = check_writable(options_.output); !writable) return writable;
+        if (options_.threads != 1) pool_.emplace(options_.threads);
+
+        // obb-frustum fits the boxes to the frustum in use: 60° with this aspect, and a depth of the order of a street.
+        Camera typical;
+        typical.aspect = aspect;
+        typical.far = 200.0;
+        const auto criterion = pipeline::criterion_for(*bounds, typical);
+        if (!criterion) return tl::unexpected(criterion.error());
+        auto source = assets::load_scene(
+            options_.scene,
+            {.criterion = *criterion, .map = options_.map, .seed = options_.seed, .instances = options_.instances});
+        if (!source) return tl::unexpected(source.error());
+        source_.emplace(std::move(*source));
+        source_->scene.update(executor());
+        auto cameras = pipeline::make_camera_path({options_.camera, options_.frames, options_.seed, aspect},
+                                                  bounds_of(source_->scene), source_->walk);
+        if (!cameras) return tl::unexpected(cameras.error());
+        cameras_ = std::move(*cameras);
+        pipeline_options_ = {*bounds, *mode, true};
+        auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
+        if (!frames) return tl::unexpected(frames.error());
+        pipeline_.emplace(std::move(*frames));
+        return prepare_drawing(*size);
+    }
+
+    Result<void> prepare_drawing(const ImageSize& size) {
+        if (options_.no_draw) return {};
+        auto drawing = make_drawing(source_->scene, *pipeline_, size);
+        if (drawing) {
+            drawing_ = std::move(*drawing);
+            return {};
+        }
+        if (options_.draw || !options_.output.png.empty() || drawing.error().code != ErrorCode::unavailable)
+            return tl::unexpected(drawing.error());
+        std::fprintf(stderr, "crofton: not drawing: %s\n", drawing.error().message.c_str());
+        return {};
+    }
+
+    Result<FrameStatistics> run_frame(std::uint32_t index) {
+        const auto start = Clock::now();
+        source_->animate(index);
+        source_->scene.update(executor());
+        const double scene_us = microseconds_since(start);
+        auto frame = pipeline_->run(cameras_[index]);
+        if (!frame) return frame;
+        frame->index = index;
+        frame->update_us += scene_us;
+        if (!drawing_) return frame;
+        if (auto drawn = draw_frame(*drawing_, frame->visible_ids, *frame); !drawn)
+            return tl::unexpected(drawn.error());
+        if (options_.output.png.empty()) return frame;
+        if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return tl::unexpected(read.error());
+        if (auto written = write_picture(options_.output.png, index, drawing_->image); !written)
+            return tl::unexpected(written.error());
+        return frame;
+    }
+
+    Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
+
+    FramesOptions options_;
+    pipeline::PipelineOptions pipeline_options_;
+    std::optional<ThreadPool> pool_;
+    std::optional<assets::SceneSource> source_;
+    std::vector<Camera> cameras_;
+    std::optional<pipeline::Pipeline> pipeline_;
+    std::unique_ptr<Drawing> drawing_;
+};
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  crofton frames                                     the built-in town, 120 frames around it\n"
+    "  crofton frames town --camera street --verify       every frame checked by brute force\n"
+    "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
+    "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
+    "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
+    "  crofton frames town --json run.json && crofton frames town --camera run.json   the same path again\n";
+
+}  // namespace
+
+void add_frames_command(CLI::App& app, Outcome& outcome) {
+    auto options = std::make_shared<FramesOptions>();
+    CLI::App* command =
+        app.add_subcommand("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
+    command->footer(kExamples);
+    command->add_option("scene", options->scene, "town, or a .glb, .gltf, .obj or .wad file")->capture_default_str();
+    command->add_option("--frames", options->frames, "How many frames")->capture_default_str();
+    command->add_option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras")
+        ->capture_default_str();
+    command->add_option("--seed", options->seed, "Seed of the town and of random cameras")->capture_default_str();
+    command->add_option("--instances", options->instances, "Size of the town, up to 1000000; 0: about 3000")
+        ->capture_default_str();
+    command->add_option("--size", options->size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
+    command->add_option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+        ->capture_default_str();
+    command->add_option("--cull", options->cull, "none, flat or tree")->capture_default_str();
+    command->add_option("--map", options->map, "Which level of a .wad; the first where absent");
+    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")->capture_default_str();
+    auto* draw =
+        command->add_flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
+    command->add_flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone")->excludes(draw);
+    command->add_flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
+    command->add_flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
+    command->add_option("--json", options->output.json, "Write everything as JSON; - for stdout");
+    command->add_option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout");
+    command->add_option("--png", options->output.png, "Write a picture per frame into this folder");
+    command->callback([options, &outcome] {
+        const auto status = FramesRun(*options).run();
+        outcome.status = status ? *status : report_error("", status.error());
+    });
+}
+
+}  // namespace crofton::cli

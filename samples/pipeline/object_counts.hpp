@@ -1,0 +1,31 @@
+// What the bounds cannot say: how much of the objects themselves the frustum meets.
+#pragma once
+#include <crofton/cull/classify.hpp>
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/scene/scene.hpp>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crofton::pipeline {
+
+struct ObjectCounts {
+    std::uint64_t triangles_submitted = 0;  // of the visible instances
+    std::uint64_t triangles_passed = 0;     // that meet the frustum, exactly
+    std::uint64_t improper = 0;             // the bound straddles, the object lies outside or inside
+};
+
+// Reuses its scratch memory from call to call.
+class ObjectCounter {
+  public:
+    // `verdicts` by instance; only straddling instances are looked into.
+    [[nodiscard]] ObjectCounts count(const scene::Scene& scene, const Frustum& frustum,
+                                     std::span<const scene::InstanceId> visible,
+                                     std::span<const cull::Verdict> verdicts);
+
+  private:
+    std::vector<glm::dvec3> points_;
+    std::vector<std::uint16_t> outside_;  // bit k: the point lies outside plane k by more than rounding
+};
+
+}  // namespace crofton::pipeline

@@ -1,0 +1,57 @@
+// One frame of the project's main job: move, bound, cull, collide, count. Drawing is beside it, in draw_list.hpp.
+#pragma once
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/cull/classify.hpp>
+#include <crofton/scene/scene.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bounds.hpp"
+#include "frame_statistics.hpp"
+
+namespace crofton::pipeline {
+
+enum class CullMode : std::uint8_t { none, flat, tree };
+
+[[nodiscard]] Result<CullMode> cull_mode_from(const std::string& name);
+[[nodiscard]] const char* to_string(CullMode mode);
+
+struct PipelineOptions {
+    BoundsKind bounds = BoundsKind::obb_perimeter;
+    CullMode cull = CullMode::tree;
+    bool count_triangles = true;  // triangles_passed and improper, which cost more than the culling itself
+};
+
+// Holds what lasts from frame to frame: bounds, tree, pairs. The scene is the caller's; between its update() and run()
+// nothing may change it.
+class Pipeline {
+  public:
+    // `movers`: the instances whose collisions are of interest. The scene has been updated.
+    // Errors: a bound that the tree refuses, named by its instance.
+    [[nodiscard]] static Result<Pipeline> create(const scene::Scene& scene, std::vector<scene::InstanceId> movers,
+                                                 const PipelineOptions& options, Executor& executor);
+    ~Pipeline();
+    Pipeline(Pipeline&&) noexcept;
+    Pipeline& operator=(Pipeline&&) noexcept;
+
+    // Follows scene.moved_instances(), then answers for the camera. Fills all of FrameStatistics but index, update_us
+    // of the scene itself, triangles_clipped, gpu and draw_us. Errors: an invalid camera.
+    [[nodiscard]] Result<FrameStatistics> run(const Camera& camera);
+
+    // By instance, as of the last run(); `straddling` for all where culling is off.
+    [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
+    [[nodiscard]] const Bounds& bounds() const;
+    [[nodiscard]] std::span<const scene::InstanceId> movers() const;
+    // Instances in the order in which the tree holds them: neighbours in space are neighbours here.
+    [[nodiscard]] std::vector<scene::InstanceId> spatial_order() const;
+
+  private:
+    struct State;
+    explicit Pipeline(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace crofton::pipeline

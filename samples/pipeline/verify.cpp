@@ -1,0 +1,148 @@
+#include "verify.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "brute_force.hpp"
+
+namespace crofton::pipeline {
+namespace {
+
+constexpr std::size_t kMaxMessages = 50;
+
+class FrameVerifier {
+  public:
+    FrameVerifier(const scene::Scene& scene, const Pipeline& pipeline, const FrameStatistics& frame,
+                  Verification& verification)
+        : scene_(scene),
+          pipeline_(pipeline),
+          frame_(frame),
+          verification_(verification),
+          frustum_(*frustum_of(frame.camera)) {
+        const double depth = std::isfinite(frame.camera.far) ? 0.5 * (frame.camera.near + frame.camera.far)
+                                                             : 2.0 * frame.camera.near + 1.0;
+        interior_ = frame.camera.position + depth * glm::normalize(frame.camera.forward);
+    }
+
+    void check_instances(CullMode mode) {
+        for (scene::InstanceId i = 0; i < scene_.instance_count(); ++i) {
+            if (scene_.is_removed(i)) continue;
+            const ObjectTruth object = clip_object(i);
+            const cull::Verdict verdict = pipeline_.verdicts()[i];
+            if (object.meets == Truth::yes && verdict == cull::Verdict::outside)
+                report(verification_.culled_but_visible,
+                       "instance " + std::to_string(i) + " is visible but was culled");
+            if (verdict != cull::Verdict::outside) {
+                passed_ += object.passed;
+                unclear_passed_ += object.unclear;
+                submitted_ += scene_.mesh(scene_.mesh_of(i)).triangle_count();
+            }
+            if (mode != CullMode::none) check_verdict(i, verdict);
+        }
+    }
+
+    void check_pairs() {
+        const auto movers = pipeline_.movers();
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> found = frame_.colliding_ids;
+        for (std::size_t a = 0; a < movers.size(); ++a)
+            for (std::size_t b = a + 1; b < movers.size(); ++b) {
+                const std::pair<std::uint32_t, std::uint32_t> pair{movers[a], movers[b]};
+                if (scene_.is_removed(pair.first) || scene_.is_removed(pair.second)) continue;
+                const Truth truth = boxes_meet(scene_.world_boxes()[pair.first], scene_.world_boxes()[pair.second]);
+                const bool listed = std::binary_search(found.begin(), found.end(), pair);
+                verification_.unclear += truth == Truth::unclear;
+                if (truth != Truth::unclear && listed != (truth == Truth::yes))
+                    report(verification_.wrong_pairs,
+                           "pair " + std::to_string(pair.first) + ", " + std::to_string(pair.second) +
+                               (listed ? " does not meet but was listed" : " meets but was not listed"));
+            }
+        if (found.size() != frame_.colliding_pairs)
+            report(verification_.wrong_pairs, "colliding_pairs is not the number of pairs listed");
+    }
+
+    void check_counts(bool count_triangles, bool gpu_counts_exactly) {
+        if (count_triangles) {
+            expect("triangles_submitted", submitted_, frame_.triangles_submitted);
+            verification_.unclear += unclear_passed_;
+            if (frame_.triangles_passed < passed_ || frame_.triangles_passed > passed_ + unclear_passed_)
+                expect("triangles_passed", passed_, frame_.triangles_passed);
+        }
+        if (!frame_.gpu) return;
+        expect("gpu.input_assembly_primitives", frame_.triangles_submitted, frame_.gpu->input_assembly_primitives);
+        if (!gpu_counts_exactly) return;
+        expect("gpu.clipping_invocations", frame_.triangles_submitted, frame_.gpu->clipping_invocations);
+        expect("gpu.clipping_primitives", frame_.triangles_clipped, frame_.gpu->clipping_primitives);
+    }
+
+  private:
+    struct ObjectTruth {
+        Truth meets = Truth::no;
+        std::uint64_t passed = 0, unclear = 0;
+    };
+
+    ObjectTruth clip_object(scene::InstanceId instance) const {
+        const TriangleMesh& mesh = scene_.mesh(scene_.mesh_of(instance));
+        const scene::Transform& world = scene_.world(scene_.node_of(instance));
+        ObjectTruth truth;
+        for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+            glm::dvec3 triangle[3];
+            for (std::size_t k = 0; k < 3; ++k)
+                triangle[k] = world.linear * glm::dvec3(mesh.positions[mesh.indices[t + k]]) + world.translation;
+            const Truth meets = clip_polygon(frustum_, triangle).meets;
+            truth.passed += meets == Truth::yes;
+            truth.unclear += meets == Truth::unclear;
+        }
+        truth.meets = truth.passed > 0 ? Truth::yes : truth.unclear > 0 ? Truth::unclear : Truth::no;
+        return truth;
+    }
+
+    void check_verdict(scene::InstanceId instance, cull::Verdict verdict) {
+        const Bounds& bounds = pipeline_.bounds();
+        const BodyTruth truth = bounds.spheres().empty() ? clip_box(frustum_, bounds.boxes()[instance], interior_)
+                                                         : clip_sphere(frustum_, bounds.spheres()[instance].center,
+                                                                       bounds.spheres()[instance].radius);
+        const bool meets = verdict != cull::Verdict::outside, contained = verdict == cull::Verdict::inside;
+        if (truth.meets == Truth::unclear || truth.contained == Truth::unclear) ++verification_.unclear;
+        if (truth.meets != Truth::unclear && meets != (truth.meets == Truth::yes))
+            report(verification_.wrong_verdicts,
+                   "the bound of instance " + std::to_string(instance) +
+                       (meets ? " misses the frustum but passed" : " meets the frustum but was culled"));
+        else if (truth.contained != Truth::unclear && contained != (truth.contained == Truth::yes))
+            report(verification_.wrong_verdicts,
+                   "the bound of instance " + std::to_string(instance) +
+                       (contained ? " is not inside but was called so" : " is inside but was called straddling"));
+    }
+
+    void expect(const char* what, std::uint64_t expected, std::uint64_t got) {
+        if (expected != got)
+            report(verification_.wrong_counts,
+                   std::string(what) + " is " + std::to_string(got) + ", expected " + std::to_string(expected));
+    }
+
+    void report(std::uint64_t& counter, const std::string& message) {
+        ++counter;
+        if (verification_.messages.size() < kMaxMessages)
+            verification_.messages.push_back("frame " + std::to_string(frame_.index) + ": " + message);
+    }
+
+    const scene::Scene& scene_;
+    const Pipeline& pipeline_;
+    const FrameStatistics& frame_;
+    Verification& verification_;
+    Frustum frustum_;
+    glm::dvec3 interior_{0.0};
+    std::uint64_t submitted_ = 0, passed_ = 0, unclear_passed_ = 0;
+};
+
+}  // namespace
+
+void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const PipelineOptions& options,
+                  const FrameStatistics& frame, bool gpu_counts_exactly, Verification& verification) {
+    FrameVerifier verifier(scene, pipeline, frame, verification);
+    verifier.check_instances(options.cull);
+    verifier.check_pairs();
+    verifier.check_counts(options.count_triangles, gpu_counts_exactly);
+    ++verification.frames;
+}
+
+}  // namespace crofton::pipeline
