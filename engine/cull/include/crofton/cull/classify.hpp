@@ -1,6 +1,5 @@
 // The one question a renderer asks of a bound: is this worth drawing?
 #pragma once
-#include <crofton/core/executor.hpp>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <cstdint>
@@ -10,12 +9,20 @@ namespace crofton::cull {
 
 enum class Verdict : std::uint8_t { outside, straddling, inside };
 
-// Exact for the boxes' and planes' stored numbers: `outside` iff box and frustum are disjoint, `inside` iff the frustum
-// contains the box; touching from outside is straddling.
-[[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box);
+enum class Mode : std::uint8_t {
+    conservative,  // outside iff one plane rejects the box, exactly; keeps some boxes near the frustum's edges and
+                   // corners
+    exact,         // outside iff box and frustum are disjoint
+};
+
+// Exact for the boxes' and planes' stored numbers: `outside` as the mode says, `inside` iff the frustum contains the
+// box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30, is `straddling`:
+// never lost. Planes settle most boxes in double with a proven error bound; the rest go through the separating-axis
+// test (Gottschalk, Lin, Manocha 1996) and, where rounding could still matter, through exact arithmetic.
+[[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, Mode mode = Mode::exact);
 
 // As above for many boxes: writes verdicts[i] for boxes[i]. Allocates nothing; may run on any thread.
-// Requires verdicts.size() == boxes.size(). A box that is not finite is `straddling`: reported, never lost.
-void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts);
+// Requires verdicts.size() == boxes.size().
+void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts, Mode mode = Mode::exact);
 
 }  // namespace crofton::cull

@@ -1,0 +1,42 @@
+// Which items does a view see? From a list of boxes or from a tree of them.
+#pragma once
+#include <crofton/core/executor.hpp>
+#include <crofton/cull/classify.hpp>
+#include <crofton/cull/statistics.hpp>
+#include <crofton/cull/visible_set.hpp>
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/tree/box_tree.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::cull {
+
+using tree::ItemId;
+
+// Sees the items whose layer mask shares a bit with its own.
+struct View {
+    Frustum frustum;
+    std::uint32_t layer_mask = ~std::uint32_t{0};
+};
+
+// Tree order costs nothing and is the same on every run; items that a renderer lays out in the tree's order
+// (BoxTree::slot_items) come out ascending anyway.
+enum class Order : std::uint8_t { ascending, tree };
+
+struct Options {
+    Mode mode = Mode::exact;
+    Order order = Order::ascending;
+};
+
+// Finds the items that `view` sees and whose box is not outside; `visible` is overwritten, and once it has grown to the
+// largest answer nothing is allocated. Same answer, bit for bit, from tree and list, with any executor and instruction
+// set.
+void cull(const tree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options = {},
+          Executor& executor = serial_executor());
+
+// Item i is boxes[i] with layer mask layer_masks[i], or all layers if that span is empty. Boxes that are not finite are
+// straddling: reported, never lost.
+void cull(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view, VisibleSet& visible,
+          const Options& options = {}, Executor& executor = serial_executor());
+
+}  // namespace crofton::cull

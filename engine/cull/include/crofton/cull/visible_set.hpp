@@ -1,0 +1,31 @@
+// The answer to a query, in buffers that are kept from frame to frame.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/cull/classify.hpp>
+#include <crofton/cull/statistics.hpp>
+#include <crofton/tree/layout.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::cull {
+
+class VisibleSet {
+  public:
+    // The items seen, in the order that the query asked for, each once; verdicts()[i], straddling or inside, is that of
+    // ids()[i].
+    [[nodiscard]] std::span<const tree::ItemId> ids() const { return std::span(ids_).first(size_); }
+    [[nodiscard]] std::span<const Verdict> verdicts() const { return std::span(verdicts_).first(size_); }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] const Statistics& statistics() const { return statistics_; }
+
+  private:
+    friend class Query;
+    Vector<tree::ItemId> ids_;  // as long as its largest use so far
+    Vector<Verdict> verdicts_;
+    Vector<std::uint64_t> bits_;
+    Vector<std::uint64_t> stack_;
+    std::size_t size_ = 0;
+    Statistics statistics_;
+};
+
+}  // namespace crofton::cull

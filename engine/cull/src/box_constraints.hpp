@@ -1,0 +1,51 @@
+// A frustum's planes as the box sees them.
+#pragma once
+#include <crofton/geometry/dyadic.hpp>
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/obb.hpp>
+
+namespace crofton::cull {
+
+// The box's points are center + Σ t_k · edge_k, |t_k| ≤ 1, edge_k = half_extents[k] · axes[k]; so plane i keeps the t
+// with
+//   slope[0] t_0 + slope[1] t_1 + slope[2] t_2 + base ≥ 0,  slope[k] = normal · edge_k,  base = normal · (center −
+//   origin) + offset.
+// Computed in double: with u = 2^-53, each number is within kRounding · u of the exact one relative to its `size`, the
+// same sum over absolute values. edge_k is exact (a product of two floats fits a double). base: one rounding in center
+// − origin, one a product, three in the additions, 5u to first order; slopes 3u. kRounding = 6 covers the higher
+// orders.
+struct Constraint {
+    double slope[3];
+    double base;
+    double slope_size[3];
+    double base_size;
+
+    // The largest and least value over the box, each within 12u · size() of the exact one (6u, and 4 more additions).
+    [[nodiscard]] double reach() const;
+    [[nodiscard]] double size() const { return slope_size[0] + slope_size[1] + slope_size[2] + base_size; }
+};
+
+inline constexpr double kUnit = 0x1p-53;
+inline constexpr double kRounding = 6.0;
+// Below this, underflow may have eaten bits; the exact path decides.
+inline constexpr double kTiny = 1e-200;
+
+[[nodiscard]] Constraint constraint_of(const Plane& plane, const glm::dvec3& origin, const Obb& box);
+
+// Entry k of constraint (slopes 0, 1, 2, base 3), exactly.
+[[nodiscard]] Dyadic exact_entry(const Plane& plane, const glm::dvec3& origin, const Obb& box, unsigned k);
+
+// Signs of base + Σ|slope| (the box's innermost corner) and base − Σ|slope| (its outermost), exactly.
+[[nodiscard]] int innermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
+                                 const Obb& box);
+[[nodiscard]] int outermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
+                                 const Obb& box);
+
+// True iff box and frustum share a point, exactly, for boxes that no single plane of the frustum rejects.
+[[nodiscard]] bool meets(const Frustum& frustum, const Obb& box, const Constraint* constraints);
+
+// Whether all numbers are finite and small enough for exact arithmetic.
+[[nodiscard]] bool is_usable(const Obb& box);
+[[nodiscard]] bool is_usable(const Frustum& frustum);
+
+}  // namespace crofton::cull

@@ -1,0 +1,27 @@
+#include <crofton/core/assert.hpp>
+#include <crofton/cull/classify.hpp>
+
+#include "box_constraints.hpp"
+
+namespace crofton::cull {
+
+Verdict classify(const Frustum& frustum, const Obb& box, Mode mode) {
+    if (!is_usable(box) || !is_usable(frustum)) return Verdict::straddling;
+    Constraint constraints[Frustum::kMaxPlanes];
+    for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
+        constraints[i] = constraint_of(frustum.planes[i], frustum.origin, box);
+        if (innermost_sign(constraints[i], frustum.planes[i], frustum.origin, box) < 0) return Verdict::outside;
+    }
+    bool inside = true;
+    for (std::uint32_t i = 0; i < frustum.plane_count && inside; ++i)
+        inside = outermost_sign(constraints[i], frustum.planes[i], frustum.origin, box) >= 0;
+    if (inside) return Verdict::inside;
+    return mode == Mode::conservative || meets(frustum, box, constraints) ? Verdict::straddling : Verdict::outside;
+}
+
+void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts, Mode mode) {
+    CROFTON_ASSERT(verdicts.size() == boxes.size(), "classify needs one verdict per box");
+    for (std::size_t i = 0; i < boxes.size(); ++i) verdicts[i] = classify(frustum, boxes[i], mode);
+}
+
+}  // namespace crofton::cull

@@ -1,0 +1,23 @@
+// Writing boxes into leaves and bounds into nodes, rounded outward.
+#pragma once
+#include <crofton/geometry/obb.hpp>
+#include <crofton/tree/layout.hpp>
+
+namespace crofton::tree {
+
+void clear(Node& node);
+void clear(Leaf& leaf);
+
+// Puts a box into a lane; the leaf's origin stays, its reach grows where needed.
+void write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers);
+void clear_lane(Leaf& leaf, unsigned lane);
+
+// Puts a child's bound into a lane; the node's origin stays, its reach grows where needed.
+void write_lane(Node& node, unsigned lane, const Aabb& bounds);
+void clear_lane(Node& node, unsigned lane);
+
+[[nodiscard]] Aabb bounds_of(const Leaf& leaf);
+[[nodiscard]] Aabb bounds_of(const Node& node);
+[[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane);
+
+}  // namespace crofton::tree

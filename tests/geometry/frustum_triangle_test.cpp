@@ -1,0 +1,67 @@
+#include <doctest/doctest.h>
+#include <crofton/geometry/frustum.hpp>
+#include <oracle/exact_frustum.hpp>
+#include <oracle/near_misses.hpp>
+
+using namespace crofton;
+
+namespace {
+
+Frustum unit_cube() {
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.height = 2.0;
+    camera.aspect = 1.0;
+    camera.near = -1.0;
+    camera.far = 1.0;
+    return *frustum_of(camera);
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/frustum_triangle") {
+    TEST_CASE("triangles shrunk to a segment or a point meet the frustum where that does") {
+        const Frustum cube = unit_cube();
+        const double beyond = std::nextafter(1.0, 2.0);
+        CHECK(intersects(cube, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}));
+        CHECK(!intersects(cube, {beyond, 1, 1}, {beyond, 1, 1}, {beyond, 1, 1}));
+        CHECK(intersects(cube, {-9, 0.5, 0}, {9, 0.5, 0}, {9, 0.5, 0}));
+        CHECK(intersects(cube, {2, 0, 1}, {0, 2, 1}, {0, 2, 1}));
+        CHECK(!intersects(cube, {2, std::nextafter(0.0, 1.0), 1}, {beyond, 1, 1}, {0, beyond * 2, 1}));
+    }
+
+    TEST_CASE("a triangle far larger than the frustum that encloses it in its plane is a hit") {
+        CHECK(intersects(unit_cube(), {-1e9, -1e9, 0.5}, {1e9, -1e9, 0.5}, {0, 2e9, 0.5}));
+        CHECK(intersects(unit_cube(), {-1e29, -1e29, 1.0}, {1e29, -1e29, 1.0}, {0, 2e29, 1.0}));
+        CHECK(!intersects(unit_cube(), {-1e9, -1e9, 1.0000001}, {1e9, -1e9, 1.0000001}, {0, 2e9, 1.0000001}));
+    }
+
+    TEST_CASE("touching a corner of the frustum counts, passing it by does not, though no plane rejects") {
+        CHECK(intersects(unit_cube(), {2, 0, 0}, {0, 2, 0}, {3, 3, 0}));
+        CHECK(!intersects(unit_cube(), {2.001, 0, 0}, {0, 2.001, 0}, {3, 3, 0}));
+    }
+
+    TEST_CASE("agrees with exact elimination on triangles that nearly touch") {
+        for (const double offset : {0.0, 1e7}) {
+            oracle::NearMisses cases(5, offset);
+            int hits = 0;
+            for (int trial = 0; trial < 3000; ++trial) {
+                const Frustum frustum = *frustum_of(cases.camera());
+                const auto corners = *frustum_corners(frustum);
+                const glm::dvec3 target = cases.surface_point(frustum, corners);
+                // Corners around a point of the surface, weights zero or positive there, then nudged.
+                const glm::dvec3 u = cases.number(0.1, 9.0) * cases.direction(),
+                                 v = cases.number(0.1, 9.0) * cases.direction();
+                const double s = cases.index(2) ? cases.number(0, 1) : 0.0,
+                             t = cases.index(2) ? (1 - s) * cases.number(0, 1) : 0.0;
+                const double nudge = std::exp(cases.number(-36.0, -2.0));
+                const glm::dvec3 a = target - s * u - t * v + nudge * cases.direction();
+                const bool expected = oracle::meets(frustum, a, a + u, a + v);
+                CHECK(intersects(frustum, a, a + u, a + v) == expected);
+                hits += expected;
+            }
+            CHECK(hits > 500);
+            CHECK(hits < 2900);
+        }
+    }
+}

@@ -1,0 +1,62 @@
+#include <doctest/doctest.h>
+#include <crofton/tree/box_tree.hpp>
+#include <limits>
+#include <oracle/random_boxes.hpp>
+#include <oracle/tree_contents.hpp>
+#include <vector>
+
+using namespace crofton;
+using oracle::holds_all;
+using tree::BoxTree;
+
+TEST_SUITE("tree/box_tree") {
+    TEST_CASE("a bad box is refused by its index, whatever is wrong with it") {
+        const std::vector<Obb> good = oracle::random_crowd(20, 0.0, 1).boxes;
+        for (int fault = 0; fault < 5; ++fault) {
+            std::vector<Obb> boxes = good;
+            Obb& bad = boxes[13];
+            if (fault == 0) bad.center.x = std::nan("");
+            if (fault == 1) bad.half_extents.y = -1.0f;
+            if (fault == 2) bad.half_extents.z = std::numeric_limits<float>::infinity();
+            if (fault == 3) bad.axes[0] *= 2.0f;
+            if (fault == 4) bad.center.z = 1e31;
+            const auto tree = BoxTree::build(boxes);
+            REQUIRE(!tree.has_value());
+            CHECK(tree.error().item == 13);
+        }
+        const std::vector<std::uint32_t> too_few(3);
+        CHECK(BoxTree::build(good, too_few).error().code == ErrorCode::invalid_argument);
+        CHECK(!BoxTree::build(good, {.criterion = {-1.0, 0.0, 0.0}}).has_value());
+    }
+
+    TEST_CASE(
+        "no boxes, one box, equal boxes, points and a geometric series of sizes all make a tree that holds them") {
+        CHECK(BoxTree::build(std::span<const Obb>{})->nodes().size() == 1);
+        CHECK(holds_all(*BoxTree::build(oracle::random_crowd(1, 0.0, 1).boxes)));
+        CHECK(holds_all(*BoxTree::build(std::vector<Obb>(5000))));
+        std::vector<Obb> series(120);
+        for (std::size_t i = 0; i < series.size(); ++i) {
+            series[i].center = glm::dvec3(std::pow(1.7, double(i)), 0.0, 0.0);
+            series[i].half_extents = glm::vec3(float(0.4 * series[i].center.x));
+        }
+        CHECK(holds_all(*BoxTree::build(series)));
+    }
+
+    TEST_CASE("every bound contains every box below it, for each criterion and at every offset") {
+        for (const double offset : {0.0, 1e7, -1e29})
+            for (const measure::Criterion& criterion :
+                 {measure::minimal_perimeter(), measure::minimal_area(), measure::minimal_volume()})
+                CHECK(
+                    holds_all(*BoxTree::build(oracle::random_crowd(2000, offset, 2).boxes, {.criterion = criterion})));
+    }
+
+    TEST_CASE("all leaves but one are full, and the height is logarithmic") {
+        const auto tree = BoxTree::build(oracle::random_crowd(16 * 16 * 16 + 5, 0.0, 3).boxes);
+        REQUIRE(tree.has_value());
+        CHECK(tree->leaves().size() == 257);
+        CHECK(tree->height() == 3);
+        std::size_t partial = 0;
+        for (const tree::Leaf& leaf : tree->leaves()) partial += leaf.count < tree::kWidth;
+        CHECK(partial == 1);
+    }
+}
