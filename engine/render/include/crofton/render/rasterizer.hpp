@@ -1,21 +1,20 @@
 // Headless Vulkan rasterizer: draws index ranges and says how many triangles that cost.
 #pragma once
+#include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/render/device.hpp>
+#include <crofton/render/vertex.hpp>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <span>
-#include <string>
 
 namespace crofton::render {
-
-struct Vertex {
-    glm::vec3 position;
-    glm::vec3 normal;
-    glm::vec3 color;  // linear RGB
-};
 
 // `count` consecutive indices drawn with transform `transform` (an index into the frame's transforms).
 struct DrawRange {
@@ -24,12 +23,105 @@ struct DrawRange {
     std::uint32_t transform = 0;
 };
 
-// What the GPU counted over one frame (VkQueryPipelineStatisticFlagBits names; samples_passed is a precise occlusion query).
+// What the vertex shader reads for one draw; made by draw_transform().
+struct DrawTransform {
+    glm::mat4 to_clip;                // as ModelToClip makes it
+    std::array<glm::vec4, 3> normal;  // columns of the cofactor matrix of the linear part; .w holds the tint's r, g, b
+    float tint_share = 0.0f;          // 0: the vertices' colours, 1: the tint
+    float unlit = 0.0f;               // 1: colours as given, without light
+    float padding[2]{};
+};
+static_assert(sizeof(DrawTransform) == 128, "std430 layout of the vertex shader's buffer");
+
+// For a mesh placed by x ↦ linear · x + translation; `to_clip` is ModelToClip's matrix for the same.
+[[nodiscard]] DrawTransform draw_transform(const glm::mat4& to_clip, const glm::dmat3& linear);
+void set_tint(DrawTransform& transform, const glm::vec3& linear_rgb, float share = 1.0f);
+
+// Ends of a line, relative to the camera, in the colour that appears (display RGBA, 0 to 255).
+struct LineVertex {
+    glm::vec3 position;
+    std::uint32_t rgba;  // R in the lowest byte
+};
+
+// Sun, sky and haze, in linear RGB; y is up.
+struct Environment {
+    glm::vec3 to_sun{0.45f, 0.75f, 0.49f};
+    glm::vec3 sun{1.05f, 0.98f, 0.85f};
+    glm::vec3 sky_ambient{0.30f, 0.38f, 0.50f};
+    glm::vec3 ground_ambient{0.16f, 0.14f, 0.12f};
+    glm::vec3 zenith{0.10f, 0.26f, 0.62f};
+    glm::vec3 horizon{0.62f, 0.74f, 0.86f};  // the haze's colour too
+    glm::vec3 ground{0.30f, 0.29f, 0.27f};
+    float haze_distance = 900.0f;  // metres of view depth at which half the light is haze; 0 = none
+    bool sky = true;               // otherwise the background is the horizon's colour
+};
+
+// One picture. The spans are read during draw() only. Only `ranges` are counted, not lines, wires or sky.
+struct Frame {
+    Camera camera;  // must be the one that made the transforms
+    std::span<const DrawTransform> transforms;
+    std::span<const DrawRange> ranges;
+    std::span<const DrawRange> wire_ranges{};  // their edges are drawn over the picture; ignored where unsupported
+    std::span<const LineVertex> lines{};       // two a line
+    Environment environment;
+};
+
+// What the GPU counted over one frame (VkQueryPipelineStatisticFlagBits names; samples_passed is a precise occlusion
+// query).
 struct GpuCounters {
     std::uint64_t input_assembly_primitives = 0;
     std::uint64_t clipping_invocations = 0;
     std::uint64_t clipping_primitives = 0;
     std::uint64_t samples_passed = 0;
+};
+
+// Top row first, RGBA.
+struct Image {
+    std::uint32_t width = 0, height = 0;
+    Vector<std::uint8_t> rgba;
+};
+
+struct RasterizerOptions {
+    std::uint32_t width = 1280;
+    std::uint32_t height = 720;
+    bool cull_back_faces = false;
+};
+
+// Draws into an RGBA8 + D32 target (on lavapipe any other pair may turn on a guard band, which changes the counts).
+// The device must outlive it. Depth is reversed-Z: cameras and matrices must use DepthRange::reversed_zero_to_one.
+class Rasterizer {
+  public:
+    // Errors: size 0 or beyond the device's limit; unavailable, unsupported, internal from Vulkan.
+    [[nodiscard]] static Result<Rasterizer> create(Device& device, const RasterizerOptions& options = {});
+    ~Rasterizer();
+    Rasterizer(Rasterizer&&) noexcept;
+    Rasterizer& operator=(Rasterizer&&) noexcept;
+
+    // Replaces the static vertex and index buffer. Errors: an index out of range or a count not a multiple of 3 (item =
+    // index).
+    [[nodiscard]] Result<void> set_geometry(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices);
+    [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height);
+
+    // Draws and waits. Neighbouring ranges that continue each other with the same transform become one draw. Memory
+    // grows on first need only. Errors: a range beyond the indices or transforms, not whole triangles (item = range);
+    // Vulkan's.
+    [[nodiscard]] Result<GpuCounters> draw(const Frame& frame);
+
+    // The last frame's pixels. Errors: nothing drawn yet; Vulkan's.
+    [[nodiscard]] Result<void> read_pixels(Image& image);
+
+    // How many draws the last frame needed after merging.
+    [[nodiscard]] std::uint32_t draw_count() const;
+    [[nodiscard]] std::uint32_t width() const;
+    [[nodiscard]] std::uint32_t height() const;
+
+    // The picture as a sampled VkImageView in layout SHADER_READ_ONLY_OPTIMAL, for a window; see vulkan_context.hpp.
+    [[nodiscard]] void* native_color_view() const;
+
+  private:
+    struct State;
+    explicit Rasterizer(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace crofton::render

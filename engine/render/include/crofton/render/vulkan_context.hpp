@@ -1,0 +1,45 @@
+// Native Vulkan handles, for those who draw beside the rasterizer: a window's swapchain, a user interface.
+#pragma once
+#include <volk.h>
+
+#include <crofton/core/error.hpp>
+#include <string>
+#include <vector>
+
+namespace crofton::render {
+
+// Everything is owned by Device. Functions are called through `vk`, so several devices may live in one process.
+struct VulkanContext {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+    VkPhysicalDeviceProperties properties{};
+    VkPhysicalDeviceMemoryProperties memory{};
+    VkDevice device = VK_NULL_HANDLE;
+    VolkDeviceTable vk{};
+    std::uint32_t queue_family = 0;
+    VkQueue queue = VK_NULL_HANDLE;
+    VkCommandPool command_pool = VK_NULL_HANDLE;
+    // 0 where the device has no VK_EXT_multi_draw.
+    std::uint32_t max_multi_draws = 0;
+    bool multi_draw_indirect = false;
+    bool pipeline_statistics = false;
+    bool precise_occlusion = false;
+    bool wireframe = false;
+    std::string name;
+    std::vector<std::string> messages;
+
+    VulkanContext() = default;
+    VulkanContext(const VulkanContext&) = delete;
+    VulkanContext& operator=(const VulkanContext&) = delete;
+    ~VulkanContext();
+
+    // The first memory type among `type_bits` that has all of `wanted`, or ~0u.
+    [[nodiscard]] std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags wanted) const;
+};
+
+// "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface, `internal` for the rest.
+[[nodiscard]] Error vulkan_error(VkResult result, const char* what);
+[[nodiscard]] const char* vulkan_result_name(VkResult result);
+
+}  // namespace crofton::render

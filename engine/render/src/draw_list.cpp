@@ -1,0 +1,29 @@
+#include "draw_list.hpp"
+
+namespace crofton::render {
+
+Result<void> merge_ranges(std::span<const DrawRange> ranges, std::size_t index_count, std::size_t transform_count,
+                          Vector<MergedDraw>& draws) {
+    const std::size_t first_draw = draws.size();
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        const DrawRange& range = ranges[i];
+        const std::uint64_t end = std::uint64_t{range.first_index} + range.index_count;
+        if (end > index_count) return fail(ErrorCode::out_of_range, i, "a draw range ends beyond the index buffer");
+        if (range.index_count % 3 != 0)
+            return fail(ErrorCode::invalid_argument, i, "a draw range is not whole triangles");
+        if (range.transform >= transform_count)
+            return fail(ErrorCode::out_of_range, i, "a draw range refers to a transform that is not there");
+        if (range.index_count == 0) continue;
+        if (draws.size() > first_draw) {
+            MergedDraw& last = draws.back();
+            if (last.transform == range.transform && last.first_index + last.index_count == range.first_index) {
+                last.index_count += range.index_count;
+                continue;
+            }
+        }
+        draws.push_back({range.first_index, range.index_count, range.transform});
+    }
+    return {};
+}
+
+}  // namespace crofton::render

@@ -1,0 +1,30 @@
+// The render pass and the four pipelines, as one owner.
+#pragma once
+#include <crofton/render/vulkan_context.hpp>
+
+namespace crofton::render {
+
+inline constexpr VkFormat kColorFormat = VK_FORMAT_R8G8B8A8_UNORM;
+inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+inline constexpr std::uint32_t kPushConstantBytes = 128;  // what every device offers
+
+struct Pipelines {
+    explicit Pipelines(const VulkanContext& owner) : context(owner) {}
+    ~Pipelines();
+    Pipelines(const Pipelines&) = delete;
+    Pipelines& operator=(const Pipelines&) = delete;
+
+    [[nodiscard]] Result<void> create(bool cull_back_faces);
+
+    const VulkanContext& context;
+    // Colour ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment shaders that follow.
+    VkRenderPass render_pass = VK_NULL_HANDLE;
+    VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;  // binding 0: the draws' storage buffer
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline triangles = VK_NULL_HANDLE;
+    VkPipeline wires = VK_NULL_HANDLE;  // null where the device cannot
+    VkPipeline lines = VK_NULL_HANDLE;
+    VkPipeline sky = VK_NULL_HANDLE;
+};
+
+}  // namespace crofton::render

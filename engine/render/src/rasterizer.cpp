@@ -1,0 +1,236 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/core/assert.hpp>
+#include <crofton/render/rasterizer.hpp>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "rasterizer_state.hpp"
+
+namespace crofton::render {
+
+DrawTransform draw_transform(const glm::mat4& to_clip, const glm::dmat3& linear) {
+    DrawTransform result{};
+    result.to_clip = to_clip;
+    // Cofactors turn normals right under any scale or shear, singular ones included; the shader normalises.
+    const std::array<glm::dvec3, 3> cofactors{glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                                              glm::cross(linear[0], linear[1])};
+    double largest = 0.0;
+    for (const glm::dvec3& c : cofactors) largest = std::max({largest, std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)});
+    for (std::size_t k = 0; k < 3; ++k)
+        result.normal[k] = glm::vec4(glm::vec3(largest > 0.0 ? cofactors[k] / largest : cofactors[k]), 0.0f);
+    return result;
+}
+
+void set_tint(DrawTransform& transform, const glm::vec3& linear_rgb, float share) {
+    for (int k = 0; k < 3; ++k) transform.normal[static_cast<std::size_t>(k)].w = linear_rgb[k];
+    transform.tint_share = share;
+}
+
+Rasterizer::State::~State() {
+    context.vk.vkDeviceWaitIdle(context.device);
+    context.vk.vkDestroyQueryPool(context.device, statistics, nullptr);
+    context.vk.vkDestroyQueryPool(context.device, occlusion, nullptr);
+    context.vk.vkDestroyDescriptorPool(context.device, descriptor_pool, nullptr);
+}
+
+Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
+    if (auto made = pipelines.create(options.cull_back_faces); !made) return made;
+    auto new_target = std::make_unique<Target>(context);
+    if (auto made = new_target->create(pipelines.render_pass, {options.width, options.height}); !made) return made;
+    target = std::move(new_target);
+    auto made_commands = Commands::create(context);
+    if (!made_commands) return tl::unexpected(std::move(made_commands.error()));
+    commands = std::move(*made_commands);
+    if (auto made = create_queries(); !made) return made;
+    return create_descriptors();
+}
+
+Result<void> Rasterizer::State::create_queries() {
+    VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+    info.queryCount = 1;
+    info.queryType = VK_QUERY_TYPE_OCCLUSION;
+    VkResult result = context.vk.vkCreateQueryPool(context.device, &info, nullptr, &occlusion);
+    if (result == VK_SUCCESS && context.pipeline_statistics) {
+        info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
+        info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
+                                  VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
+                                  VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT;
+        result = context.vk.vkCreateQueryPool(context.device, &info, nullptr, &statistics);
+    }
+    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateQueryPool"));
+    return {};
+}
+
+Result<void> Rasterizer::State::create_descriptors() {
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
+    VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+    pool.maxSets = 1;
+    pool.poolSizeCount = 1;
+    pool.pPoolSizes = &size;
+    VkResult result = context.vk.vkCreateDescriptorPool(context.device, &pool, nullptr, &descriptor_pool);
+    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateDescriptorPool"));
+    VkDescriptorSetAllocateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    set.descriptorPool = descriptor_pool;
+    set.descriptorSetCount = 1;
+    set.pSetLayouts = &pipelines.set_layout;
+    result = context.vk.vkAllocateDescriptorSets(context.device, &set, &descriptor_set);
+    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkAllocateDescriptorSets"));
+    return {};
+}
+
+Result<bool> Rasterizer::State::reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const {
+    if (buffer.size >= size) return false;
+    auto grown = create_host_buffer(context, std::max<VkDeviceSize>(size, buffer.size * 2), usage);
+    if (!grown) return tl::unexpected(std::move(grown.error()));
+    buffer = std::move(*grown);
+    return true;
+}
+
+Result<void> Rasterizer::State::prepare(const Frame& frame) {
+    draws.clear();
+    if (auto merged = merge_ranges(frame.ranges, index_count, frame.transforms.size(), draws); !merged) return merged;
+    counted_draws = draws.size();
+    if (auto merged = merge_ranges(frame.wire_ranges, index_count, frame.transforms.size(), draws); !merged)
+        return merged;
+
+    const VkDeviceSize bytes = std::max<VkDeviceSize>(draws.size(), 1) * sizeof(DrawTransform);
+    if (bytes > context.properties.limits.maxStorageBufferRange)
+        return fail(ErrorCode::out_of_range, kNoItem,
+                    std::to_string(draws.size()) + " draws are more than the device takes");
+    auto replaced = reserve(transforms, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    if (!replaced) return tl::unexpected(std::move(replaced.error()));
+    if (*replaced) {
+        const VkDescriptorBufferInfo whole{transforms.handle, 0, VK_WHOLE_SIZE};
+        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+        write.dstSet = descriptor_set;
+        write.descriptorCount = 1;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        write.pBufferInfo = &whole;
+        context.vk.vkUpdateDescriptorSets(context.device, 1, &write, 0, nullptr);
+    }
+    for (std::size_t i = 0; i < draws.size(); ++i)
+        std::memcpy(transforms.mapped + i * sizeof(DrawTransform), &frame.transforms[draws[i].transform],
+                    sizeof(DrawTransform));
+
+    if (context.max_multi_draws > 0) {
+        multi_draws.clear();
+        for (const MergedDraw& draw : draws) multi_draws.push_back({draw.first_index, draw.index_count, 0});
+    } else if (context.multi_draw_indirect && !draws.empty()) {
+        auto made =
+            reserve(indirect, draws.size() * sizeof(VkDrawIndexedIndirectCommand), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+        if (!made) return tl::unexpected(std::move(made.error()));
+        const std::size_t limit = context.properties.limits.maxDrawIndirectCount;
+        for (std::size_t i = 0; i < draws.size(); ++i) {
+            // gl_DrawID restarts with every call, so the base is the call's first draw.
+            const std::size_t call =
+                i < counted_draws ? i / limit * limit : counted_draws + (i - counted_draws) / limit * limit;
+            const VkDrawIndexedIndirectCommand command{draws[i].index_count, 1, draws[i].first_index, 0,
+                                                       static_cast<std::uint32_t>(call)};
+            std::memcpy(indirect.mapped + i * sizeof command, &command, sizeof command);
+        }
+    }
+    if (!frame.lines.empty()) {
+        auto made = reserve(lines, frame.lines.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+        if (!made) return tl::unexpected(std::move(made.error()));
+        std::memcpy(lines.mapped, frame.lines.data(), frame.lines.size_bytes());
+    }
+    return {};
+}
+
+Result<GpuCounters> Rasterizer::State::read_counters() const {
+    GpuCounters counters;
+    const auto read = [&](VkQueryPool pool, std::span<std::uint64_t> values) {
+        return context.vk.vkGetQueryPoolResults(context.device, pool, 0, 1, values.size_bytes(), values.data(),
+                                                values.size_bytes(), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    };
+    std::array<std::uint64_t, 3> statistic{};
+    VkResult result = read(occlusion, {&counters.samples_passed, 1});
+    if (result == VK_SUCCESS && statistics != VK_NULL_HANDLE) result = read(statistics, statistic);
+    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkGetQueryPoolResults"));
+    counters.input_assembly_primitives = statistic[0];
+    counters.clipping_invocations = statistic[1];
+    counters.clipping_primitives = statistic[2];
+    return counters;
+}
+
+Rasterizer::Rasterizer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Rasterizer::~Rasterizer() = default;
+Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
+Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
+
+Result<Rasterizer> Rasterizer::create(Device& device, const RasterizerOptions& options) {
+    auto state = std::make_unique<State>(device.context());
+    if (auto made = state->create(options); !made) return tl::unexpected(std::move(made.error()));
+    return Rasterizer(std::move(state));
+}
+
+Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices) {
+    if (indices.size() % 3 != 0)
+        return fail(ErrorCode::invalid_argument, kNoItem, "the indices are not whole triangles");
+    if (indices.size() > 0xffffffffu) return fail(ErrorCode::out_of_range, kNoItem, "more than 2^32 indices");
+    for (std::size_t i = 0; i < indices.size(); ++i)
+        if (indices[i] >= vertices.size()) return fail(ErrorCode::out_of_range, i, "an index refers to no vertex");
+    Buffer new_vertices, new_indices;
+    if (!indices.empty()) {
+        const VulkanContext& context = state_->context;
+        auto made_vertices =
+            create_static_buffer(context, vertices.data(), vertices.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+        if (!made_vertices) return tl::unexpected(std::move(made_vertices.error()));
+        auto made_indices =
+            create_static_buffer(context, indices.data(), indices.size_bytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+        if (!made_indices) return tl::unexpected(std::move(made_indices.error()));
+        new_vertices = std::move(*made_vertices);
+        new_indices = std::move(*made_indices);
+    }
+    state_->vertices = std::move(new_vertices);
+    state_->indices = std::move(new_indices);
+    state_->index_count = static_cast<std::uint32_t>(indices.size());
+    return {};
+}
+
+Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height) {
+    if (width == state_->target->extent.width && height == state_->target->extent.height) return {};
+    auto target = std::make_unique<Target>(state_->context);
+    if (auto made = target->create(state_->pipelines.render_pass, {width, height}); !made) return made;
+    state_->target = std::move(target);
+    state_->drawn = false;
+    return {};
+}
+
+Result<GpuCounters> Rasterizer::draw(const Frame& frame) {
+    if (auto prepared = state_->prepare(frame); !prepared) return tl::unexpected(std::move(prepared.error()));
+    if (auto begun = state_->commands.begin(); !begun) return tl::unexpected(std::move(begun.error()));
+    state_->record(frame);
+    if (auto done = state_->commands.submit_and_wait(); !done) return tl::unexpected(std::move(done.error()));
+    state_->drawn = true;
+    return state_->read_counters();
+}
+
+Result<void> Rasterizer::read_pixels(Image& image) {
+    if (!state_->drawn) return fail(ErrorCode::empty, kNoItem, "no frame has been drawn at this size yet");
+    if (auto begun = state_->commands.begin(); !begun) return begun;
+    state_->target->record_readback(state_->commands.handle);
+    if (auto done = state_->commands.submit_and_wait(); !done) return done;
+    image.width = state_->target->extent.width;
+    image.height = state_->target->extent.height;
+    image.rgba.resize(state_->target->readback.size);
+    std::memcpy(image.rgba.data(), state_->target->readback.mapped, image.rgba.size());
+    return {};
+}
+
+std::uint32_t Rasterizer::draw_count() const {
+    return static_cast<std::uint32_t>(state_->counted_draws);
+}
+std::uint32_t Rasterizer::width() const {
+    return state_->target->extent.width;
+}
+std::uint32_t Rasterizer::height() const {
+    return state_->target->extent.height;
+}
+void* Rasterizer::native_color_view() const {
+    return state_->target->color.view;
+}
+
+}  // namespace crofton::render

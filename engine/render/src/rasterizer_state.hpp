@@ -1,0 +1,50 @@
+// All that a Rasterizer keeps between frames.
+#pragma once
+#include <crofton/render/rasterizer.hpp>
+#include <memory>
+
+#include "draw_list.hpp"
+#include "pipelines.hpp"
+#include "resources.hpp"
+#include "target.hpp"
+
+namespace crofton::render {
+
+struct Rasterizer::State {
+    explicit State(const VulkanContext& owner) : context(owner), pipelines(owner) {}
+    ~State();
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    const VulkanContext& context;
+    Pipelines pipelines;
+    std::unique_ptr<Target> target;
+    Buffer vertices, indices;
+    std::uint32_t index_count = 0;
+
+    // Written anew each frame; they grow, never shrink.
+    Buffer transforms, indirect, lines;
+    Vector<MergedDraw> draws;       // the counted ones, then the wires
+    std::size_t counted_draws = 0;  // of `draws`
+    Vector<VkMultiDrawIndexedInfoEXT> multi_draws;
+
+    VkDescriptorPool descriptor_pool = VK_NULL_HANDLE;
+    VkDescriptorSet descriptor_set = VK_NULL_HANDLE;
+    VkQueryPool statistics = VK_NULL_HANDLE;  // null where the device has none
+    VkQueryPool occlusion = VK_NULL_HANDLE;
+    Commands commands;
+    bool drawn = false;
+
+    [[nodiscard]] Result<void> create(const RasterizerOptions& options);
+    [[nodiscard]] Result<void> create_queries();
+    [[nodiscard]] Result<void> create_descriptors();
+    // Makes `buffer` at least `size` bytes; returns whether it was replaced.
+    [[nodiscard]] Result<bool> reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const;
+    // Fills draws, transforms, indirect and lines.
+    [[nodiscard]] Result<void> prepare(const Frame& frame);
+    void record(const Frame& frame);
+    void record_draws(std::size_t begin, std::size_t end);
+    [[nodiscard]] Result<GpuCounters> read_counters() const;
+};
+
+}  // namespace crofton::render

@@ -1,0 +1,145 @@
+// From a frame to a command buffer.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "rasterizer_state.hpp"
+
+namespace crofton::render {
+namespace {
+
+// Push constants, as the shaders declare them.
+struct SceneConstants {
+    glm::vec4 to_sun_and_haze, sun, sky_ambient, ground_ambient, fog, spare[3];
+};
+struct SkyConstants {
+    glm::vec4 to_sun, zenith, horizon, ground, sun, right, up, forward;
+};
+static_assert(sizeof(SceneConstants) == kPushConstantBytes && sizeof(SkyConstants) == kPushConstantBytes);
+
+glm::vec4 wide(const glm::vec3& v, float w = 0.0f) {
+    return {v, w};
+}
+
+SceneConstants scene_constants(const Frame& frame) {
+    const Environment& e = frame.environment;
+    // Orthographic views have w = 1 everywhere: no haze.
+    const bool haze = e.haze_distance > 0.0f && frame.camera.projection == Projection::perspective;
+    return {wide(glm::normalize(e.to_sun), haze ? 1.0f / e.haze_distance : 0.0f),
+            wide(e.sun),
+            wide(e.sky_ambient),
+            wide(e.ground_ambient),
+            wide(e.horizon),
+            {}};
+}
+
+SkyConstants sky_constants(const Frame& frame) {
+    const Environment& e = frame.environment;
+    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(frame.camera));
+    const bool perspective = frame.camera.projection == Projection::perspective;
+    // The sky is infinitely far: an orthographic view sees one point of it.
+    const double half_height = perspective ? std::tan(0.5 * frame.camera.fov_y) : 0.0;
+    return {wide(glm::normalize(e.to_sun)),
+            wide(e.zenith),
+            wide(e.horizon),
+            wide(e.ground),
+            wide(e.sun),
+            wide(glm::vec3(to_world[0] * (half_height * frame.camera.aspect))),
+            wide(glm::vec3(to_world[1] * half_height)),
+            wide(glm::vec3(-to_world[2]))};
+}
+
+glm::mat4 camera_relative_to_clip(const Camera& camera) {
+    return glm::mat4(view_to_clip(camera) * glm::dmat4(world_to_view_rotation(camera)));
+}
+
+}  // namespace
+
+void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
+    const auto& vk = context.vk;
+    if (context.max_multi_draws > 0) {
+        for (std::size_t i = begin; i < end; i += context.max_multi_draws) {
+            const std::size_t count = std::min<std::size_t>(context.max_multi_draws, end - i);
+            // The shader's slot is gl_BaseInstance + gl_DrawID.
+            vk.vkCmdDrawMultiIndexedEXT(commands.handle, static_cast<std::uint32_t>(count), multi_draws.data() + i, 1,
+                                        static_cast<std::uint32_t>(i), sizeof(VkMultiDrawIndexedInfoEXT), nullptr);
+        }
+    } else if (context.multi_draw_indirect) {
+        const std::size_t limit = context.properties.limits.maxDrawIndirectCount;
+        for (std::size_t i = begin; i < end; i += limit)
+            vk.vkCmdDrawIndexedIndirect(commands.handle, indirect.handle, i * sizeof(VkDrawIndexedIndirectCommand),
+                                        static_cast<std::uint32_t>(std::min(limit, end - i)),
+                                        sizeof(VkDrawIndexedIndirectCommand));
+    } else {
+        for (std::size_t i = begin; i < end; ++i)
+            vk.vkCmdDrawIndexed(commands.handle, draws[i].index_count, 1, draws[i].first_index, 0,
+                                static_cast<std::uint32_t>(i));
+    }
+}
+
+void Rasterizer::State::record(const Frame& frame) {
+    const auto& vk = context.vk;
+    const VkCommandBuffer cmd = commands.handle;
+    if (statistics != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, statistics, 0, 1);
+    vk.vkCmdResetQueryPool(cmd, occlusion, 0, 1);
+
+    const glm::vec3 background = glm::sqrt(frame.environment.horizon);
+    std::array<VkClearValue, 2> clear{};
+    clear[0].color = {{background.r, background.g, background.b, 1.0f}};
+    clear[1].depthStencil = {0.0f, 0};
+    VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+    pass.renderPass = pipelines.render_pass;
+    pass.framebuffer = target->framebuffer;
+    pass.renderArea.extent = target->extent;
+    pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
+    pass.pClearValues = clear.data();
+    vk.vkCmdBeginRenderPass(cmd, &pass, VK_SUBPASS_CONTENTS_INLINE);
+    // Negative height: clip space's y points up.
+    const auto width = static_cast<float>(target->extent.width), height = static_cast<float>(target->extent.height);
+    const VkViewport viewport{0.0f, height, width, -height, 0.0f, 1.0f};
+    const VkRect2D scissor{{0, 0}, target->extent};
+    vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
+    vk.vkCmdSetScissor(cmd, 0, 1, &scissor);
+    const VkPipelineLayout layout = pipelines.layout;
+    constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+
+    const SceneConstants scene = scene_constants(frame);
+    if (!draws.empty()) {
+        const VkDeviceSize zero = 0;
+        vk.vkCmdBindVertexBuffers(cmd, 0, 1, &vertices.handle, &zero);
+        vk.vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
+        vk.vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &descriptor_set, 0, nullptr);
+        vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof scene, &scene);
+        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.triangles);
+    }
+    if (statistics != VK_NULL_HANDLE) vk.vkCmdBeginQuery(cmd, statistics, 0, 0);
+    vk.vkCmdBeginQuery(cmd, occlusion, 0,
+                       context.precise_occlusion ? VkQueryControlFlags{VK_QUERY_CONTROL_PRECISE_BIT} : 0u);
+    record_draws(0, counted_draws);
+    vk.vkCmdEndQuery(cmd, occlusion, 0);
+    if (statistics != VK_NULL_HANDLE) vk.vkCmdEndQuery(cmd, statistics, 0);
+
+    if (counted_draws < draws.size() && pipelines.wires != VK_NULL_HANDLE) {
+        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.wires);
+        record_draws(counted_draws, draws.size());
+    }
+    if (frame.environment.sky) {
+        const SkyConstants sky = sky_constants(frame);
+        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.sky);
+        vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof sky, &sky);
+        vk.vkCmdDraw(cmd, 3, 1, 0, 0);
+    }
+    if (frame.lines.size() >= 2) {
+        const glm::mat4 matrix = camera_relative_to_clip(frame.camera);
+        const VkDeviceSize zero = 0;
+        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.lines);
+        vk.vkCmdBindVertexBuffers(cmd, 0, 1, &lines.handle, &zero);
+        vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof matrix, &matrix);
+        vk.vkCmdDraw(cmd, static_cast<std::uint32_t>(frame.lines.size() / 2 * 2), 1, 0, 0);
+    }
+    vk.vkCmdEndRenderPass(cmd);
+}
+
+}  // namespace crofton::render

@@ -1,0 +1,103 @@
+// Memory on the device: buffers and images that free themselves.
+#pragma once
+#include <crofton/render/vulkan_context.hpp>
+#include <cstddef>
+#include <utility>
+
+namespace crofton::render {
+
+// A buffer with its own memory; `mapped` is null where the host cannot see it. Movable, empty by default.
+class Buffer {
+  public:
+    Buffer() = default;
+    Buffer(Buffer&& other) noexcept { swap(other); }
+    Buffer& operator=(Buffer&& other) noexcept {
+        swap(other);
+        return *this;
+    }
+    ~Buffer();
+
+    // `wanted` first, `fallback` where no memory has all of it.
+    [[nodiscard]] static Result<Buffer> create(const VulkanContext& context, VkDeviceSize size,
+                                               VkBufferUsageFlags usage, VkMemoryPropertyFlags wanted,
+                                               VkMemoryPropertyFlags fallback);
+
+    VkBuffer handle = VK_NULL_HANDLE;
+    VkDeviceSize size = 0;
+    std::byte* mapped = nullptr;
+
+  private:
+    void swap(Buffer& other) noexcept {
+        std::swap(handle, other.handle);
+        std::swap(size, other.size);
+        std::swap(mapped, other.mapped);
+        std::swap(context_, other.context_);
+        std::swap(memory_, other.memory_);
+    }
+    const VulkanContext* context_ = nullptr;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+};
+
+// Memory that the host writes and the device reads (or the other way round), coherent.
+[[nodiscard]] Result<Buffer> create_host_buffer(const VulkanContext& context, VkDeviceSize size,
+                                                VkBufferUsageFlags usage);
+// Memory that only the device touches, filled once through a staging copy.
+[[nodiscard]] Result<Buffer> create_static_buffer(const VulkanContext& context, const void* data, VkDeviceSize size,
+                                                  VkBufferUsageFlags usage);
+
+// A 2D image of one level with its memory and view.
+class ImageResource {
+  public:
+    ImageResource() = default;
+    ImageResource(ImageResource&& other) noexcept { swap(other); }
+    ImageResource& operator=(ImageResource&& other) noexcept {
+        swap(other);
+        return *this;
+    }
+    ~ImageResource();
+
+    [[nodiscard]] static Result<ImageResource> create(const VulkanContext& context, VkExtent2D extent, VkFormat format,
+                                                      VkImageUsageFlags usage, VkImageAspectFlags aspect);
+
+    VkImage handle = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+
+  private:
+    void swap(ImageResource& other) noexcept {
+        std::swap(handle, other.handle);
+        std::swap(view, other.view);
+        std::swap(context_, other.context_);
+        std::swap(memory_, other.memory_);
+    }
+    const VulkanContext* context_ = nullptr;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+};
+
+// A command buffer and its fence, recorded, submitted and waited for.
+class Commands {
+  public:
+    Commands() = default;
+    Commands(Commands&& other) noexcept { swap(other); }
+    Commands& operator=(Commands&& other) noexcept {
+        swap(other);
+        return *this;
+    }
+    ~Commands();
+
+    [[nodiscard]] static Result<Commands> create(const VulkanContext& context);
+    [[nodiscard]] Result<void> begin();
+    [[nodiscard]] Result<void> submit_and_wait();
+
+    VkCommandBuffer handle = VK_NULL_HANDLE;
+
+  private:
+    void swap(Commands& other) noexcept {
+        std::swap(handle, other.handle);
+        std::swap(context_, other.context_);
+        std::swap(fence_, other.fence_);
+    }
+    const VulkanContext* context_ = nullptr;
+    VkFence fence_ = VK_NULL_HANDLE;
+};
+
+}  // namespace crofton::render

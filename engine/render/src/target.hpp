@@ -1,0 +1,28 @@
+// What is drawn into: RGBA8 + D32, with a way back to the host.
+#pragma once
+#include "resources.hpp"
+
+namespace crofton::render {
+
+class Target {
+  public:
+    explicit Target(const VulkanContext& context) : context_(&context) {}
+    ~Target();
+    Target(const Target&) = delete;
+    Target& operator=(const Target&) = delete;
+
+    // Errors: a side of 0 or beyond the device's limit.
+    [[nodiscard]] Result<void> create(VkRenderPass pass, VkExtent2D extent);
+    // Records the copy of the colour image into `readback`; the image is in SHADER_READ_ONLY_OPTIMAL before and after.
+    void record_readback(VkCommandBuffer commands) const;
+
+    VkExtent2D extent{};
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    ImageResource color, depth;
+    Buffer readback;
+
+  private:
+    const VulkanContext* context_;
+};
+
+}  // namespace crofton::render

@@ -1,0 +1,21 @@
+#version 460
+// One triangle over the whole target, at infinite distance (reversed-Z: depth 0).
+
+layout(push_constant) uniform Frame {
+    vec4 to_sun;
+    vec4 zenith;
+    vec4 horizon;
+    vec4 ground;
+    vec4 sun;
+    vec4 right;    // half the view's width, as a world vector
+    vec4 up;
+    vec4 forward;
+} frame;
+
+layout(location = 0) out vec3 direction;
+
+void main() {
+    vec2 corner = vec2(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0);
+    direction = frame.forward.xyz + corner.x * frame.right.xyz + corner.y * frame.up.xyz;
+    gl_Position = vec4(corner, 0.0, 1.0);
+}

@@ -1,0 +1,172 @@
+// ClipPredictor against lavapipe's own counter. The predictor is the CPU's half of `crofton frames --verify`.
+#include <crofton/geometry/clip_space.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <random>
+
+#include "lavapipe.hpp"
+
+using namespace crofton;
+using namespace crofton::render;
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Soup {
+    Vector<glm::vec3> positions;
+    Vector<std::uint32_t> indices;
+
+    void triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+        for (const glm::vec3& p : {a, b, c}) {
+            indices.push_back(static_cast<std::uint32_t>(positions.size()));
+            positions.push_back(p);
+        }
+    }
+};
+
+// Counts on the GPU and on the CPU, and finds the first triangle where they differ.
+class Comparison {
+  public:
+    explicit Comparison(Device& device) : rasterizer_(std::move(*Rasterizer::create(device, {64, 64, false}))) {}
+
+    void upload(const Soup& soup) {
+        Vector<Vertex> vertices;
+        for (const glm::vec3& p : soup.positions) vertices.push_back({p, {0, 1, 0}, {1, 1, 1}});
+        REQUIRE(rasterizer_.set_geometry(vertices, soup.indices));
+    }
+    std::uint64_t gpu(const glm::mat4& matrix, std::uint32_t first, std::uint32_t count) {
+        const DrawTransform transform = draw_transform(matrix, glm::dmat3(1.0));
+        const DrawRange range{first, count, 0};
+        Frame frame{.camera = {}, .transforms = {&transform, 1}, .ranges = {&range, 1}, .environment = {}};
+        frame.environment.sky = false;
+        const auto counters = rasterizer_.draw(frame);
+        REQUIRE(counters);
+        CHECK(counters->input_assembly_primitives == count / 3);
+        return counters->clipping_primitives;
+    }
+    void check(const Soup& soup, const glm::mat4& matrix) {
+        upload(soup);
+        ClipPredictor predictor;
+        const auto total = static_cast<std::uint32_t>(soup.indices.size());
+        if (gpu(matrix, 0, total) == predictor.count(soup.positions, soup.indices, matrix)) return;
+        std::uint32_t begin = 0, end = total / 3;
+        while (end - begin > 1) {
+            const std::uint32_t middle = begin + (end - begin) / 2;
+            const auto half = std::span(soup.indices).subspan(3 * begin, 3 * (middle - begin));
+            const bool differs =
+                gpu(matrix, 3 * begin, 3 * (middle - begin)) != predictor.count(soup.positions, half, matrix);
+            (differs ? end : begin) = middle;
+        }
+        const auto culprit = std::span(soup.indices).subspan(3 * begin, 3);
+        for (const std::uint32_t i : culprit) {
+            const glm::vec3 p = soup.positions[i];
+            MESSAGE("vertex " << p.x << " " << p.y << " " << p.z);
+        }
+        CAPTURE(begin);
+        CHECK(gpu(matrix, 3 * begin, 3) == predictor.count(soup.positions, culprit, matrix));
+        FAIL_CHECK("the counts differ");
+    }
+
+  private:
+    Rasterizer rasterizer_;
+};
+
+glm::mat4 some_matrix(Projection projection = Projection::perspective, double far = 50.0) {
+    Camera camera;
+    camera.position = {1.0, 2.0, 3.0};
+    camera.forward = {0.3, -0.2, -1.0};
+    camera.projection = projection;
+    camera.far = far;
+    return ModelToClip(camera)(glm::dmat3(1.0), glm::dvec3(0.0));
+}
+
+// Snapped coordinates put many vertices on planes and make many degenerate triangles.
+glm::vec3 random_point(std::mt19937_64& random, float reach, float snap) {
+    std::uniform_real_distribution<float> coordinate(-reach, reach);
+    glm::vec3 p(coordinate(random), coordinate(random), coordinate(random));
+    return snap > 0.0f ? glm::round(p / snap) * snap : p;
+}
+
+Soup random_soup(std::uint64_t seed, int count, float reach, float size, float snap) {
+    std::mt19937_64 random(seed);
+    Soup soup;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 base = random_point(random, reach, snap);
+        soup.triangle(base, base + random_point(random, size, snap), base + random_point(random, size, snap));
+    }
+    return soup;
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/clip_space") {
+    TEST_CASE("nothing, and triangles of NaN, infinity, denormals and zero size, count as on lavapipe") {
+        ClipPredictor predictor;
+        CHECK(predictor.count({}, {}, glm::mat4(1.0f)) == 0);
+        CROFTON_REQUIRE_DEVICE(device);
+        Comparison comparison(*device);
+        const float nan = std::nanf(""), tiny = std::numeric_limits<float>::denorm_min(), huge = 3e38f;
+        const float values[] = {0.0f,  -0.0f,  1.0f,   -1.0f, 2.0f,  -2.0f,     0.5f,       tiny,
+                                -tiny, 1e-38f, 1e-20f, huge,  -huge, kInfinity, -kInfinity, nan};
+        std::mt19937_64 random(1);
+        const auto pick = [&] { return values[random() % std::size(values)]; };
+        const glm::mat4 matrices[] = {glm::mat4(1.0f), some_matrix(), some_matrix(Projection::orthographic)};
+        for (const glm::mat4& matrix : matrices) {
+            for (int i = 0; i < 300; ++i) {
+                Soup soup;
+                soup.triangle({pick(), pick(), pick()}, {pick(), pick(), pick()}, {pick(), pick(), pick()});
+                comparison.check(soup, matrix);
+            }
+        }
+        CHECK(device->validation_messages().empty());
+    }
+    TEST_CASE("a clip-space square cut by each plane counts as the formula says") {
+        ClipPredictor predictor;
+        const auto count = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+            const Vector<glm::vec3> points{a, b, c};
+            const Vector<std::uint32_t> indices{0, 1, 2};
+            return predictor.count(points, indices, glm::mat4(1.0f));
+        };
+        CHECK(count({0, 0, 0.5f}, {0.5f, 0, 0.5f}, {0, 0.5f, 0.5f}) == 1);   // inside
+        CHECK(count({0, 0, 0.5f}, {3, 0, 0.5f}, {0, 0.5f, 0.5f}) == 2);      // one corner cut off: a quadrilateral
+        CHECK(count({0, 0, 0.5f}, {3, 0, 0.5f}, {3, 0.5f, 0.5f}) == 1);      // two corners cut off: a triangle
+        CHECK(count({2, 0, 0.5f}, {3, 0, 0.5f}, {3, 0.5f, 0.5f}) == 0);      // all beyond one plane
+        CHECK(count({0, 0, -1}, {0, 0.5f, -1}, {0, 0, 2}) == 1 + 1);         // through both depth planes
+        CHECK(count({-4, -4, 0.5f}, {4, -4, 0.5f}, {0, 8, 0.5f}) == 4 - 2);  // covers the whole square
+        CHECK(count({1, 0, 0.5f}, {1, 1, 0.5f}, {1, -1, 0.5f}) == 1);        // lies in a plane: touching is inside
+        CHECK(count({0, 0, 0.5f}, {0, 0, 0.5f}, {0, 0, 0.5f}) == 1);         // degenerate
+    }
+    TEST_CASE(
+        "agrees with lavapipe on 600,000 random triangles: crossing planes, behind the camera, degenerate, touching") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Comparison comparison(*device);
+        const glm::mat4 matrices[] = {some_matrix(),
+                                      some_matrix(Projection::perspective, std::numeric_limits<double>::infinity()),
+                                      some_matrix(Projection::orthographic), glm::mat4(1.0f)};
+        std::uint64_t seed = 1;
+        for (const glm::mat4& matrix : matrices) {
+            comparison.check(random_soup(seed++, 50000, 30.0f, 3.0f, 0.0f), matrix);
+            comparison.check(random_soup(seed++, 50000, 5.0f, 60.0f, 0.0f), matrix);
+            comparison.check(random_soup(seed++, 50000, 2.0f, 2.0f, 0.5f), matrix);
+        }
+        CHECK(device->validation_messages().empty());
+    }
+    TEST_CASE("agrees with lavapipe for stretched, mirrored and far-off placements") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Comparison comparison(*device);
+        Camera camera;
+        camera.position = {1e7, 20.0, -1e7};
+        camera.forward = {0.5, -0.1, 0.7};
+        const ModelToClip to_clip(camera);
+        std::mt19937_64 random(7);
+        std::uniform_real_distribution<double> scale(-3.0, 3.0), shift(-40.0, 40.0);
+        for (int i = 0; i < 20; ++i) {
+            const glm::dmat3 linear(scale(random), scale(random), 0.1, 0.2, scale(random), 0.3, scale(random), 1e-3,
+                                    scale(random));
+            const glm::mat4 matrix =
+                to_clip(linear, camera.position + glm::dvec3(shift(random), shift(random), shift(random)));
+            comparison.check(random_soup(100 + static_cast<std::uint64_t>(i), 5000, 20.0f, 20.0f, 0.0f), matrix);
+        }
+    }
+}
