@@ -33,7 +33,11 @@ struct Candidate {
 class Ring {
   public:
     explicit Ring(std::span<const glm::dvec2> corners)
-        : corners_(corners), before_(corners.size()), after_(corners.size()), version_(corners.size(), 0), known_(corners.size(), kInfinity) {
+        : corners_(corners),
+          before_(corners.size()),
+          after_(corners.size()),
+          version_(corners.size(), 0),
+          known_(corners.size(), kInfinity) {
         const auto n = static_cast<std::uint32_t>(corners.size());
         for (std::uint32_t i = 0; i < n; ++i) before_[i] = (i + n - 1) % n, after_[i] = (i + 1) % n;
         for (std::uint32_t i = 0; i < n && n > 2; ++i) push(i);
@@ -78,7 +82,8 @@ class Ring {
     VoronoiEdge edge(std::uint32_t p, std::uint32_t q, double s, double t) const {
         const glm::dvec2 side = corners_[q] - corners_[p];
         const double length = glm::length(side);
-        return {0.5 * (corners_[p] + corners_[q]), glm::dvec2(-side.y, side.x) / length, 0.5 * length, std::min(s, t), std::max(s, t)};
+        return {0.5 * (corners_[p] + corners_[q]), glm::dvec2(-side.y, side.x) / length, 0.5 * length, std::min(s, t),
+                std::max(s, t)};
     }
 
     std::span<const glm::dvec2> corners_;
@@ -90,6 +95,8 @@ class Ring {
 
 }  // namespace
 
-Vector<VoronoiEdge> farthest_voronoi(std::span<const glm::dvec2> corners) { return Ring(corners).diagram(); }
+Vector<VoronoiEdge> farthest_voronoi(std::span<const glm::dvec2> corners) {
+    return Ring(corners).diagram();
+}
 
 }  // namespace crofton::measure

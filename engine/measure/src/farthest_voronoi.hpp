@@ -17,9 +17,9 @@ struct VoronoiEdge {
     double end = 0.0;
 };
 
-// `corners` strictly convex and counter-clockwise, at least two. 2n − 3 edges, in O(n log n) (Skyum, "A simple algorithm for
-// computing the smallest enclosing circle", 1991). Rounding may misplace the ends of edges where four corners are
-// concyclic up to rounding; every circle an edge names then misses a corner by rounding at most.
+// `corners` strictly convex and counter-clockwise, at least two. 2n − 3 edges, in O(n log n) (Skyum, "A simple
+// algorithm for computing the smallest enclosing circle", 1991). Rounding may misplace the ends of edges where four
+// corners are concyclic up to rounding; every circle an edge names then misses a corner by rounding at most.
 [[nodiscard]] Vector<VoronoiEdge> farthest_voronoi(std::span<const glm::dvec2> corners);
 
 }  // namespace crofton::measure

@@ -22,7 +22,8 @@ struct Problem {
     double tolerance = 0.0;  // absolute
 };
 
-Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport& ancestors, const BoundOptions& options) {
+Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
+                        const BoundOptions& options) {
     auto hull = convex_hull(object);
     if (!hull) return tl::unexpected(hull.error());
     Problem problem;
@@ -34,13 +35,16 @@ Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport&
     // ∫ max(0, h_object − h_ancestors); bounds that touch the object leave rounding here.
     const double outside = problem.own - integral_of_min(ancestors, own);
     if (!(outside <= 1e-9 * problem.scale + 1e-300))
-        return fail(ErrorCode::invalid_argument, kNoItem, "optimal bound: the object is not inside its ancestors' bounds");
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "optimal bound: the object is not inside its ancestors' bounds");
     return problem;
 }
 
 // --- circles ---
 
-Disc disc_at(const VoronoiEdge& edge, double t) { return {edge.middle + t * edge.normal, std::sqrt(edge.half * edge.half + t * t)}; }
+Disc disc_at(const VoronoiEdge& edge, double t) {
+    return {edge.middle + t * edge.normal, std::sqrt(edge.half * edge.half + t * t)};
+}
 
 // An interval of one edge, with the measures at its ends.
 struct Stretch {
@@ -100,11 +104,14 @@ class DiscSearch {
             const bool forward = s.end == kInfinity;
             const double t = std::abs(forward ? s.begin : s.end), value = forward ? s.at_begin : s.at_end;
             const double bound = value - 2.0 * pi * half * half / (std::sqrt(half * half + t * t) + t);
-            // Circles a million times the object are half-planes; their measure is that of the ancestors but for rounding.
+            // Circles a million times the object are half-planes; their measure is that of the ancestors but for
+            // rounding.
             if (bound >= target() || t > 1e6 * half) return drop(bound);
             const double further = forward ? 2.0 * s.begin : 2.0 * s.end, at_further = measured(s.edge, further);
-            open_.push_back(forward ? Stretch{s.edge, s.begin, further, value, at_further} : Stretch{s.edge, further, s.end, at_further, value});
-            open_.push_back(forward ? Stretch{s.edge, further, kInfinity, at_further, kInfinity} : Stretch{s.edge, -kInfinity, further, kInfinity, at_further});
+            open_.push_back(forward ? Stretch{s.edge, s.begin, further, value, at_further}
+                                    : Stretch{s.edge, further, s.end, at_further, value});
+            open_.push_back(forward ? Stretch{s.edge, further, kInfinity, at_further, kInfinity}
+                                    : Stretch{s.edge, -kInfinity, further, kInfinity, at_further});
             return;
         }
         const double length = s.end - s.begin;
@@ -133,7 +140,8 @@ Rectangle rectangle_at(std::span<const glm::dvec2> hull, double theta, const std
     const glm::dvec2 axis(std::cos(theta), std::sin(theta)), across(-axis.y, axis.x);
     const double right = glm::dot(hull[support[0]], axis), top = glm::dot(hull[support[1]], across);
     const double left = glm::dot(hull[support[2]], axis), bottom = glm::dot(hull[support[3]], across);
-    return {0.5 * (right + left) * axis + 0.5 * (top + bottom) * across, axis, 0.5 * glm::dvec2(right - left, top - bottom)};
+    return {0.5 * (right + left) * axis + 0.5 * (top + bottom) * across, axis,
+            0.5 * glm::dvec2(right - left, top - bottom)};
 }
 
 // Corners that support directions θ, θ + 90°, …; found afresh, so that the result does not depend on the path to it.
@@ -156,7 +164,8 @@ struct Turn {
 class RectangleSearch {
   public:
     RectangleSearch(const Problem& problem, const PlanarSupport& ancestors) : problem_(problem), ancestors_(ancestors) {
-        for (const glm::dvec2& p : problem.hull) diameter_ = std::max(diameter_, 2.0 * glm::length(p - problem.hull[0]));
+        for (const glm::dvec2& p : problem.hull)
+            diameter_ = std::max(diameter_, 2.0 * glm::length(p - problem.hull[0]));
     }
 
     OptimalBound<Rectangle> run() {
@@ -164,13 +173,14 @@ class RectangleSearch {
         // Where a side's normal, turned into the first quarter, changes one of the four support corners.
         struct Event {
             double angle;
-            std::size_t side;
+            std::size_t side, direction;
         };
         Vector<Event> events;
         for (std::size_t i = 0; i < hull.size(); ++i) {
             const glm::dvec2 side = hull[(i + 1) % hull.size()] - hull[i];
             const double angle = std::atan2(-side.x, side.y);
-            events.push_back({angle - 0.5 * pi * std::floor(angle / (0.5 * pi)), i});
+            const double quarter = std::floor(angle / (0.5 * pi));
+            events.push_back({angle - 0.5 * pi * quarter, i, static_cast<std::size_t>(static_cast<int>(quarter) & 3)});
         }
         std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.angle < b.angle; });
         auto support = support_corners(hull, 0.0);
@@ -180,11 +190,7 @@ class RectangleSearch {
             if (begin < end) open_.push_back({begin, end, measured(begin, support), measured(end, support), support});
             if (e == events.size()) break;
             begin = std::max(begin, end);
-            for (std::size_t& corner : support)
-                if (corner == events[e].side) {
-                    corner = (corner + 1) % hull.size();
-                    break;
-                }
+            support[events[e].direction] = (events[e].side + 1) % hull.size();
         }
         for (std::size_t i = 0; i < open_.size(); ++i) examine(Turn(open_[i]));
         result_.lower_bound = std::max(std::min(dropped_, result_.measure), std::min(problem_.own, result_.measure));

@@ -11,7 +11,9 @@ namespace crofton::measure {
 
 using std::numbers::pi;
 
-PlanarSupport::PlanarSupport(const Disc& disc) { append(0.0, {0.0, disc.center, disc.radius}); }
+PlanarSupport::PlanarSupport(const Disc& disc) {
+    append(0.0, {0.0, disc.center, disc.radius});
+}
 
 PlanarSupport::PlanarSupport(const Rectangle& rectangle) {
     const glm::dvec2 x = rectangle.half_extents.x * rectangle.axis;
@@ -73,12 +75,15 @@ double PlanarSupport::operator()(double phi) const {
     return Sinusoid(*(after - 1))(phi);
 }
 
-double PlanarSupport::breadth(double phi) const { return (*this)(phi) + (*this)(phi + pi); }
+double PlanarSupport::breadth(double phi) const {
+    return (*this)(phi) + (*this)(phi + pi);
+}
 
 double PlanarSupport::integral() const {
     double sum = 0.0;
     for (std::size_t i = 0; i < pieces_.size(); ++i)
-        sum += Sinusoid(pieces_[i]).integral(pieces_[i].begin, i + 1 < pieces_.size() ? pieces_[i + 1].begin : 2.0 * pi);
+        sum +=
+            Sinusoid(pieces_[i]).integral(pieces_[i].begin, i + 1 < pieces_.size() ? pieces_[i + 1].begin : 2.0 * pi);
     return sum;
 }
 
@@ -93,8 +98,12 @@ PlanarSupport PlanarSupport::envelope(const PlanarSupport& a, const PlanarSuppor
     return result;
 }
 
-PlanarSupport min(const PlanarSupport& a, const PlanarSupport& b) { return PlanarSupport::envelope(a, b, 1.0); }
-PlanarSupport max(const PlanarSupport& a, const PlanarSupport& b) { return PlanarSupport::envelope(a, b, -1.0); }
+PlanarSupport min(const PlanarSupport& a, const PlanarSupport& b) {
+    return PlanarSupport::envelope(a, b, 1.0);
+}
+PlanarSupport max(const PlanarSupport& a, const PlanarSupport& b) {
+    return PlanarSupport::envelope(a, b, -1.0);
+}
 
 PlanarSupport lower_envelope(std::span<const PlanarSupport> figures) {
     // Pairs, then pairs of pairs: log n rounds over at most O(n) pieces each.
@@ -110,22 +119,25 @@ PlanarSupport lower_envelope(std::span<const PlanarSupport> figures) {
 
 double integral_of_min(const PlanarSupport& a, const PlanarSupport& b) {
     double sum = 0.0;
-    for_common_pieces(a.pieces(), b.pieces(), [&](const PlanarSupport::Piece& p, const PlanarSupport::Piece& q, double begin, double end) {
-        for_signs(Sinusoid(p) - Sinusoid(q), begin, end, [&](double from, double to, double difference) {
-            sum += Sinusoid(difference <= 0.0 ? p : q).integral(from, to);
-        });
-    });
+    for_common_pieces(a.pieces(), b.pieces(),
+                      [&](const PlanarSupport::Piece& p, const PlanarSupport::Piece& q, double begin, double end) {
+                          for_signs(Sinusoid(p) - Sinusoid(q), begin, end,
+                                    [&](double from, double to, double difference) {
+                                        sum += Sinusoid(difference <= 0.0 ? p : q).integral(from, to);
+                                    });
+                      });
     return sum;
 }
 
 double integral_of_min(const PlanarSupport& a, const Disc& b) {
     const PlanarSupport::Piece disc[] = {{0.0, b.center, b.radius}};
     double sum = 0.0;
-    for_common_pieces(a.pieces(), disc, [&](const PlanarSupport::Piece& p, const PlanarSupport::Piece& q, double begin, double end) {
-        for_signs(Sinusoid(p) - Sinusoid(q), begin, end, [&](double from, double to, double difference) {
-            sum += Sinusoid(difference <= 0.0 ? p : q).integral(from, to);
+    for_common_pieces(
+        a.pieces(), disc, [&](const PlanarSupport::Piece& p, const PlanarSupport::Piece& q, double begin, double end) {
+            for_signs(Sinusoid(p) - Sinusoid(q), begin, end, [&](double from, double to, double difference) {
+                sum += Sinusoid(difference <= 0.0 ? p : q).integral(from, to);
+            });
         });
-    });
     return sum;
 }
 

@@ -23,12 +23,14 @@ struct Sinusoid {
         return 2.0 * std::sin(0.5 * (b - a)) * (x * std::cos(middle) + y * std::sin(middle)) + r * (b - a);
     }
 
-    [[nodiscard]] friend Sinusoid operator-(const Sinusoid& a, const Sinusoid& b) { return {a.x - b.x, a.y - b.y, a.r - b.r}; }
+    [[nodiscard]] friend Sinusoid operator-(const Sinusoid& a, const Sinusoid& b) {
+        return {a.x - b.x, a.y - b.y, a.r - b.r};
+    }
 };
 
-// Calls visit(from, to, value) for the parts of [begin, end], 0 ≤ begin ≤ end ≤ 2π, between the zeros of f; `value` is f in
-// the part's middle, so it has the sign of f on that part. Parts that rounding misplaces are those where f is 0 up to
-// rounding: an integral of max(0, f) does not see them.
+// Calls visit(from, to, value) for the parts of [begin, end], 0 ≤ begin ≤ end ≤ 2π, between the zeros of f; `value` is
+// f in the part's middle, so it has the sign of f on that part. Parts that rounding misplaces are those where f is 0 up
+// to rounding: an integral of max(0, f) does not see them.
 template <class Visit>
 void for_signs(const Sinusoid& f, double begin, double end, Visit visit) {
     std::array<double, 8> cuts;

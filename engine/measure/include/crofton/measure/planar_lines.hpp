@@ -12,9 +12,9 @@ namespace crofton::measure {
 // Likewise, the figures given as the lower envelope of their support functions.
 [[nodiscard]] double measure_of_lines_hitting_all(const PlanarSupport& envelope);
 
-// The same for discs as the paper's (9) has it, a sum of arcs and common tangents: for every disc the arcs on which it alone
-// is the lowest, plus the signed lengths of the outer tangents where one disc takes over from another and of the inner
-// tangents where lines begin or cease to exist. O(n³), for cross-checks.
+// The same for discs as the paper's (9) has it, a sum of arcs and common tangents: for every disc the arcs on which it
+// alone is the lowest, plus the signed lengths of the outer tangents where one disc takes over from another and of the
+// inner tangents where lines begin or cease to exist. O(n³), for cross-checks.
 [[nodiscard]] double measure_of_lines_by_tangents(std::span<const Disc> discs);
 
 }  // namespace crofton::measure

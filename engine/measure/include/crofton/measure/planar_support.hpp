@@ -19,8 +19,8 @@ struct Rectangle {
     glm::dvec2 half_extents{0.0};
 };
 
-// A function h of the angle φ in [0, 2π] made of pieces dot(point, (cos φ, sin φ)) + radius: the support function of any
-// figure bounded by arcs and segments, and what minima and maxima of such functions are.
+// A function h of the angle φ in [0, 2π] made of pieces dot(point, (cos φ, sin φ)) + radius: the support function of
+// any figure bounded by arcs and segments, and what minima and maxima of such functions are.
 class PlanarSupport {
   public:
     struct Piece {
@@ -43,8 +43,8 @@ class PlanarSupport {
     // ∫ h over the circle: a convex figure's perimeter (Cauchy).
     [[nodiscard]] double integral() const;
 
-    [[nodiscard]] friend PlanarSupport min(const PlanarSupport& a, const PlanarSupport& b);
-    [[nodiscard]] friend PlanarSupport max(const PlanarSupport& a, const PlanarSupport& b);
+    friend PlanarSupport min(const PlanarSupport& a, const PlanarSupport& b);
+    friend PlanarSupport max(const PlanarSupport& a, const PlanarSupport& b);
 
   private:
     PlanarSupport() = default;
@@ -54,8 +54,8 @@ class PlanarSupport {
     Vector<Piece> pieces_;
 };
 
-// The support function of the hull of both figures (max), and the smaller of both (min; in general no figure's). Exact up
-// to rounding: crossings of two pieces are solved for.
+// The support function of the hull of both figures (max), and the smaller of both (min; in general no figure's). Exact
+// up to rounding: crossings of two pieces are solved for.
 [[nodiscard]] PlanarSupport min(const PlanarSupport& a, const PlanarSupport& b);
 [[nodiscard]] PlanarSupport max(const PlanarSupport& a, const PlanarSupport& b);
 
