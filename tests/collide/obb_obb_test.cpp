@@ -73,6 +73,35 @@ TEST_SUITE("collide/obb_obb") {
         CHECK_FALSE(intersects(tiny, next));
     }
 
+    TEST_CASE("the smallest step off a tilted rectangle's plane is seen") {
+        std::mt19937_64 random(6);
+        Obb rectangle = random_box(random), point = rectangle;
+        rectangle.center = {};
+        rectangle.half_extents = {1.0f, 1.0f, 0.0f};
+        point.half_extents = glm::vec3(0.0f);
+        point.center = {};
+        CHECK(intersects(rectangle, point));
+        for (int i = 0; i < 3; ++i) {
+            point.center = {};
+            point.center[i] = std::numeric_limits<double>::denorm_min();
+            CHECK_FALSE(intersects(rectangle, point));
+        }
+    }
+
+    TEST_CASE("20,000 pairs that touch as nearly as double can say are answered as rational arithmetic answers them") {
+        std::mt19937_64 random(77);
+        int wrong = 0, hits = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const auto [a, b] = nearly_touching(random, {.parallel = trial % 2 == 0, .no_gap = true});
+            const bool truth = oracle::boxes_meet_by_axes(a, b);
+            wrong += intersects(a, b) != truth;
+            hits += truth;
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > 6000);
+        CHECK(hits < 14000);
+    }
+
     TEST_CASE("tells each of the fifteen axes apart, in either order of the boxes") {
         std::mt19937_64 random(5);
         std::uint32_t seen = 0;

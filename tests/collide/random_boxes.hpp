@@ -51,6 +51,7 @@ inline double touching_distance(const Obb& a, const Obb& b, const glm::dvec3& di
 struct NearTouch {
     bool parallel = false;       // b's frame is a's, turned by 1e-1 … 1e-12 rad
     bool float_centers = false;  // centres rounded to float
+    bool no_gap = false;         // as near to touching as double can put them
 };
 
 inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTouch& kind) {
@@ -62,7 +63,7 @@ inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTo
         a.axes = glm::mat3(glm::mat3_cast(frame));
         b.axes = glm::mat3(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(random_vector(random))) * frame));
     }
-    const double gap = std::pow(10.0, -1.0 - 14.0 * unit(random)) * (random() % 2 ? 1.0 : -1.0);
+    const double gap = kind.no_gap ? 0.0 : std::pow(10.0, -1.0 - 14.0 * unit(random)) * (random() % 2 ? 1.0 : -1.0);
     // Along an axis in some trials, so that faces lie flat on each other.
     const glm::dvec3 direction = random() % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[2]);
     b.center = a.center + (touching_distance(a, b, direction) + gap) * direction;
