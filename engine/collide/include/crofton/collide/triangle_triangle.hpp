@@ -18,8 +18,8 @@ using Triangle = std::array<glm::dvec3, 3>;
 struct SegmentOfContact {
     glm::dvec3 begin{0.0}, end{0.0};
 };
-// Where two triangles that meet do so: the ends of their common segment (equal for a point; for coplanar triangles the ends
-// of a longest diagonal of their common polygon, at most). Rounded to double.
+// Where two triangles that meet do so: the ends of their common segment (equal for a point; for coplanar triangles the
+// ends of a longest diagonal of their common polygon, at most). Rounded to double.
 [[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
 
 }  // namespace crofton::collide

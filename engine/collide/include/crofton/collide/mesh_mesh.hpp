@@ -1,0 +1,68 @@
+// Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
+#pragma once
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/pose.hpp>
+#include <crofton/collide/triangle_triangle.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/tree/mesh_tree.hpp>
+#include <cstdint>
+#include <limits>
+
+namespace crofton::collide {
+
+// All queries take the pose of b in a's frame; it has passed validate(Pose). Triangles are a's own and those of b with
+// each vertex put through transform(Pose); for these the answers are exact. Boxes are only ever used to leave out pairs
+// that cannot meet. const, thread-safe; no allocation beyond the growth of the caller's vectors.
+
+struct MeshStatistics {
+    std::uint64_t box_tests = 0;       // boxes tested against a box
+    std::uint64_t triangle_tests = 0;  // pairs of triangles that went through the eight-wide filter
+    std::uint64_t exact_tests = 0;     // of those, pairs that came to the exact test
+};
+
+// Indices of triangles in mesh a (first) and mesh b (second).
+using TrianglePair = Pair;
+
+[[nodiscard]] bool intersects(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
+                              MeshStatistics* statistics = nullptr);
+
+// Replaces `pairs` by all pairs of triangles that meet, sorted.
+void intersecting_triangles(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
+                            Vector<TrianglePair>& pairs, MeshStatistics* statistics = nullptr);
+
+// Where two triangles meet, in a's frame. `normal` is the unit normal of b's triangle, or of a's where b's has none.
+struct MeshContact {
+    TrianglePair triangles;
+    SegmentOfContact segment;
+    glm::dvec3 normal{0.0};
+};
+// As intersecting_triangles, with the place of each.
+void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, Vector<MeshContact>& found,
+              MeshStatistics* statistics = nullptr);
+
+enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a };
+
+// Whether one mesh lies within the other without their surfaces meeting; `none` when they meet. The outer mesh is to be
+// closed: the answer is the parity of its surface's crossings with a line, decided exactly.
+[[nodiscard]] Containment containment(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
+                                      MeshStatistics* statistics = nullptr);
+// As above where it is known that the surfaces do not meet.
+[[nodiscard]] Containment containment_of_disjoint(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a);
+[[nodiscard]] bool contains(const tree::MeshTree& mesh, const glm::dvec3& point);
+
+struct MeshDistance {
+    double distance = std::numeric_limits<double>::infinity();
+    glm::dvec3 on_a{0.0}, on_b{0.0};  // in a's frame
+    TrianglePair triangles{};
+};
+// The smallest distance between the surfaces: 0 when they meet (exactly then), else within 1e-12 of the coordinates'
+// size. Gives up, with `distance` infinite, where it is at least `limit`.
+[[nodiscard]] MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
+                                    double limit = std::numeric_limits<double>::infinity(),
+                                    MeshStatistics* statistics = nullptr);
+
+// True iff some point of a is closer than `tolerance` ≥ 0 to some point of b, or they meet.
+[[nodiscard]] bool closer_than(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, double tolerance,
+                               MeshStatistics* statistics = nullptr);
+
+}  // namespace crofton::collide

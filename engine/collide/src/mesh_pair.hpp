@@ -1,0 +1,39 @@
+// What the SIMD traversals of a pair of mesh trees share with the exact code around them.
+#pragma once
+#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/core/function_ref.hpp>
+
+namespace crofton::collide {
+
+// Plain numbers only: kernel files see no GLM.
+struct MeshPair {
+    const tree::MeshNode* nodes[2];
+    const tree::MeshLeaf* leaves[2];
+    const tree::MeshBox* root[2];
+    float rotation[3][3];  // [row][column], b to a
+    float translation[3];
+    // Bound of the float rounding of any point or box that is carried from one mesh's frame to the other's.
+    float slop;
+    float tolerance;  // pairs farther apart than this are left out
+};
+
+// A triangle of one leaf against those of another that are set in `lanes`; true ends the traversal.
+using LeafVisitor =
+    FunctionRef<bool(std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, std::uint32_t lanes)>;
+
+struct TraversalCounts {
+    std::uint64_t box_tests = 0, triangle_tests = 0;
+};
+
+// Calls `visit` for every pair of triangles that may meet, until it returns true.
+void visit_overlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts);
+
+// Calls `visit` for pairs that may be nearer than the bound `limit`, nearest boxes first; `limit` is the visitor's to
+// lower.
+void visit_nearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts);
+
+// A stack this deep is never exceeded: depth ≤ 11 levels in each tree (2^28 triangles, eight-wide median splits), each
+// step down leaves at most seven siblings.
+inline constexpr std::uint32_t kMeshStackSize = 512;
+
+}  // namespace crofton::collide

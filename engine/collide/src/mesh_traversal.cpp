@@ -1,0 +1,144 @@
+// The pairwise descent through two mesh trees, compiled for each instruction set and chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mesh_traversal.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include <hwy/highway.h>
+
+#include "leaf_kernels-inl.hpp"
+#include "mesh_kernels-inl.hpp"
+#include "mesh_pair.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::collide::HWY_NAMESPACE {
+
+// Lane `lane` of node `node`; the root has no lane.
+struct Reference {
+    std::uint32_t node, lane;
+};
+constexpr std::uint32_t kRoot = ~std::uint32_t{0};
+
+struct Step {
+    Reference a, b;
+    float bound;
+};
+
+HWY_INLINE std::uint32_t child_of(const MeshPair& pair, int side, Reference r) {
+    return r.node == kRoot ? 0 : pair.nodes[side][r.node].child[r.lane];
+}
+HWY_INLINE tree::MeshBox box_at(const MeshPair& pair, int side, Reference r) {
+    return r.node == kRoot ? *pair.root[side] : box_of(pair.nodes[side][r.node], r.lane);
+}
+HWY_INLINE float size_of(const MeshPair& pair, int side, Reference r) {
+    if (r.node == kRoot) return half_sum(*pair.root[side]);
+    const tree::MeshNode& node = pair.nodes[side][r.node];
+    return node.half[0][r.lane] + node.half[1][r.lane] + node.half[2][r.lane];
+}
+
+HWY_INLINE std::uint32_t all_lanes(const tree::MeshLeaf& leaf) {
+    return (1u << leaf.count) - 1u;
+}
+
+HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafVisitor visit,
+                             TraversalCounts& counts) {
+    const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
+    LeafLanes lanes;
+    load_lanes(pair, leaf_b, lanes);
+    counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+    for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
+        const std::uint32_t mask = triangle_mask(pair, load_one(pair, leaf_a, lane), lanes) & all_lanes(leaf_b);
+        if (mask != 0 && visit(a, lane, b, mask)) return true;
+    }
+    return false;
+}
+
+// Descends the larger box: the other's box is carried into its frame and tested against eight children at once.
+HWY_INLINE bool descends_a(const MeshPair& pair, const Step& step, std::uint32_t child_a, std::uint32_t child_b) {
+    if (child_a & tree::kMeshLeaf) return false;
+    return (child_b & tree::kMeshLeaf) || size_of(pair, 0, step.a) >= size_of(pair, 1, step.b);
+}
+
+void VisitOverlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts) {
+    Step stack[kMeshStackSize];
+    std::uint32_t height = 0;
+    stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
+    const float slop = pair.slop + pair.tolerance;
+    while (height > 0) {
+        const Step step = stack[--height];
+        const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
+        if (a & b & tree::kMeshLeaf) {
+            if (visit_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, visit, counts)) return;
+            continue;
+        }
+        const bool into_a = descends_a(pair, step, a, b);
+        const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
+        const tree::MeshBox box = into_a ? to_a(pair, box_at(pair, 1, step.b)) : to_b(pair, box_at(pair, 0, step.a));
+        counts.box_tests += node.count;
+        for (std::uint32_t mask = overlap_mask(node, box, slop); mask != 0; mask &= mask - 1) {
+            const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
+            stack[height++] = into_a ? Step{{a, lane}, step.b, 0.0f} : Step{step.a, {b, lane}, 0.0f};
+        }
+    }
+}
+
+bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, const double& limit, LeafVisitor visit,
+                       TraversalCounts& counts) {
+    const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
+    LeafLanes lanes;
+    load_lanes(pair, leaf_b, lanes);
+    counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+    for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
+        const OneTriangle t = load_one(pair, leaf_a, lane);
+        const std::uint32_t mask = near_mask(pair, t, lanes, static_cast<float>(limit)) & all_lanes(leaf_b);
+        if (mask != 0 && visit(a, lane, b, mask)) return true;
+    }
+    return false;
+}
+
+void VisitNearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts) {
+    Step stack[kMeshStackSize];
+    std::uint32_t height = 0;
+    stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
+    while (height > 0) {
+        const Step step = stack[--height];
+        if (static_cast<double>(step.bound) > limit) continue;
+        const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
+        if (a & b & tree::kMeshLeaf) {
+            if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, limit, visit, counts)) return;
+            continue;
+        }
+        const bool into_a = descends_a(pair, step, a, b);
+        const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
+        const tree::MeshBox box = into_a ? to_a(pair, box_at(pair, 1, step.b)) : to_b(pair, box_at(pair, 0, step.a));
+        counts.box_tests += node.count;
+        HWY_ALIGN float bounds[tree::kMeshWidth];
+        distance_bounds(node, box, pair.slop, bounds);
+        // The nearest child goes on top; insertion keeps equal ones in lane order.
+        const std::uint32_t base = height;
+        for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+            if (static_cast<double>(bounds[lane]) > limit) continue;
+            std::uint32_t place = height++;
+            for (; place > base && stack[place - 1].bound < bounds[lane]; --place) stack[place] = stack[place - 1];
+            stack[place] = into_a ? Step{{a, lane}, step.b, bounds[lane]} : Step{step.a, {b, lane}, bounds[lane]};
+        }
+    }
+}
+
+}  // namespace crofton::collide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::collide {
+
+HWY_EXPORT(VisitOverlaps);
+HWY_EXPORT(VisitNearest);
+
+void visit_overlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts) {
+    HWY_DYNAMIC_DISPATCH(VisitOverlaps)(pair, visit, counts);
+}
+void visit_nearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts) {
+    HWY_DYNAMIC_DISPATCH(VisitNearest)(pair, limit, visit, counts);
+}
+
+}  // namespace crofton::collide
+#endif

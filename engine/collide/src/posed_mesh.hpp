@@ -1,0 +1,23 @@
+// A mesh tree's triangles as the exact tests see them.
+#pragma once
+#include <crofton/collide/pose.hpp>
+#include <crofton/collide/triangle_triangle.hpp>
+#include <crofton/tree/mesh_tree.hpp>
+
+namespace crofton::collide {
+
+[[nodiscard]] inline glm::dvec3 vertex_of(const tree::MeshLeaf& leaf, std::uint32_t lane, int v) {
+    return {static_cast<double>(leaf.vertex[v][0][lane]), static_cast<double>(leaf.vertex[v][1][lane]),
+            static_cast<double>(leaf.vertex[v][2][lane])};
+}
+
+[[nodiscard]] inline Triangle triangle_of(const tree::MeshLeaf& leaf, std::uint32_t lane) {
+    return {vertex_of(leaf, lane, 0), vertex_of(leaf, lane, 1), vertex_of(leaf, lane, 2)};
+}
+
+[[nodiscard]] inline Triangle triangle_of(const tree::MeshLeaf& leaf, std::uint32_t lane, const Pose& pose) {
+    return {transform(pose, vertex_of(leaf, lane, 0)), transform(pose, vertex_of(leaf, lane, 1)),
+            transform(pose, vertex_of(leaf, lane, 2))};
+}
+
+}  // namespace crofton::collide

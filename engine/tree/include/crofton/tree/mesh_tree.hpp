@@ -1,0 +1,68 @@
+// A static hierarchy of oriented boxes over the triangles of one mesh, eight boxes to a node, for collisions and rays.
+#pragma once
+#include <array>
+#include <crofton/core/error.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::tree {
+
+inline constexpr std::uint32_t kMeshWidth = 8;
+inline constexpr std::uint32_t kMeshLeaf = 0x80000000u;  // set in a child that is a leaf: the rest is its index
+
+// Boxes of up to eight children side by side, as one vector load wants them. Lane l's box holds every triangle below
+// it.
+struct alignas(64) MeshNode {
+    float center[3][kMeshWidth];
+    float axes[3][3][kMeshWidth];  // [k][i]: component i of axis k; orthonormal to 1e-6
+    float half[3][kMeshWidth];
+    std::uint32_t child[kMeshWidth];
+    std::uint32_t count;  // lanes in use: the first ones
+};
+
+// Up to eight triangles, vertices side by side. Unused lanes repeat the last triangle.
+struct alignas(64) MeshLeaf {
+    float vertex[3][3][kMeshWidth];  // [v][i]: component i of vertex v, exactly the mesh's own
+    std::uint32_t triangle[kMeshWidth];
+    std::uint32_t count;
+};
+
+struct MeshBox {
+    float center[3], axes[3][3], half[3];
+};
+
+struct MeshTreeOptions {
+    measure::Criterion criterion = measure::minimal_perimeter();  // decides between candidate boxes
+};
+
+// Depth is at most log8 of the triangle count plus two: splits are at medians.
+class MeshTree {
+  public:
+    // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed
+    // in rejected(); the others are unharmed. Errors: no valid triangle; index count no multiple of three; 2^28
+    // triangles or more.
+    [[nodiscard]] static Result<MeshTree> build(const TriangleMesh& mesh, const MeshTreeOptions& options = {});
+
+    [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }  // the root is the first
+    [[nodiscard]] std::span<const MeshLeaf> leaves() const { return leaves_; }
+    [[nodiscard]] const MeshBox& root_box() const { return root_box_; }
+    [[nodiscard]] std::span<const std::uint32_t> rejected() const { return rejected_; }  // triangles, ascending
+    [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }         // rejected ones not counted
+    // The largest magnitude of any coordinate: rounding errors in the mesh's frame scale with it.
+    [[nodiscard]] float extent() const { return extent_; }
+
+  private:
+    friend class MeshTreeBuilder;
+    Vector<MeshNode> nodes_;
+    Vector<MeshLeaf> leaves_;
+    Vector<std::uint32_t> rejected_;
+    MeshBox root_box_{};
+    std::size_t triangle_count_ = 0;
+    float extent_ = 0.0f;
+};
+
+}  // namespace crofton::tree

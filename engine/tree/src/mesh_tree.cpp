@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/tree/mesh_tree.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "symmetric_eigen.hpp"
+
+namespace crofton::tree {
+namespace {
+
+constexpr float kMaxMeshCoordinate = 1e12f;  // cubes of differences stay within float
+
+struct Reference {
+    glm::vec3 centroid;
+    std::uint32_t triangle;
+    float key;
+};
+
+struct Range {
+    std::size_t begin, end;
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+};
+
+struct Task {
+    Range range;
+    std::uint32_t node;
+};
+
+float float_above(double value) {
+    const float rounded = static_cast<float>(value);
+    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                                : rounded;
+}
+
+bool is_usable(const glm::vec3& p) {
+    return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
+           std::abs(p.z) <= kMaxMeshCoordinate;
+}
+
+}  // namespace
+
+class MeshTreeBuilder {
+  public:
+    MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
+        : mesh_(mesh), criterion_(options.criterion) {}
+
+    Result<MeshTree> build();
+
+  private:
+    void collect();
+    void split_node(const Task& task);
+    Range split(Range& range);
+    MeshBox fit(const Range& range) const;
+    MeshBox fit(const Range& range, const glm::dmat3& frame) const;
+    std::uint32_t add_leaf(const Range& range);
+    [[nodiscard]] const glm::vec3& vertex(std::uint32_t triangle, std::size_t v) const {
+        return mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + v]];
+    }
+
+    const TriangleMesh& mesh_;
+    measure::Criterion criterion_;
+    MeshTree tree_;
+    Vector<Reference> references_;
+    Vector<Task> tasks_;
+};
+
+void MeshTreeBuilder::collect() {
+    const std::size_t count = mesh_.triangle_count();
+    references_.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) {
+        bool usable = true;
+        for (std::size_t v = 0; v < 3; ++v) {
+            const std::uint32_t index = mesh_.indices[3 * t + v];
+            usable = usable && index < mesh_.positions.size() && is_usable(mesh_.positions[index]);
+        }
+        const auto triangle = static_cast<std::uint32_t>(t);
+        if (!usable) {
+            tree_.rejected_.push_back(triangle);
+            continue;
+        }
+        const glm::vec3 &a = vertex(triangle, 0), &b = vertex(triangle, 1), &c = vertex(triangle, 2);
+        references_.push_back({(a + b + c) * (1.0f / 3.0f), triangle, 0.0f});
+        for (const glm::vec3* p : {&a, &b, &c})
+            tree_.extent_ = std::max({tree_.extent_, std::abs(p->x), std::abs(p->y), std::abs(p->z)});
+    }
+}
+
+// Halves a range at the median along the direction in which its centroids spread most; returns the upper part.
+Range MeshTreeBuilder::split(Range& range) {
+    const auto begin = references_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto end = references_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    glm::dvec3 sum(0.0), squares(0.0), products(0.0);
+    const glm::vec3 origin = begin->centroid;
+    for (auto r = begin; r != end; ++r) {
+        const glm::dvec3 p(r->centroid - origin);
+        sum += p;
+        squares += p * p;
+        products += glm::dvec3(p.x * p.y, p.y * p.z, p.z * p.x);
+    }
+    const double n = static_cast<double>(range.size());
+    const glm::dvec3 mean = sum / n, diagonal = squares / n - mean * mean;
+    const glm::dvec3 off = products / n - glm::dvec3(mean.x * mean.y, mean.y * mean.z, mean.z * mean.x);
+    const glm::dmat3 covariance(diagonal.x, off.x, off.z, off.x, diagonal.y, off.y, off.z, off.y, diagonal.z);
+    const glm::dmat3 frame = eigenvectors(covariance);
+    int longest = 0;
+    double spread = -1.0;
+    for (int k = 0; k < 3; ++k) {
+        const double along = glm::dot(frame[k], covariance * frame[k]);
+        if (along > spread) spread = along, longest = k;
+    }
+    const glm::vec3 direction(frame[longest]);
+    for (auto r = begin; r != end; ++r) r->key = glm::dot(r->centroid, direction);
+    // Whole leaves below: the cut is a multiple of the leaf's size, so that no lanes stay empty but in the last leaf.
+    const std::size_t leaves = (range.size() + kMeshWidth - 1) / kMeshWidth;
+    const std::size_t cut = leaves / 2 * kMeshWidth;
+    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Reference& a, const Reference& b) {
+        return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
+    });
+    const Range upper{range.begin + cut, range.end};
+    range.end = upper.begin;
+    return upper;
+}
+
+// The box with this frame. Coordinates along axes that are orthonormal only to 3e-7 differ from those in the exact
+// parallelepiped by that share of their size; a margin of 1e-6 of all half extents covers it and the float rounding.
+MeshBox MeshTreeBuilder::fit(const Range& range, const glm::dmat3& frame) const {
+    MeshBox box{};
+    glm::dvec3 axis[3], low(std::numeric_limits<double>::infinity()), high(-low);
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3 rounded(frame[k]);
+        axis[k] = glm::dvec3(rounded);
+        for (int i = 0; i < 3; ++i) box.axes[k][i] = rounded[i];
+    }
+    const glm::dmat3 rows =
+        glm::dmat3(axis[0].x, axis[1].x, axis[2].x, axis[0].y, axis[1].y, axis[2].y, axis[0].z, axis[1].z, axis[2].z);
+    for (std::size_t r = range.begin; r < range.end; ++r)
+        for (std::size_t v = 0; v < 3; ++v) {
+            const glm::dvec3 along = rows * glm::dvec3(vertex(references_[r].triangle, v));
+            low = glm::min(low, along);
+            high = glm::max(high, along);
+        }
+    const glm::dvec3 middle = 0.5 * (low + high);
+    const glm::vec3 center(axis[0] * middle.x + axis[1] * middle.y + axis[2] * middle.z);
+    const glm::dvec3 along = rows * glm::dvec3(center);
+    const glm::dvec3 half = glm::max(high - along, along - low);
+    const double margin = 1e-6 * (half.x + half.y + half.z) + 1e-37;
+    for (int k = 0; k < 3; ++k) {
+        box.center[k] = center[k];
+        box.half[k] = float_above(half[k] + margin);
+    }
+    return box;
+}
+
+MeshBox MeshTreeBuilder::fit(const Range& range) const {
+    const glm::vec3 origin = references_[range.begin].centroid;
+    glm::dvec3 sum(0.0), squares(0.0), products(0.0);
+    double weight = 0.0;
+    for (std::size_t r = range.begin; r < range.end; ++r)
+        for (std::size_t v = 0; v < 3; ++v) {
+            const glm::dvec3 p(vertex(references_[r].triangle, v) - origin);
+            sum += p;
+            squares += p * p;
+            products += glm::dvec3(p.x * p.y, p.y * p.z, p.z * p.x);
+            weight += 1.0;
+        }
+    const glm::dvec3 mean = sum / weight, diagonal = squares / weight - mean * mean;
+    const glm::dvec3 off = products / weight - glm::dvec3(mean.x * mean.y, mean.y * mean.z, mean.z * mean.x);
+    const glm::dmat3 principal =
+        eigenvectors(glm::dmat3(diagonal.x, off.x, off.z, off.x, diagonal.y, off.y, off.z, off.y, diagonal.z));
+    return fit(range, principal);
+}
+
+std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
+    MeshLeaf leaf{};
+    leaf.count = static_cast<std::uint32_t>(range.size());
+    for (std::size_t lane = 0; lane < kMeshWidth; ++lane) {
+        const std::uint32_t triangle = references_[range.begin + std::min(lane, range.size() - 1)].triangle;
+        leaf.triangle[lane] = triangle;
+        for (std::size_t v = 0; v < 3; ++v)
+            for (int i = 0; i < 3; ++i) leaf.vertex[v][i][lane] = vertex(triangle, v)[i];
+    }
+    tree_.leaves_.push_back(leaf);
+    return static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
+}
+
+// Splits the largest part until there are eight, or all are leaves.
+void MeshTreeBuilder::split_node(const Task& task) {
+    Range parts[kMeshWidth] = {task.range};
+    std::uint32_t count = 1;
+    while (count < kMeshWidth) {
+        Range* largest = std::max_element(parts, parts + count, [](auto& a, auto& b) { return a.size() < b.size(); });
+        if (largest->size() <= kMeshWidth) break;
+        parts[count++] = split(*largest);
+    }
+    MeshNode node{};
+    node.count = count;
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        const MeshBox box = fit(parts[lane]);
+        for (int k = 0; k < 3; ++k) {
+            node.center[k][lane] = box.center[k];
+            node.half[k][lane] = box.half[k];
+            for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
+        }
+        if (parts[lane].size() <= kMeshWidth) {
+            node.child[lane] = kMeshLeaf | add_leaf(parts[lane]);
+        } else {
+            node.child[lane] = static_cast<std::uint32_t>(tree_.nodes_.size());
+            tree_.nodes_.emplace_back();
+            tasks_.push_back({parts[lane], node.child[lane]});
+        }
+    }
+    tree_.nodes_[task.node] = node;
+}
+
+Result<MeshTree> MeshTreeBuilder::build() {
+    if (mesh_.indices.size() % 3 != 0)
+        return fail(ErrorCode::invalid_argument, mesh_.indices.size(),
+                    "mesh: the index count is not a multiple of three");
+    if (mesh_.triangle_count() >= (std::size_t{1} << 28))
+        return fail(ErrorCode::out_of_range, mesh_.triangle_count(), "mesh: 2^28 triangles or more");
+    if (auto valid = measure::validate(criterion_); !valid) return tl::unexpected<Error>(valid.error());
+    collect();
+    if (references_.empty()) return fail(ErrorCode::empty, kNoItem, "mesh: no valid triangle");
+    tree_.triangle_count_ = references_.size();
+    const std::size_t leaf_estimate = references_.size() / kMeshWidth + 1;
+    tree_.leaves_.reserve(leaf_estimate);
+    tree_.nodes_.reserve(leaf_estimate / 4 + 1);
+    const Range all{0, references_.size()};
+    tree_.root_box_ = fit(all);
+    tree_.nodes_.emplace_back();
+    tasks_.push_back({all, 0});
+    while (!tasks_.empty()) {
+        const Task task = tasks_.back();
+        tasks_.pop_back();
+        split_node(task);
+    }
+    return std::move(tree_);
+}
+
+Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {
+    return MeshTreeBuilder(mesh, options).build();
+}
+
+}  // namespace crofton::tree

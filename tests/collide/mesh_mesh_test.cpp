@@ -1,0 +1,152 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/collide/mesh_mesh.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "meshes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+tree::MeshTree tree_of(const TriangleMesh& mesh) {
+    auto tree = tree::MeshTree::build(mesh);
+    REQUIRE(tree.has_value());
+    return std::move(*tree);
+}
+
+Triangle triangle(const TriangleMesh& mesh, std::size_t t, const Pose& pose) {
+    return {transform(pose, vertex(mesh, t, 0)), transform(pose, vertex(mesh, t, 1)),
+            transform(pose, vertex(mesh, t, 2))};
+}
+
+Vector<TrianglePair> brute_force(const TriangleMesh& a, const TriangleMesh& b, const Pose& pose) {
+    Vector<TrianglePair> pairs;
+    for (std::uint32_t i = 0; i < a.triangle_count(); ++i)
+        for (std::uint32_t j = 0; j < b.triangle_count(); ++j)
+            if (intersects(triangle(a, i, {}), triangle(b, j, pose))) pairs.push_back({i, j});
+    return pairs;
+}
+
+TriangleMesh cube(double half) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.push_back(glm::vec3(half * (i & 1 ? 1 : -1), half * (i & 2 ? 1 : -1), half * (i & 4 ? 1 : -1)));
+    mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    return mesh;
+}
+
+}  // namespace
+
+TEST_SUITE("collide/mesh_mesh") {
+    TEST_CASE("a triangle with NaN or a wild index is left out by name, and its neighbours are found all the same") {
+        TriangleMesh a = wavy_torus(1.0, 0.4, 0.1), b = a;
+        const Pose pose{glm::dmat3(1.0), {0.7, 0.1, 0.05}};
+        auto expected = brute_force(a, b, pose);
+        a.positions.push_back(glm::vec3(std::nanf(""), 0.0f, 0.0f));
+        const auto bad_vertex = std::uint32_t(a.positions.size() - 1);
+        for (const std::uint32_t index : {0u, 1u, bad_vertex, 0u, 1u, 9999u}) a.indices.push_back(index);
+        const auto tree_a = tree_of(a), tree_b = tree_of(b);
+        CHECK(std::ranges::equal(tree_a.rejected(), Vector<std::uint32_t>{576, 577}));
+        CHECK(tree_a.triangle_count() == 576);
+        Vector<TrianglePair> pairs;
+        intersecting_triangles(tree_a, tree_b, pose, pairs);
+        CHECK_FALSE(expected.empty());
+        CHECK(pairs == expected);
+    }
+
+    TEST_CASE("poses that are no rigid motions are refused by name") {
+        Pose pose;
+        CHECK(validate(pose).has_value());
+        pose.rotation[0][0] = 2.0;
+        CHECK(validate(pose, 3).error().item == 3);
+        pose = {};
+        pose.translation.z = std::numeric_limits<double>::quiet_NaN();
+        CHECK(validate(pose).error().code == ErrorCode::non_finite);
+        pose = {};
+        pose.translation.z = 1e19;
+        CHECK(validate(pose).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("the same pairs of triangles as brute force, for generic, coincident and face-to-face poses") {
+        std::mt19937_64 random(9);
+        const TriangleMesh meshes[] = {wavy_torus(1.0, 0.4, 0.2), wavy_torus(0.6, 0.5, 0.0, 12, 9), cube(0.7)};
+        for (int trial = 0; trial < 60; ++trial) {
+            const TriangleMesh &a = meshes[trial % 3], &b = meshes[trial / 3 % 3];
+            Pose pose = random_pose(random, 1.2);
+            if (trial % 5 == 0) pose = {glm::dmat3(1.0), {}};
+            if (trial % 5 == 1) pose = {glm::dmat3(1.0), {1.4, 0.0, 0.25}};
+            if (trial % 5 == 2) pose.translation *= 0.2;
+            const auto tree_a = tree_of(a), tree_b = tree_of(b);
+            const auto expected = brute_force(a, b, pose);
+            Vector<TrianglePair> pairs;
+            MeshStatistics statistics;
+            intersecting_triangles(tree_a, tree_b, pose, pairs, &statistics);
+            CHECK(pairs == expected);
+            CHECK(intersects(tree_a, tree_b, pose) == !expected.empty());
+            CHECK(intersects(tree_b, tree_a, inverse(pose)) == !expected.empty());
+            Vector<MeshContact> found;
+            contacts(tree_a, tree_b, pose, found);
+            CHECK(found.size() == expected.size());
+        }
+    }
+
+    TEST_CASE("meshes of every size from 1e-15 to 1e12 give the same pairs as brute force") {
+        std::mt19937_64 random(10);
+        for (const double size : {1e-15, 1e-9, 1e-3, 1e5, 2e11}) {
+            TriangleMesh a = wavy_torus(1.0, 0.4, 0.2, 12, 8);
+            for (glm::vec3& p : a.positions) p *= float(size);
+            const auto tree = tree_of(a);
+            for (int trial = 0; trial < 4; ++trial) {
+                const Pose pose = random_pose(random, size);
+                Vector<TrianglePair> pairs;
+                intersecting_triangles(tree, tree, pose, pairs);
+                CHECK(pairs == brute_force(a, a, pose));
+            }
+        }
+    }
+
+    TEST_CASE("one closed mesh inside the other is reported as such, and no other case is") {
+        const auto outer = tree_of(cube(1.0)), inner = tree_of(cube(0.25)), ring = tree_of(wavy_torus(1.0, 0.3, 0.0));
+        CHECK(containment(outer, inner, {glm::dmat3(1.0), {0.3, 0.0, 0.0}}) == Containment::b_inside_a);
+        CHECK(containment(inner, outer, {glm::dmat3(1.0), {0.3, 0.0, 0.0}}) == Containment::a_inside_b);
+        CHECK(containment(outer, inner, {glm::dmat3(1.0), {0.75, 0.0, 0.0}}) ==
+              Containment::none);  // touches from inside
+        CHECK(containment(outer, inner, {glm::dmat3(1.0), {3.0, 0.0, 0.0}}) == Containment::none);
+        CHECK(containment(ring, inner, {}) == Containment::none);  // in the hole
+        const auto pea = tree_of(cube(0.05));
+        CHECK(containment(ring, pea, {glm::dmat3(1.0), {0.0, 1.0, 0.0}}) == Containment::b_inside_a);
+        CHECK(contains(outer, {0.0, 0.0, 0.0}));  // straight below an edge's crossing and on diagonals
+        CHECK(contains(outer, {1.0, 0.5, 0.5}));
+        CHECK_FALSE(contains(outer, {1.0 + 1e-15, 0.5, 0.5}));
+        CHECK_FALSE(contains(outer, {-1.0, -1.0, -2.0}));
+    }
+
+    TEST_CASE("distance and tolerance agree with known gaps and with each other") {
+        const auto a = tree_of(cube(1.0)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
+        const MeshDistance apart = distance(a, a, {glm::dmat3(1.0), {5.0, 6.0, 0.5}});
+        CHECK(apart.distance == doctest::Approx(5.0));  // gaps 3 and 4 along two axes
+        CHECK(glm::distance(apart.on_a, apart.on_b) == doctest::Approx(5.0));
+        CHECK(distance(a, a, {glm::dmat3(1.0), {2.0, 0.0, 0.0}}).distance == 0.0);
+        CHECK(distance(a, a, {glm::dmat3(1.0), {5.0, 6.0, 0.5}}, 4.9).distance ==
+              std::numeric_limits<double>::infinity());
+        CHECK(closer_than(a, a, {glm::dmat3(1.0), {5.0, 6.0, 0.5}}, 5.0 + 1e-12));
+        CHECK_FALSE(closer_than(a, a, {glm::dmat3(1.0), {5.0, 6.0, 0.5}}, 5.0 - 1e-12));
+        CHECK(closer_than(a, a, {glm::dmat3(1.0), {2.0, 0.0, 0.0}}, 0.0));
+        std::mt19937_64 random(12);
+        for (int trial = 0; trial < 50; ++trial) {
+            const Pose pose = random_pose(random, 4.0);
+            const MeshDistance d = distance(a, ring, pose);
+            CHECK((d.distance == 0.0) == intersects(a, ring, pose));
+            if (d.distance == 0.0) continue;
+            CHECK(closer_than(a, ring, pose, d.distance * (1.0 + 1e-9)));
+            CHECK_FALSE(closer_than(a, ring, pose, d.distance * (1.0 - 1e-9)));
+            const MeshDistance back = distance(ring, a, inverse(pose));
+            CHECK(back.distance == doctest::Approx(d.distance).epsilon(1e-12));
+        }
+    }
+}
