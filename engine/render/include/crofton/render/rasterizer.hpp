@@ -63,7 +63,7 @@ struct Frame {
     std::span<const DrawRange> ranges;
     std::span<const DrawRange> wire_ranges{};  // their edges are drawn over the picture; ignored where unsupported
     std::span<const LineVertex> lines{};       // two a line
-    Environment environment;
+    Environment environment{};
 };
 
 // What the GPU counted over one frame (VkQueryPipelineStatisticFlagBits names; samples_passed is a precise occlusion
