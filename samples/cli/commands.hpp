@@ -15,6 +15,7 @@ struct Outcome {
     int status = kSuccess;
 };
 
+void add_frames_command(CLI::App& app, Outcome& outcome);
 void add_verify_command(CLI::App& app, Outcome& outcome);
 
 }  // namespace crofton::cli

@@ -7,6 +7,7 @@
 #include <crofton/render/rasterizer.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -39,45 +40,20 @@ double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-// The rasterizer with what it draws; absent where there is no Vulkan driver and none was demanded.
+// Absent where there is no Vulkan driver and none was demanded.
 struct Drawing {
     render::Device device;
     render::Rasterizer rasterizer;
-    pipeline::DrawList list;
     render::Image image;
 };
 
-Result<std::unique_ptr<Drawing>> make_drawing(const scene::Scene& scene, const pipeline::Pipeline& frames,
-                                              const ImageSize& size) {
-    auto device = render::Device::create({.kind = render::DeviceKind::any, .name = {}});
+Result<std::unique_ptr<Drawing>> make_drawing(const pipeline::DrawList& list, const ImageSize& size) {
+    auto device = render::Device::create();
     if (!device) return tl::unexpected(device.error());
     auto rasterizer = render::Rasterizer::create(*device, {.width = size.width, .height = size.height});
     if (!rasterizer) return tl::unexpected(rasterizer.error());
-    std::vector<std::uint8_t> is_mover(scene.instance_count(), 0);
-    for (const scene::InstanceId instance : frames.movers()) is_mover[instance] = 1;
-    pipeline::DrawList list(scene, frames.spatial_order(), is_mover);
     if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
-    return std::make_unique<Drawing>(Drawing{std::move(*device), std::move(*rasterizer), std::move(list), {}});
-}
-
-Result<void> draw_frame(Drawing& drawing, std::span<const scene::InstanceId> visible, FrameStatistics& frame) {
-    const auto start = Clock::now();
-    drawing.list.select(visible, frame.camera);
-    const auto counters = drawing.rasterizer.draw(
-        {.camera = frame.camera, .transforms = drawing.list.transforms(), .ranges = drawing.list.ranges()});
-    frame.draw_us = microseconds_since(start);
-    if (!counters) return tl::unexpected(counters.error());
-    frame.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
-                                    counters->clipping_primitives, counters->samples_passed};
-    frame.triangles_clipped = drawing.list.predict_clipped();
-    return {};
-}
-
-Aabb bounds_of(const scene::Scene& scene) {
-    Aabb bounds;
-    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-        if (!scene.is_removed(i)) bounds.include(aabb_of(scene.world_boxes()[i]));
-    return bounds;
+    return std::make_unique<Drawing>(Drawing{std::move(*device), std::move(*rasterizer), {}});
 }
 
 std::uint64_t triangles_of(const scene::Scene& scene) {
@@ -103,6 +79,7 @@ class FramesRun {
                 if (!frame)
                     return fail(frame.error().code, frame.error().item,
                                 "frame " + std::to_string(index) + ": " + frame.error().message);
+                if (auto saved = save_picture(index); !saved) return tl::unexpected(saved.error());
                 if (verification)
                     pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, *frame,
                                            drawing_ && drawing_->device.counts_exactly(), *verification);
@@ -148,9 +125,12 @@ class FramesRun {
             {.criterion = *criterion, .map = options_.map, .seed = options_.seed, .instances = options_.instances});
         if (!source) return tl::unexpected(source.error());
         source_.emplace(std::move(*source));
+        for (const std::string& warning : source_->warnings)
+            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
         source_->scene.update(executor());
-        auto cameras = pipeline::make_camera_path({options_.camera, options_.frames, options_.seed, aspect},
-                                                  bounds_of(source_->scene), source_->walk);
+        focus_ = pipeline::focus_of(source_->scene);
+        auto cameras = pipeline::make_camera_path({options_.camera, options_.frames, options_.seed, aspect}, focus_,
+                                                  source_->walk);
         if (!cameras) return tl::unexpected(cameras.error());
         cameras_ = std::move(*cameras);
         pipeline_options_ = {*bounds, *mode, true};
@@ -161,8 +141,11 @@ class FramesRun {
     }
 
     Result<void> prepare_drawing(const ImageSize& size) {
+        std::vector<std::uint8_t> is_mover(source_->scene.instance_count(), 0);
+        for (const scene::InstanceId instance : pipeline_->movers()) is_mover[instance] = 1;
+        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover);
         if (options_.no_draw) return {};
-        auto drawing = make_drawing(source_->scene, *pipeline_, size);
+        auto drawing = make_drawing(*list_, size);
         if (drawing) {
             drawing_ = std::move(*drawing);
             return {};
@@ -182,14 +165,33 @@ class FramesRun {
         if (!frame) return frame;
         frame->index = index;
         frame->update_us += scene_us;
-        if (!drawing_) return frame;
-        if (auto drawn = draw_frame(*drawing_, frame->visible_ids, *frame); !drawn)
-            return tl::unexpected(drawn.error());
-        if (options_.output.png.empty()) return frame;
-        if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return tl::unexpected(read.error());
-        if (auto written = write_picture(options_.output.png, index, drawing_->image); !written)
-            return tl::unexpected(written.error());
+        const auto draw_start = Clock::now();
+        list_->select(frame->visible_ids, frame->camera);
+        if (drawing_)
+            if (auto drawn = draw(*frame); !drawn) return tl::unexpected(drawn.error());
+        if (drawing_) frame->draw_us = microseconds_since(draw_start);
+        frame->triangles_clipped = list_->predict_clipped();
         return frame;
+    }
+
+    Result<void> draw(FrameStatistics& frame) {
+        render::Frame picture;
+        picture.camera = frame.camera;
+        picture.transforms = list_->transforms();
+        picture.ranges = list_->ranges();
+        // Half of the light is haze at three times the size of the place.
+        picture.environment.haze_distance = static_cast<float>(3.0 * glm::length(focus_.half_extents()));
+        const auto counters = drawing_->rasterizer.draw(picture);
+        if (!counters) return tl::unexpected(counters.error());
+        frame.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
+                                        counters->clipping_primitives, counters->samples_passed};
+        return {};
+    }
+
+    Result<void> save_picture(std::uint32_t index) {
+        if (!drawing_ || options_.output.png.empty()) return {};
+        if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return read;
+        return write_picture(options_.output.png, index, drawing_->image);
     }
 
     Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
@@ -198,8 +200,10 @@ class FramesRun {
     pipeline::PipelineOptions pipeline_options_;
     std::optional<ThreadPool> pool_;
     std::optional<assets::SceneSource> source_;
+    Aabb focus_;
     std::vector<Camera> cameras_;
     std::optional<pipeline::Pipeline> pipeline_;
+    std::optional<pipeline::DrawList> list_;
     std::unique_ptr<Drawing> drawing_;
 };
 

@@ -31,15 +31,15 @@ Camera base_camera(const PathOptions& options, const Frame& frame) {
     camera.aspect = options.aspect;
     const double reach = std::max({frame.radius, frame.height, 1e-6});
     camera.near = 2e-4 * reach;
-    camera.far = 4.0 * reach;
+    camera.far = 8.0 * reach;
     return camera;
 }
 
-// Once around, from a bird's height, closer and farther in turn.
+// Once around, from a bird's height, closer and farther in turn; near enough that part of the scene is out of view.
 Camera orbit(Camera camera, const Frame& frame, double t) {
     const double angle = 2.0 * pi * t;
-    const double distance = frame.radius * (0.95 + 0.25 * std::cos(2.0 * angle));
-    const double height = 0.35 * frame.radius + 0.5 * frame.height;
+    const double distance = frame.radius * (0.62 + 0.18 * std::cos(2.0 * angle));
+    const double height = 0.16 * frame.radius + 0.5 * frame.height;
     const glm::dvec3 target = frame.center - glm::dvec3(0.0, 0.25 * frame.height, 0.0);
     camera.position = frame.center + glm::dvec3(distance * std::cos(angle), height, distance * std::sin(angle));
     camera.forward = glm::normalize(target - camera.position);
@@ -96,6 +96,36 @@ Result<double> number_from(const json& entry, const char* field, double otherwis
 }
 
 }  // namespace
+
+Aabb focus_of(const scene::Scene& scene) {
+    struct End {
+        double position;
+        double weight;
+    };
+    Aabb focus;
+    std::vector<End> ends;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool upper : {false, true}) {
+            ends.clear();
+            double total = 0.0;
+            for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
+                if (scene.is_removed(i)) continue;
+                const Aabb box = aabb_of(scene.world_boxes()[i]);
+                const double weight = static_cast<double>(scene.mesh(scene.mesh_of(i)).triangle_count());
+                ends.push_back({upper ? -box.max[axis] : box.min[axis], weight});
+                total += weight;
+            }
+            std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.position < b.position; });
+            double below = 0.0;
+            for (const End& end : ends) {
+                below += end.weight;
+                if (below < 0.05 * total) continue;
+                (upper ? focus.max : focus.min)[axis] = upper ? -end.position : end.position;
+                break;
+            }
+        }
+    return focus;
+}
 
 Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const Aabb& bounds,
                                              std::span<const glm::dvec3> walk) {

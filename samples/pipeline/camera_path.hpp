@@ -3,6 +3,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/aabb.hpp>
 #include <crofton/geometry/camera.hpp>
+#include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -10,6 +11,10 @@
 #include <vector>
 
 namespace crofton::pipeline {
+
+// The part of the scene worth looking at: the middle nine tenths of its triangles along each axis, by their instances'
+// boxes. A few far backdrops (hills, a sky dome) do not send the camera away. Empty for an empty scene.
+[[nodiscard]] Aabb focus_of(const scene::Scene& scene);
 
 struct PathOptions {
     std::string kind = "orbit";  // orbit, street, random, or the path of a JSON file

@@ -1,13 +1,13 @@
 // Runs the command line as a user would, and hands back what it said.
 #pragma once
+#include <sys/wait.h>
+#include <unistd.h>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace crofton::test {
 
@@ -15,7 +15,8 @@ namespace crofton::test {
 class ScratchFolder {
   public:
     ScratchFolder()
-        : path_(std::filesystem::temp_directory_path() / ("crofton_test_" + std::to_string(static_cast<long>(getpid())))) {
+        : path_(std::filesystem::temp_directory_path() /
+                ("crofton_test_" + std::to_string(static_cast<long>(getpid())))) {
         std::filesystem::create_directories(path_);
     }
     ~ScratchFolder() {

@@ -1,0 +1,145 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+using nlohmann::json;
+
+namespace {
+
+// A town small enough that brute force takes no time.
+const std::string kSmallTown = "frames town --instances 400 --size 160x90 ";
+
+bool says(const std::string& text, const std::string& what) {
+    return text.find(what) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_SUITE("cli/frames") {
+    TEST_CASE("bad options and files end with status 2, name the culprit and leave no output behind") {
+        const std::string output = scratch().file("never.json");
+        write_contents(scratch().file("damaged.glb"), std::string("glTF\x02\0\0\0", 8));
+        write_contents(scratch().file("nan.obj"), "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n");
+        write_contents(scratch().file("index.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+        write_contents(scratch().file("empty.obj"), "# nothing\n");
+        write_contents(scratch().file("cameras.json"), "[{\"position\": [0, 0, \"x\"]}]");
+        const std::pair<std::string, std::string> cases[] = {
+            {"no-such-file.glb", "no-such-file.glb"},
+            {"town --size 0x90", "0x90"},
+            {"town --bounds ball", "ball"},
+            {"town --cull sometimes", "sometimes"},
+            {"town --frames 0", "frames"},
+            {"town --camera nowhere", "nowhere"},
+            {"town --camera " + scratch().file("cameras.json"), "cameras.json"},
+            {scratch().file("cameras.json"), "json"},
+            {scratch().file("damaged.glb"), "damaged.glb"},
+            {scratch().file("nan.obj"), "nan.obj"},
+            {scratch().file("index.obj"), "index.obj"},
+            {scratch().file("empty.obj"), "empty.obj"},
+            {"town --draw --no-draw", "draw"},
+        };
+        for (const auto& [arguments, culprit] : cases) {
+            CAPTURE(arguments);
+            const CliRun run = run_cli("frames " + arguments + " --json " + output);
+            CHECK(run.status == 2);
+            CHECK(says(run.err, culprit));
+            CHECK(run.out.empty());
+            CHECK_FALSE(std::filesystem::exists(output));
+            CHECK_FALSE(std::filesystem::exists(output + ".partial"));
+        }
+    }
+
+    TEST_CASE("an output that cannot be written is an error, not silence") {
+        CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --json /no/such/folder/out.json").status == 2);
+        CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --json - --csv -").status == 2);
+    }
+
+    TEST_CASE("without a Vulkan driver the frames run without drawing and say so, and --draw is an error") {
+        const std::string no_driver = "VK_ICD_FILENAMES=/dev/null VK_DRIVER_FILES=/dev/null";
+        const CliRun undrawn = run_cli(kSmallTown + "--frames 2 --json -", no_driver);
+        CHECK(undrawn.status == 0);
+        CHECK(says(undrawn.err, "not drawing"));
+        CHECK(undrawn.json()["frames"][0]["gpu"].is_null());
+        CHECK(run_cli(kSmallTown + "--frames 2 --draw", no_driver).status == 2);
+    }
+
+    TEST_CASE("the JSON has every documented field, and the counts agree with each other") {
+        const CliRun run = run_cli(kSmallTown + "--frames 6 --camera street --ids --json -");
+        REQUIRE(run.status == 0);
+        const json document = run.json();
+        REQUIRE(document.is_object());
+        for (const char* field : {"name", "nodes", "instances", "triangles"}) CHECK(document["scene"].contains(field));
+        REQUIRE(document["frames"].size() == 6);
+        for (const json& frame : document["frames"]) {
+            for (const char* field :
+                 {"index", "camera", "instances", "visible", "inside", "straddling", "improper", "nodes_tested",
+                  "triangles_submitted", "triangles_passed", "triangles_clipped", "gpu", "colliding_pairs", "update_us",
+                  "cull_us", "collide_us", "draw_us", "visible_ids", "colliding_ids"})
+                CHECK_MESSAGE(frame.contains(field), field);
+            for (const char* field : {"position", "forward", "up", "fov_y", "aspect", "near", "far"})
+                CHECK_MESSAGE(frame["camera"].contains(field), field);
+            CHECK(frame["inside"].get<int>() + frame["straddling"].get<int>() == frame["visible"].get<int>());
+            CHECK(frame["improper"].get<int>() <= frame["straddling"].get<int>());
+            CHECK(frame["triangles_passed"].get<int>() <= frame["triangles_submitted"].get<int>());
+            CHECK(frame["visible_ids"].size() == frame["visible"].get<std::size_t>());
+            CHECK(frame["colliding_ids"].size() == frame["colliding_pairs"].get<std::size_t>());
+            if (frame["gpu"].is_object()) {
+                CHECK(frame["gpu"]["input_assembly_primitives"] == frame["triangles_submitted"]);
+                CHECK(frame["gpu"]["clipping_invocations"] == frame["triangles_submitted"]);
+                CHECK(frame["gpu"]["clipping_primitives"] == frame["triangles_clipped"]);
+            }
+        }
+        CHECK(document["summary"]["mismatches"] == 0);
+    }
+
+    TEST_CASE("brute force finds nothing wrong, with any bound and way of culling") {
+        for (const char* choice :
+             {"--bounds sphere", "--bounds aabb", "--bounds obb-volume", "--bounds obb-area", "--bounds obb-frustum",
+              "--cull flat", "--cull none", "--camera street", "--camera random"}) {
+            CAPTURE(choice);
+            const CliRun run = run_cli(kSmallTown + "--frames 8 --verify --json - " + choice);
+            CHECK(run.status == 0);
+            const json document = run.json();
+            REQUIRE(document.contains("summary"));
+            CHECK(document["summary"]["verified"] == true);
+            CHECK(document["summary"]["mismatches"] == 0);
+        }
+    }
+
+    TEST_CASE("flat and tree culling see the same instances, with one thread or two, and again from a recorded path") {
+        const std::string recorded = scratch().file("recorded.json");
+        const auto ids_of = [](const json& document) {
+            json ids = json::array();
+            for (const json& frame : document["frames"]) ids.push_back({frame["visible_ids"], frame["colliding_ids"]});
+            return ids;
+        };
+        REQUIRE(
+            run_cli(kSmallTown + "--frames 10 --camera random --seed 5 --no-draw --ids --json " + recorded).status ==
+            0);
+        const json expected = ids_of(json::parse(contents_of(recorded)));
+        for (const std::string choice : {std::string("--cull flat --camera random"),
+                                         std::string("--threads 2 --camera random"), "--camera " + recorded}) {
+            CAPTURE(choice);
+            const CliRun run = run_cli(kSmallTown + "--frames 10 --seed 5 --no-draw --ids --json - " + choice);
+            REQUIRE(run.status == 0);
+            CHECK(static_cast<bool>(ids_of(run.json()) == expected));
+        }
+    }
+
+    TEST_CASE("pictures and CSV are written, one per frame and one line per frame") {
+        const std::string folder = scratch().file("pictures"), csv = scratch().file("frames.csv");
+        const CliRun run = run_cli(kSmallTown + "--frames 2 --csv " + csv + " --png " + folder);
+        if (run.status != 0) {
+            MESSAGE("no Vulkan driver here: " << run.err);
+            return;
+        }
+        const std::string text = contents_of(csv);
+        CHECK(std::count(text.begin(), text.end(), '\n') == 3);
+        CHECK(contents_of(folder + "/frame_0001.png").substr(1, 3) == "PNG");
+        CHECK(says(run.out, "instances"));
+    }
+}
