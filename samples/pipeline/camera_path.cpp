@@ -23,7 +23,10 @@ struct Frame {
 
 Frame frame_of(const Aabb& bounds) {
     const glm::dvec3 half = bounds.half_extents();
-    return {bounds.center(), std::max(std::hypot(half.x, half.z), 0.5 * half.y), 2.0 * half.y};
+    const glm::dvec3 center = bounds.center();
+    // A single point still gets a place to look from.
+    const double least = 1e-6 * std::max({1.0, std::abs(center.x), std::abs(center.y), std::abs(center.z)});
+    return {center, std::max({std::hypot(half.x, half.z), 0.5 * half.y, least}), 2.0 * half.y};
 }
 
 Camera base_camera(const PathOptions& options, const Frame& frame) {

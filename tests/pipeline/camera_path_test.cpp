@@ -1,0 +1,46 @@
+#include <doctest/doctest.h>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/camera_path.hpp"
+
+using namespace crofton;
+using namespace crofton::pipeline;
+
+TEST_SUITE("pipeline/camera_path") {
+    TEST_CASE("entries that are no cameras are refused with their number") {
+        CHECK(camera_from_json(nlohmann::json::parse("[1]"), 4).error().item == 4);
+        CHECK(camera_from_json(nlohmann::json::parse(R"({"position": [1, 2]})"), 5).error().item == 5);
+        CHECK(camera_from_json(nlohmann::json::parse(R"({"near": -1})"), 6).error().code == ErrorCode::out_of_range);
+        CHECK(camera_from_json(nlohmann::json::parse(R"({"up": [0, 0, 1]})"), 7).error().code == ErrorCode::degenerate);
+    }
+
+    TEST_CASE("an empty scene, an unknown kind and a missing file are refused") {
+        CHECK(make_camera_path({}, Aabb{}, {}).error().code == ErrorCode::empty);
+        CHECK_FALSE(make_camera_path({.kind = "sideways"}, Aabb{{0, 0, 0}, {1, 1, 1}}, {}).has_value());
+    }
+
+    TEST_CASE("a camera survives its JSON bit for bit, an infinite far too") {
+        Camera camera;
+        camera.position = {1e7 + 0.1, -1.0 / 3.0, 2e-9};
+        camera.forward = {0.1, 0.2, -0.7};
+        camera.far = INFINITY;
+        const auto again = camera_from_json(nlohmann::json::parse(to_json(camera).dump()), 0);
+        REQUIRE(again.has_value());
+        CHECK(again->position == camera.position);
+        CHECK(again->forward == camera.forward);
+        CHECK(std::isinf(again->far));
+    }
+
+    TEST_CASE("every built-in path gives as many valid cameras as asked, the same for the same seed") {
+        for (const char* kind : {"orbit", "street", "random"})
+            for (const Aabb& bounds : {Aabb{{-50, 0, -30}, {50, 20, 30}}, Aabb{{1e6, 5, 5}, {1e6, 5, 5}}}) {
+                const PathOptions options{.kind = kind, .frames = 37, .seed = 3};
+                const auto path = make_camera_path(options, bounds, {});
+                REQUIRE(path.has_value());
+                CHECK(path->size() == 37);
+                for (const Camera& camera : *path) CHECK(validate(camera).has_value());
+                CHECK(make_camera_path(options, bounds, {})->back().position == path->back().position);
+            }
+    }
+}
