@@ -1,15 +1,12 @@
 #include "enclose.hpp"
 
 #include <cmath>
-#include <crofton/core/assert.hpp>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <limits>
 
 namespace crofton::fit {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnit = 0x1p-53;  // unit roundoff of double
 
 // The reciprocal basis up to scale: a point c + d is inside iff |dot(normal[k], d)| ≤ half_extents[k] · determinant for
@@ -26,70 +23,53 @@ struct Slabs {
     }
 };
 
-// True if the filter proves the point inside slab k. d = p − c and every factor and product below is rounded once, sums
-// twice: |error| ≤ 6 units of Σ|normal_i d_i| (+ one least denormal each where products underflow).
-bool surely_inside(const glm::dvec3& normal, const glm::dvec3& d, double reach) {
+// True if the filter proves |dot(normal, d)| ≤ half · determinant. d = p − c and every factor and product below is
+// rounded once, sums twice: |error| ≤ 6 units of Σ|normal_i d_i|.
+bool surely_inside(const glm::dvec3& normal, const glm::dvec3& d, double half, double determinant) {
     const double x = normal.x * d.x, y = normal.y * d.y, z = normal.z * d.z;
     const double magnitude = std::abs(x) + std::abs(y) + std::abs(z);
-    return std::abs(x + y + z) + 6.5 * kUnit * magnitude <= reach;
+    return std::abs(x + y + z) + 6.5 * kUnit * magnitude <= half * (determinant * (1.0 - 20.0 * kUnit));
 }
 
-float nearest_float(double value) {
-    return static_cast<float>(value);
-}
-
-template <class Point>
-Obb enclose_points(std::span<const Point> points, const glm::mat3& axes, const glm::dvec3& reference) {
-    CROFTON_ASSERT(!points.empty(), "enclose needs a point");
-    const Slabs slabs(axes);
-    glm::dvec3 low(kInfinity), high(-kInfinity);
-    for (const Point& point : points) {
-        const glm::dvec3 d = glm::dvec3(point) - reference;
-        for (int k = 0; k < 3; ++k) {
-            const double t = glm::dot(slabs.normals[k], d);
-            low[k] = std::min(low[k], t);
-            high[k] = std::max(high[k], t);
-        }
-    }
-    Obb box;
-    box.axes = axes;
-    const glm::dvec3 middle = (low + (high - low) * 0.5) / slabs.determinant;
-    box.center = reference + glm::dmat3(axes) * middle;
-    // The centre is rounded: measure again from where it is.
-    low = glm::dvec3(kInfinity);
-    high = glm::dvec3(-kInfinity);
-    for (const Point& point : points) {
-        const glm::dvec3 d = glm::dvec3(point) - box.center;
-        for (int k = 0; k < 3; ++k) {
-            const double t = glm::dot(slabs.normals[k], d);
-            low[k] = std::min(low[k], t);
-            high[k] = std::max(high[k], t);
-        }
-    }
-    glm::dvec3 reach;
-    const auto set = [&](int k, float half) {
-        box.half_extents[k] = half;
-        reach[k] = static_cast<double>(half) * (slabs.determinant * (1.0 - 20.0 * kUnit));
-    };
-    for (int k = 0; k < 3; ++k) set(k, nearest_float(std::max(high[k], -low[k]) / slabs.determinant));
-    for (const Point& point : points) {
-        const glm::dvec3 p(point), d = p - box.center;
-        for (int k = 0; k < 3; ++k) {
-            if (surely_inside(slabs.normals[k], d, reach[k])) continue;
-            while (!contains_along(box, p, k))
-                set(k, std::nextafter(box.half_extents[k], std::numeric_limits<float>::infinity()));
-        }
-    }
-    return box;
+float float_below(double value) {
+    const float nearest = static_cast<float>(value);
+    return static_cast<double>(nearest) > value ? std::nextafter(nearest, 0.0f) : nearest;
 }
 
 }  // namespace
 
-Obb enclose(std::span<const glm::vec3> points, const glm::mat3& axes, const glm::dvec3& reference) {
-    return enclose_points(points, axes, reference);
-}
-Obb enclose(std::span<const glm::dvec3> points, const glm::mat3& axes, const glm::dvec3& reference) {
-    return enclose_points(points, axes, reference);
+Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
+    const Slabs slabs(axes);
+    Obb box;
+    box.axes = axes;
+    glm::dvec3 middle, half, length;
+    for (int k = 0; k < 3; ++k) {
+        length[k] = glm::length(slabs.normals[k]);
+        const glm::dvec3 direction = slabs.normals[k] / length[k];
+        const auto [top, bottom] = cloud.extreme_pair(direction);
+        const double high = glm::dot(slabs.normals[k], top), low = glm::dot(slabs.normals[k], bottom);
+        middle[k] = (low + (high - low) * 0.5) / slabs.determinant * cloud.unit();
+        half[k] = std::max(0.0, (high - low) * 0.5) / slabs.determinant * cloud.unit();
+    }
+    box.center = cloud.origin() + glm::dmat3(axes) * middle;
+    for (int k = 0; k < 3; ++k) {
+        // From just below the least float that can do, grow by single steps as exact tests demand.
+        float& reach = box.half_extents[k];
+        reach = float_below(half[k] * (1.0 - 1e-12));
+        const glm::dvec3 normal = slabs.normals[k];
+        const auto visit = [&](const glm::dvec3& p) {
+            const glm::dvec3 d = p - box.center;
+            if (surely_inside(normal, d, static_cast<double>(reach), slabs.determinant)) return;
+            if (contains_along(box, p, k)) return;
+            // The centre's own rounding may ask for more than a few steps.
+            const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
+            reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
+            while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
+        };
+        cloud.visit_beyond(normal / length[k], box.center, static_cast<double>(reach) * slabs.determinant / length[k],
+                           visit);
+    }
+    return box;
 }
 
 glm::mat3 rounded(const glm::dmat3& axes) {

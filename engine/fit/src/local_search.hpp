@@ -18,6 +18,7 @@ struct Candidate {
 // Scratch memory for the searches; grows once, then is reused.
 struct SearchBuffers {
     Vector<glm::dvec2> flat, hull;
+    Vector<glm::dvec3> near;
 };
 
 [[nodiscard]] glm::dvec3 widths(std::span<const glm::dvec3> points, const glm::dmat3& axes);

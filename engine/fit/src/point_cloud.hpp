@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
+#include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/aabb.hpp>
 #include <glm/mat3x3.hpp>
@@ -13,29 +14,51 @@ namespace crofton::fit {
 // The extreme points along each axis: index 2k the farthest along +axes[k], 2k + 1 along −axes[k].
 using Supports = std::array<glm::dvec3, 6>;
 
-// Normalised coordinates are (p − origin) / unit with `unit` a power of two: all within [−1, 1]. Every answer depends
-// on the set of points alone, never on their order: ties go to the lexicographically least point.
+// A view of the caller's points with one small box per 64 of them: neighbours in the input are mostly neighbours in
+// space, so a support query reads few points. Normalised coordinates are (p − origin) / unit with `unit` a power of
+// two: all within [−1, 1]. Every answer depends on the set of points alone, never on their order: ties go to the
+// lexicographically least point. Queries use scratch memory of the object: one thread at a time.
 class PointCloud {
   public:
-    // Errors: no points; NaN, infinite or beyond kMaxCoordinate: the item is the first such index.
-    template <class Point>
-    [[nodiscard]] static Result<PointCloud> make(std::span<const Point> points);
+    PointCloud() = default;
+    PointCloud(const PointCloud&) = delete;
+    PointCloud& operator=(const PointCloud&) = delete;
 
+    // Reads the points once and keeps a reference to them; memory is reused from one call to the next.
+    // Errors: no points; NaN, infinite or beyond kMaxCoordinate: the item is the first such index.
+    [[nodiscard]] Result<void> assign(std::span<const glm::vec3> points);
+    [[nodiscard]] Result<void> assign(std::span<const glm::dvec3> points);
+
+    [[nodiscard]] std::size_t size() const { return count_; }
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     [[nodiscard]] double unit() const { return unit_; }
 
-    [[nodiscard]] Supports supports(const glm::dmat3& axes) const;
-    // Appends the two extreme points along each direction.
-    void extremes(std::span<const glm::dvec3> directions, Vector<glm::dvec3>& out) const;
+    [[nodiscard]] Supports supports(const glm::dmat3& axes);
+    // The extreme points along +direction and −direction.
+    [[nodiscard]] std::array<glm::dvec3, 2> extreme_pair(const glm::dvec3& direction);
+    // Calls `visit` with the input coordinates of every point p with |dot(direction, p − center)| ≥ reach, and of some
+    // others. `center` and `reach` are in input coordinates.
+    void visit_beyond(const glm::dvec3& direction, const glm::dvec3& center, double reach,
+                      FunctionRef<void(const glm::dvec3&)> visit);
 
   private:
-    [[nodiscard]] std::array<glm::dvec3, 2> extreme_pair(const glm::dvec3& direction) const;
+    template <class T>
+    Result<void> assign_points(const T* points, std::size_t count);
+    [[nodiscard]] glm::dvec3 world(std::size_t i) const {
+        return floats_ ? glm::dvec3(glm::vec3(floats_[3 * i], floats_[3 * i + 1], floats_[3 * i + 2]))
+                       : glm::dvec3(doubles_[3 * i], doubles_[3 * i + 1], doubles_[3 * i + 2]);
+    }
+    [[nodiscard]] glm::dvec3 normalised(std::size_t i) const { return (world(i) - origin_) * scale_; }
 
-    Vector<glm::dvec3> points_;
+    const float* floats_ = nullptr;
+    const double* doubles_ = nullptr;
+    std::size_t count_ = 0, chunks_ = 0;
+    Vector<float> float_bounds_;
+    Vector<double> double_bounds_, boxes_, middle_, reach_;
     Aabb bounds_;
     glm::dvec3 origin_{0.0};
-    double unit_ = 1.0;
+    double unit_ = 1.0, scale_ = 1.0;
 };
 
 [[nodiscard]] inline bool lexicographic(const glm::dvec3& a, const glm::dvec3& b) {

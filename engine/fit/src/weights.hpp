@@ -14,17 +14,21 @@ struct Weights {
     }
 };
 
-// For lengths measured in `unit`s: V scales with its cube, F with its square. Normalised so that the largest weight is
-// 1: the minimiser does not change, and nothing over- or underflows later.
-[[nodiscard]] inline Weights normalised_weights(const measure::Criterion& criterion, double unit) {
-    // Divided by unit: α unit², 2β unit, πγ.
-    Weights w{criterion.volume_weight * unit * unit, 2.0 * criterion.area_weight * unit,
-              std::numbers::pi * criterion.mean_curvature_weight};
+struct NormalisedWeights {
+    Weights weights;
+    double scale;  // criterion of a box = scale · value of its edges in units
+};
+
+// For lengths measured in `unit`s: V scales with its cube, F with its square. Divided by the largest weight, which
+// changes no minimiser and keeps later products away from overflow.
+[[nodiscard]] inline NormalisedWeights normalised_weights(const measure::Criterion& criterion, double unit) {
+    const Weights w{criterion.volume_weight * unit * unit, 2.0 * criterion.area_weight * unit,
+                    std::numbers::pi * criterion.mean_curvature_weight};
     double largest = w.product > w.pairs ? w.product : w.pairs;
     if (w.sum > largest) largest = w.sum;
-    if (!(largest > 0.0))
-        return {criterion.volume_weight > 0.0 ? 1.0 : 0.0, criterion.area_weight > 0.0 ? 1.0 : 0.0, w.sum};
-    return {w.product / largest, w.pairs / largest, w.sum / largest};
+    if (largest > 0.0) return {{w.product / largest, w.pairs / largest, w.sum / largest}, largest * unit};
+    // Every weight underflowed: any criterion that asks for the same measures will do.
+    return {{criterion.volume_weight > 0.0 ? 1.0 : 0.0, criterion.area_weight > 0.0 ? 1.0 : 0.0, 0.0}, 0.0};
 }
 
 }  // namespace crofton::fit

@@ -1,0 +1,31 @@
+// Passes over many points, compiled for every instruction set and chosen at run time.
+#pragma once
+#include <cstddef>
+
+namespace crofton::fit::kernels {
+
+inline constexpr std::size_t kChunk = 64;  // points summarised by one box
+
+// Per chunk of kChunk points (x, y, z interleaved): minima and maxima of each coordinate, in arrays of one entry a
+// chunk.
+template <class T>
+struct ChunkBounds {
+    T* low[3];
+    T* high[3];
+};
+
+// Returns false if some coordinate is NaN or larger than `limit` in magnitude; the bounds are then of no use.
+[[nodiscard]] bool chunk_bounds(const float* points, std::size_t count, float limit, const ChunkBounds<float>& out);
+[[nodiscard]] bool chunk_bounds(const double* points, std::size_t count, double limit, const ChunkBounds<double>& out);
+
+// Boxes by centre and half size, one array per coordinate.
+struct Boxes {
+    const double* center[3];
+    const double* half[3];
+};
+
+// middle[i] = dot(direction, center_i), reach[i] = dot(|direction|, half_i): box i spans middle ± reach along the
+// direction.
+void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach);
+
+}  // namespace crofton::fit::kernels

@@ -1,0 +1,14 @@
+#include <crofton/fit/exact.hpp>
+
+#include "fitter.hpp"
+
+namespace crofton::fit {
+
+Result<ExactFit> fit_exact(std::span<const glm::vec3> points, const ExactOptions& options) {
+    return Fitter().exact(points, options);
+}
+Result<ExactFit> fit_exact(std::span<const glm::dvec3> points, const ExactOptions& options) {
+    return Fitter().exact(points, options);
+}
+
+}  // namespace crofton::fit

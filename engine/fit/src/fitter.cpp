@@ -1,0 +1,138 @@
+#include "fitter.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "enclose.hpp"
+#include "polish.hpp"
+
+namespace crofton::fit {
+namespace {
+
+// Half of the directions to the faces, edges and corners of a cube: the 26-DOP.
+constexpr glm::dvec3 kDirections[] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1},  {1, 0, -1},
+                                      {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+
+// Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
+constexpr double kFlat = 1e-13;
+
+class Deadline {
+  public:
+    explicit Deadline(double seconds) : seconds_(seconds) {}
+    [[nodiscard]] bool passed() const {
+        if (seconds_ == std::numeric_limits<double>::infinity()) return false;
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() >= seconds_;
+    }
+
+  private:
+    double seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void Fitter::gather(const Weights& weights, std::size_t frames) {
+    subset_.clear();
+    for (const glm::dvec3& direction : kDirections) {
+        const auto pair = cloud_.extreme_pair(direction);
+        subset_.insert(subset_.end(), pair.begin(), pair.end());
+    }
+    make_canonical(subset_);
+    frames_.assign(1, glm::dmat3(1.0));
+    tetrahedral_frames(subset_, frames_);
+    candidates_.clear();
+    for (const glm::dmat3& frame : frames_) candidates_.push_back({frame, value_of(weights, subset_, frame)});
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.value < b.value; });
+    if (candidates_.size() > frames) candidates_.resize(frames);
+}
+
+Weights Fitter::effective(const Weights& weights) {
+    if (weights.pairs + weights.sum > 0.0) return weights;
+    Weights area{0.0, 1.0, 0.0};
+    gather(weights, 1);
+    return candidates_[0].value <= kFlat ? area : weights;
+}
+
+// Local optima on a growing subset: fit the subset, add what the box leaves outside, go on until it leaves nothing.
+Candidate Fitter::local(const Weights& weights, std::size_t starts, int rounds, bool slide) {
+    gather(weights, starts);
+    Candidate best;
+    best.value = std::numeric_limits<double>::infinity();
+    for (Candidate& candidate : candidates_)
+        for (int round = 0; round < rounds; ++round) {
+            descend(weights, subset_, candidate, buffers_);
+            if (slide) polish(weights, subset_, candidate, buffers_);
+            const Supports supports = cloud_.supports(candidate.axes);
+            const double value = value_of(weights, supports, candidate.axes);
+            if (value < best.value) best = {candidate.axes, value};
+            if (value <= candidate.value * (1.0 + 1e-12)) break;
+            subset_.insert(subset_.end(), supports.begin(), supports.end());
+            make_canonical(subset_);
+        }
+    return best;
+}
+
+SearchResult Fitter::global(const Weights& weights, const SearchLimits& limits) {
+    gather(weights, 1);
+    return branch_and_bound(cloud_, weights, subset_, candidates_[0].axes, limits, buffers_);
+}
+
+template <class Point>
+Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
+    if (options.quality == Quality::exact) {
+        ExactOptions exact_options;
+        exact_options.criterion = options.criterion;
+        return exact(points, exact_options).map([](const ExactFit& fit) { return fit.box; });
+    }
+    if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+    if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
+    const Weights weights = effective(normalised_weights(options.criterion, cloud_.unit()).weights);
+    const bool fast = options.quality == Quality::fast;
+    return enclose(cloud_, rounded(local(weights, fast ? 1 : 4, fast ? 2 : 8, !fast).axes));
+}
+
+template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const Options&);
+template Result<Obb> Fitter::fit(std::span<const glm::dvec3>, const Options&);
+
+template <class Point>
+Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions& options) {
+    if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+    if (!(options.gap >= 1e-12 && options.gap < 1.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the gap must lie in [1e-12, 1)");
+    if (!(options.time_budget_seconds >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the time budget is negative or NaN");
+    if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
+    const NormalisedWeights normalised = normalised_weights(options.criterion, cloud_.unit());
+    const Weights weights = effective(normalised.weights);
+    const bool flat = weights.product == 0.0 && normalised.weights.product > 0.0 && normalised.weights.pairs == 0.0 &&
+                      normalised.weights.sum == 0.0;
+
+    const Deadline deadline(options.time_budget_seconds);
+    const auto keep_going = [&](double value, double bound, std::uint64_t cells) {
+        if (options.progress != nullptr &&
+            !(*options.progress)({value * normalised.scale, flat ? 0.0 : bound * normalised.scale, cells}))
+            return false;
+        return !deadline.passed();
+    };
+    const FunctionRef<bool(double, double, std::uint64_t)> go_on(keep_going);
+    SearchLimits limits{options.gap, options.max_cells, &go_on};
+    const SearchResult found = global(weights, limits);
+
+    ExactFit fit;
+    fit.box = enclose(cloud_, rounded(found.best.axes));
+    fit.value = options.criterion(measure::of_box(fit.box));
+    fit.lower_bound = flat ? 0.0 : std::min(found.lower_bound * normalised.scale, fit.value);
+    fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;
+    fit.complete = found.complete;
+    fit.cells = found.cells;
+    fit.subset = found.subset;
+    return fit;
+}
+
+template Result<ExactFit> Fitter::exact(std::span<const glm::vec3>, const ExactOptions&);
+template Result<ExactFit> Fitter::exact(std::span<const glm::dvec3>, const ExactOptions&);
+
+}  // namespace crofton::fit

@@ -1,0 +1,11 @@
+// From a good frame to the flush optimum beside it.
+#pragma once
+#include "local_search.hpp"
+
+namespace crofton::fit {
+
+// Slides along the one-parameter families of frames that keep two adjacent faces flush with their edges (O'Rourke 1985,
+// THEORY.md section 3) while that lowers the value, a few degrees at most each time. The value never rises.
+void polish(const Weights& weights, std::span<const glm::dvec3> points, Candidate& candidate, SearchBuffers& buffers);
+
+}  // namespace crofton::fit
