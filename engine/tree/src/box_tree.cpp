@@ -52,12 +52,14 @@ void BoxTree::rebuild(Executor&) {
     nodes_.resize(topology.nodes.size());
     ranges_.resize(topology.nodes.size());
     leaves_.resize(topology.leaves.size());
+    leaf_counts_.resize(topology.leaves.size());
     slot_items_.assign(topology.leaves.size() * kWidth, kNone);
     for (LeafId l = 0; l < leaves_.size(); ++l) {
         const Topology::LeafRecord& record = topology.leaves[l];
         Leaf& leaf = leaves_[l];
         clear(leaf);
         leaf.count = record.count;
+        leaf_counts_[l] = static_cast<std::uint8_t>(record.count);
         leaf.parent = record.parent;
         leaf.lane_in_parent = record.lane_in_parent;
         Aabb bounds;

@@ -11,20 +11,27 @@ namespace crofton::cull {
 
 class VisibleSet {
   public:
-    // The items seen, in the order that the query asked for, each once; verdicts()[i], straddling or inside, is that of
-    // ids()[i].
+    // The items seen, each once: in Order::ascending by id, in Order::tree those inside first, then those straddling,
+    // each part in the tree's order.
     [[nodiscard]] std::span<const tree::ItemId> ids() const { return std::span(ids_).first(size_); }
-    [[nodiscard]] std::span<const Verdict> verdicts() const { return std::span(verdicts_).first(size_); }
     [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t inside_count() const { return inside_; }
+    // In Order::ascending: verdicts()[i], straddling or inside, is that of ids()[i]. In Order::tree inside_count() says
+    // it.
+    [[nodiscard]] std::span<const Verdict> verdicts() const {
+        return std::span(verdicts_).first(verdicts_.empty() ? 0 : size_);
+    }
     [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
   private:
     friend class Query;
     Vector<tree::ItemId> ids_;  // as long as its largest use so far
+    Vector<tree::ItemId> straddling_;
+    Vector<std::uint32_t> undecided_;
     Vector<Verdict> verdicts_;
     Vector<std::uint64_t> bits_;
     Vector<std::uint64_t> stack_;
-    std::size_t size_ = 0;
+    std::size_t size_ = 0, inside_ = 0;
     Statistics statistics_;
 };
 

@@ -36,7 +36,10 @@ class BoxTree {
     [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
     [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_; }      // kNone in empty slots
     [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return item_slots_[item]; }  // kNone once removed
-    [[nodiscard]] LeafRange leaf_range(NodeId node) const { return ranges_[node]; }
+    [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const {
+        return leaf_counts_;
+    }                                                                                 // leaves()[i].count, densely
+    [[nodiscard]] std::span<const LeafRange> leaf_ranges() const { return ranges_; }  // by NodeId
     [[nodiscard]] unsigned height() const { return height_; }  // nodes on the longest path from the root to a leaf
 
     // The bound of child `lane` of a node, as the exact box that the stored floats stand for, rounded outward.
@@ -55,6 +58,7 @@ class BoxTree {
     Vector<Node> nodes_;
     Vector<LeafRange> ranges_;
     Vector<Leaf> leaves_;
+    Vector<std::uint8_t> leaf_counts_;
     Vector<ItemId> slot_items_;
     std::size_t item_count_ = 0;
     unsigned height_ = 1;

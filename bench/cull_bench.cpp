@@ -1,0 +1,155 @@
+// Culling beside Bullet's dynamic AABB tree and beside the plainest loop over AABBs. Compare within one run.
+#include <benchmark/benchmark.h>
+
+#include <crofton/cull/cull.hpp>
+#include <crofton/tree/box_tree.hpp>
+#include <map>
+
+#include "cull_crowd.hpp"
+#if defined(CROFTON_HAVE_BULLET)
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+#endif
+
+namespace {
+
+using namespace crofton;
+
+const std::vector<Obb>& boxes_of(std::int64_t count) {
+    static std::map<std::int64_t, std::vector<Obb>> made;
+    auto& boxes = made[count];
+    if (boxes.empty()) boxes = bench::crowd(static_cast<std::size_t>(count));
+    return boxes;
+}
+
+const tree::BoxTree& tree_of(std::int64_t count) {
+    static std::map<std::int64_t, tree::BoxTree> made;
+    auto found = made.find(count);
+    if (found == made.end()) found = made.emplace(count, *tree::BoxTree::build(boxes_of(count))).first;
+    return found->second;
+}
+
+void report(benchmark::State& state, std::size_t visible) {
+    state.counters["visible"] = static_cast<double>(visible);
+    state.counters["ns_per_box"] =
+        benchmark::Counter(static_cast<double>(state.range(0)) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, double share) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {mode, order});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+    state.counters["boxes_tested"] = static_cast<double>(visible.statistics().boxes_tested);
+    state.counters["nodes_tested"] = static_cast<double>(visible.statistics().nodes_tested);
+    state.counters["exact_tests"] = static_cast<double>(visible.statistics().exact_tests);
+    state.counters["straddling"] = static_cast<double>(visible.statistics().straddling);
+}
+BENCHMARK_CAPTURE(tree_cull, conservative, cull::Mode::conservative, cull::Order::tree, 0.2)->RangeMultiplier(10)->Range(10000, 1000000);
+BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)->RangeMultiplier(10)->Range(10000, 1000000);
+BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::Mode::exact, cull::Order::ascending, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tree, 0.01)->Arg(1000000);
+
+void tree_build(benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(tree::BoxTree::build(boxes_of(state.range(0)))->item_count());
+    report(state, 0);
+}
+BENCHMARK(tree_build)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+// Axis-aligned boxes around ours, in float arrays, each against the six planes by its nearest corner: what a compiler makes of
+// the plainest loop. Writes one byte per box.
+void aabb_loop(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    const std::size_t n = boxes.size();
+    std::vector<float> center[3], half[3];
+    for (int j = 0; j < 3; ++j) center[j].resize(n), half[j].resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Aabb box = aabb_of(boxes[i]);
+        for (int j = 0; j < 3; ++j) {
+            center[j][i] = static_cast<float>(box.center()[j] - view.frustum.origin[j]);
+            half[j][i] = static_cast<float>(box.half_extents()[j]);
+        }
+    }
+    std::vector<unsigned char> seen(n);
+    for (auto _ : state) {
+        float p[6][7];
+        for (unsigned k = 0; k < 6; ++k) {
+            const Plane& plane = view.frustum.planes[k];
+            for (int j = 0; j < 3; ++j) {
+                p[k][j] = static_cast<float>(plane.normal[j]);
+                p[k][4 + j] = std::fabs(p[k][j]);
+            }
+            p[k][3] = static_cast<float>(plane.offset);
+        }
+        const float *cx = center[0].data(), *cy = center[1].data(), *cz = center[2].data();
+        const float *hx = half[0].data(), *hy = half[1].data(), *hz = half[2].data();
+        unsigned char* out = seen.data();
+        for (std::size_t i = 0; i < n; ++i) {
+            float least = 1e30f;
+            for (unsigned k = 0; k < 6; ++k) {
+                const float top = p[k][0] * cx[i] + p[k][1] * cy[i] + p[k][2] * cz[i] + p[k][3] + p[k][4] * hx[i] +
+                                  p[k][5] * hy[i] + p[k][6] * hz[i];
+                least = top < least ? top : least;
+            }
+            out[i] = least >= 0.0f;
+        }
+        benchmark::DoNotOptimize(seen.data());
+        benchmark::ClobberMemory();
+    }
+    std::size_t visible = 0;
+    for (const unsigned char s : seen) visible += s;
+    report(state, visible);
+}
+BENCHMARK(aabb_loop)->Arg(10000)->Arg(1000000);
+
+#if defined(CROFTON_HAVE_BULLET)
+struct BulletIds : btDbvt::ICollide {
+    std::vector<std::uint32_t> ids;
+    void Process(const btDbvtNode* leaf) { ids.push_back(static_cast<std::uint32_t>(leaf->dataAsInt)); }
+};
+
+struct BulletTree {
+    btDbvt tree;
+    std::vector<btDbvtNode*> leaves;
+    explicit BulletTree(const std::vector<Obb>& boxes) {
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            leaves.push_back(tree.insert(volume_of(boxes[i]), nullptr));
+            leaves.back()->dataAsInt = static_cast<int>(i);
+        }
+        tree.optimizeTopDown();
+    }
+    static btDbvtVolume volume_of(const Obb& box) {
+        const Aabb b = aabb_of(box);
+        const auto vector = [](const glm::dvec3& v) { return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z)); };
+        return btDbvtVolume::FromMM(vector(b.min), vector(b.max));
+    }
+};
+
+void bullet_cull(benchmark::State& state, double share) {
+    const BulletTree bullet(boxes_of(state.range(0)));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
+    btVector3 normals[6];
+    btScalar offsets[6];
+    for (unsigned k = 0; k < 6; ++k) {
+        const Plane& plane = view.frustum.planes[k];
+        normals[k] = btVector3(btScalar(plane.normal.x), btScalar(plane.normal.y), btScalar(plane.normal.z));
+        offsets[k] = btScalar(plane.offset - glm::dot(plane.normal, view.frustum.origin));
+    }
+    BulletIds found;
+    for (auto _ : state) {
+        found.ids.clear();
+        btDbvt::collideKDOP(bullet.tree.m_root, normals, offsets, 6, found);
+        benchmark::DoNotOptimize(found.ids.data());
+    }
+    report(state, found.ids.size());
+}
+BENCHMARK_CAPTURE(bullet_cull, 20_percent, 0.2)->RangeMultiplier(10)->Range(10000, 1000000);
+BENCHMARK_CAPTURE(bullet_cull, 1_percent, 0.01)->Arg(1000000);
+#endif
+
+}  // namespace
+

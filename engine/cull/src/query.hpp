@@ -1,0 +1,31 @@
+// One query at work in a VisibleSet's buffers.
+#pragma once
+#include <crofton/cull/cull.hpp>
+
+#include "tree_kernel.hpp"
+
+namespace crofton::cull {
+
+[[nodiscard]] KernelView kernel_view_of(const View& view);
+
+class Query {
+  public:
+    Query(const View& view, VisibleSet& visible, const Options& options)
+        : view_(view), visible_(visible), options_(options) {}
+
+    void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
+    void run(const tree::BoxTree& tree);
+
+  private:
+    void start(std::size_t items);
+    void run_all(const tree::BoxTree& tree);
+    void decide(const tree::BoxTree& tree, TreeKernelOutput& output);
+    void finish(std::size_t inside, std::size_t straddling, std::size_t items);
+    void sort(std::size_t inside, std::size_t straddling, std::size_t items);
+
+    const View& view_;
+    VisibleSet& visible_;
+    const Options& options_;
+};
+
+}  // namespace crofton::cull

@@ -1,0 +1,123 @@
+#include "tree_kernel.hpp"
+
+#include <crofton/cull/statistics.hpp>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tree_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "block_tests-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+namespace {
+
+// In a stack entry's planes: everything below is inside, and in a layer that the view sees.
+constexpr std::uint32_t kWhole = 1u << 31;
+
+class Walk {
+  public:
+    Walk(const TreeKernelInput& input, TreeKernelOutput& output) : in_(input), out_(output) {}
+
+    void run(std::size_t stack_size) {
+        while (stack_size > 0) {
+            const std::uint64_t entry = out_.stack[--stack_size];
+            const auto child = static_cast<std::uint32_t>(entry >> 32);
+            const auto planes = static_cast<std::uint32_t>(entry);
+            if (planes & kWhole && accept_whole(child)) continue;
+            if (child & tree::kLeafBit)
+                visit_leaf(child & ~tree::kLeafBit, planes);
+            else
+                stack_size = visit_node(child, planes, stack_size);
+        }
+    }
+
+  private:
+    std::size_t visit_node(std::uint32_t id, std::uint32_t planes, std::size_t stack_size) {
+        const tree::Node& node = in_.nodes[id];
+        const NodeTest test = test_node(*in_.view, node, planes & ~kWhole);
+        if (kCountStatistics) out_.nodes_tested += node.count;
+        for (std::uint32_t alive = test.alive; alive;) {
+            const unsigned lane = 31u - static_cast<unsigned>(hwy::Num0BitsAboveMS1Bit_Nonzero32(alive));
+            alive ^= 1u << lane;
+            const bool whole = test.planes[lane] == 0 && (node.layers_all[lane] & in_.view->layer_mask);
+            out_.stack[stack_size++] = std::uint64_t{node.child[lane]} << 32 | (whole ? kWhole : test.planes[lane]);
+        }
+        return stack_size;
+    }
+
+    void copy_leaf(std::uint32_t leaf) {
+        const DU du;
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
+            hn::StoreU(hn::Load(du, in_.slot_items + leaf * tree::kWidth + l), du, out_.inside + out_.inside_count + l);
+        out_.inside_count += in_.leaf_counts[leaf];
+    }
+
+    // False for a node whose leaves are not consecutive.
+    bool accept_whole(std::uint32_t child) {
+        const std::size_t before = out_.inside_count;
+        if (child & tree::kLeafBit) {
+            copy_leaf(child & ~tree::kLeafBit);
+        } else {
+            const tree::LeafRange range = in_.ranges[child];
+            if (range.count == 0) return false;
+            for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) copy_leaf(leaf);
+        }
+        if (kCountStatistics) out_.accepted_whole += out_.inside_count - before;
+        return true;
+    }
+
+    template <class V>
+    static void append(const V& values, MF mask, std::uint32_t* list, std::size_t& count) {
+        const DU du;
+        const auto bits = hn::RebindMask(du, mask);
+        hn::StoreU(hn::Compress(values, bits), du, list + count);
+        count += hn::CountTrue(du, bits);
+    }
+
+    void visit_leaf(std::uint32_t id, std::uint32_t planes) {
+        const tree::Leaf& leaf = in_.leaves[id];
+        LocalPlane local[KernelView::kMaxPlanes];
+        unsigned count = 0;
+        for (std::uint32_t rest = planes & ~kWhole; rest; rest &= rest - 1)
+            local[count++] = local_plane(in_.view->planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(rest)], in_.view->origin,
+                                         leaf.origin, leaf.reach);
+        if (kCountStatistics) out_.boxes_tested += leaf.count;
+        const DU du;
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+            const LeafTest test = test_leaf(*in_.view, leaf, local, count, l, in_.exact);
+            const VU items = hn::Load(du, in_.slot_items + id * tree::kWidth + l);
+            append(items, test.inside, out_.inside, out_.inside_count);
+            append(items, test.straddling, out_.straddling, out_.straddling_count);
+            if (!hn::AllFalse(DF(), test.undecided))
+                append(hn::Iota(du, static_cast<std::uint32_t>(id * tree::kWidth + l)), test.undecided, out_.undecided,
+                       out_.undecided_count);
+        }
+    }
+
+    const TreeKernelInput& in_;
+    TreeKernelOutput& out_;
+};
+
+void RunTree(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {
+    Walk(input, output).run(stack_size);
+}
+
+}  // namespace
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::cull {
+
+HWY_EXPORT(RunTree);
+
+void run_tree_kernel(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(RunTree)(input, stack_size, output);
+}
+
+}  // namespace crofton::cull
+#endif

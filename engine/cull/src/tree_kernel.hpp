@@ -1,0 +1,32 @@
+// One view against a box tree, in vectors: what a filter can decide, and the list of what it cannot.
+#pragma once
+#include <crofton/tree/layout.hpp>
+
+#include "kernel_view.hpp"
+
+namespace crofton::cull {
+
+struct TreeKernelInput {
+    const tree::Node* nodes;
+    const tree::Leaf* leaves;
+    const tree::LeafRange* ranges;
+    const std::uint8_t* leaf_counts;
+    const tree::ItemId* slot_items;
+    const KernelView* view;
+    bool exact;  // boxes that straddle two planes or more may yet be outside: undecided
+};
+
+// The arrays have room for all items and 16 more; `stack` for 16 entries a level.
+struct TreeKernelOutput {
+    tree::ItemId* inside;
+    tree::ItemId* straddling;
+    std::uint32_t* undecided;  // slots
+    std::uint64_t* stack;      // child << 32 | planes still to test
+    std::size_t inside_count, straddling_count, undecided_count;
+    std::uint64_t nodes_tested, boxes_tested, accepted_whole;
+};
+
+// Handles the children that `stack_size` entries name, and all below them.
+void run_tree_kernel(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output);
+
+}  // namespace crofton::cull
