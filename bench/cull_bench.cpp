@@ -31,7 +31,8 @@ const tree::BoxTree& tree_of(std::int64_t count) {
 void report(benchmark::State& state, std::size_t visible) {
     state.counters["visible"] = static_cast<double>(visible);
     state.counters["ns_per_box"] =
-        benchmark::Counter(static_cast<double>(state.range(0)) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+        benchmark::Counter(static_cast<double>(state.range(0)) * 1e-9,
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, double share) {
@@ -48,8 +49,12 @@ void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, doub
     state.counters["exact_tests"] = static_cast<double>(visible.statistics().exact_tests);
     state.counters["straddling"] = static_cast<double>(visible.statistics().straddling);
 }
-BENCHMARK_CAPTURE(tree_cull, conservative, cull::Mode::conservative, cull::Order::tree, 0.2)->RangeMultiplier(10)->Range(10000, 1000000);
-BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)->RangeMultiplier(10)->Range(10000, 1000000);
+BENCHMARK_CAPTURE(tree_cull, conservative, cull::Mode::conservative, cull::Order::tree, 0.2)
+    ->RangeMultiplier(10)
+    ->Range(10000, 1000000);
+BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)
+    ->RangeMultiplier(10)
+    ->Range(10000, 1000000);
 BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::Mode::exact, cull::Order::ascending, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tree, 0.01)->Arg(1000000);
 
@@ -59,8 +64,8 @@ void tree_build(benchmark::State& state) {
 }
 BENCHMARK(tree_build)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
-// Axis-aligned boxes around ours, in float arrays, each against the six planes by its nearest corner: what a compiler makes of
-// the plainest loop. Writes one byte per box.
+// Axis-aligned boxes around ours, in float arrays, each against the six planes by its nearest corner: what a compiler
+// makes of the plainest loop. Writes one byte per box.
 void aabb_loop(benchmark::State& state) {
     const auto& boxes = boxes_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes, 0.2);

@@ -1,5 +1,5 @@
-// The crowd that culling is measured on: cubes of half-extent 0.1–0.5 of the mean spacing 1, turned at random, and cameras that
-// see a given share of them.
+// The crowd that culling is measured on: cubes of half-extent 0.1–0.5 of the mean spacing 1, turned at random, and
+// cameras that see a given share of them.
 #pragma once
 #include <cmath>
 #include <crofton/cull/cull.hpp>
@@ -18,15 +18,16 @@ inline std::vector<Obb> crowd(std::size_t count) {
     std::vector<Obb> boxes(count);
     for (Obb& box : boxes) {
         box.center = side * glm::dvec3(unit(random), unit(random), unit(random));
-        const glm::dquat turn = glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
+        const glm::dquat turn =
+            glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
         box.axes = glm::mat3(glm::mat3_cast(turn));
         for (int k = 0; k < 3; ++k) box.half_extents[k] = static_cast<float>(0.1 + 0.4 * unit(random));
     }
     return boxes;
 }
 
-// Looks in from the middle of one face of the domain, a little askew; the angle is chosen so that the frustum sees `share` of the
-// boxes' centres.
+// Looks in from the middle of one face of the domain, a little askew; the angle is chosen so that the frustum sees
+// `share` of the boxes' centres.
 inline cull::View view_of_share(const std::vector<Obb>& boxes, double share) {
     const double side = std::cbrt(static_cast<double>(boxes.size()));
     Camera camera;

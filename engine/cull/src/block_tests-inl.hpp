@@ -35,41 +35,52 @@ struct NodeTest {
     alignas(64) std::uint32_t planes[16];  // per lane, those of the planes that it is not certainly inside of
 };
 
+HWY_INLINE VF plane_value(const KernelPlane& plane, VF x, VF y, VF z, float offset) {
+    const DF d;
+    return hn::MulAdd(
+        hn::Set(d, plane.normal_f[0]), x,
+        hn::MulAdd(hn::Set(d, plane.normal_f[1]), y, hn::MulAdd(hn::Set(d, plane.normal_f[2]), z, hn::Set(d, offset))));
+}
+
+HWY_INLINE MF shares_layer(const KernelView& view, const std::uint32_t* layers) {
+    const DU du;
+    const VU common = hn::And(hn::Load(du, layers), hn::Set(du, view.layer_mask));
+    return hn::RebindMask(DF(), hn::Ne(common, hn::Zero(du)));  // empty lanes have no layers
+}
+
 HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, std::uint32_t planes) {
     const DF d;
     const DU du;
     NodeTest result;
     result.alive = 0;
+    const LocalOrigin at = local_origin(view, node.origin, node.reach);
     LocalPlane local[KernelView::kMaxPlanes];
-    unsigned index[KernelView::kMaxPlanes], count = 0;
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
-        index[count] = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-        local[count] = local_plane(view.planes[index[count]], view.origin, node.origin, node.reach);
-        ++count;
+        const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+        local[i] = local_plane(view.planes[i], at);
     }
     for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
         const VF x = hn::Load(d, node.center[0] + l), y = hn::Load(d, node.center[1] + l),
                  z = hn::Load(d, node.center[2] + l);
         const VF hx = hn::Load(d, node.half[0] + l), hy = hn::Load(d, node.half[1] + l),
                  hz = hn::Load(d, node.half[2] + l);
-        MF alive = hn::RebindMask(
-            d, hn::Ne(hn::And(hn::Load(du, node.layers_any + l), hn::Set(du, view.layer_mask)), hn::Zero(du)));
+        MF alive = shares_layer(view, node.layers_any + l);
         VU straddled = hn::Set(du, planes);
-        for (unsigned i = 0; i < count; ++i) {
-            const VF nx = hn::Set(d, local[i].normal[0]), ny = hn::Set(d, local[i].normal[1]),
-                     nz = hn::Set(d, local[i].normal[2]);
-            const VF middle = hn::MulAdd(nx, x, hn::MulAdd(ny, y, hn::MulAdd(nz, z, hn::Set(d, local[i].offset))));
-            const VF reach = hn::MulAdd(hn::Abs(nx), hx, hn::MulAdd(hn::Abs(ny), hy, hn::Mul(hn::Abs(nz), hz)));
-            const VF slack = hn::Set(d, local[i].slack);
-            alive = hn::And(alive, hn::Ge(hn::Add(middle, reach), hn::Neg(slack)));
-            const MF inside = hn::Ge(hn::Sub(middle, reach), slack);
-            straddled = hn::IfThenElse(hn::RebindMask(du, inside), hn::AndNot(hn::Set(du, 1u << index[i]), straddled),
-                                       straddled);
+        for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+            const KernelPlane& plane = view.planes[i];
+            const VF middle = plane_value(plane, x, y, z, local[i].offset);
+            const VF reach = hn::MulAdd(hn::Set(d, std::fabs(plane.normal_f[0])), hx,
+                                        hn::MulAdd(hn::Set(d, std::fabs(plane.normal_f[1])), hy,
+                                                   hn::Mul(hn::Set(d, std::fabs(plane.normal_f[2])), hz)));
+            alive = hn::And(alive, hn::Ge(hn::Add(middle, reach), hn::Set(d, -local[i].slack)));
+            const MF inside = hn::Ge(hn::Sub(middle, reach), hn::Set(d, local[i].slack));
+            const VU without = hn::And(straddled, hn::Set(du, ~(1u << i)));
+            straddled = hn::IfThenElse(hn::RebindMask(du, inside), without, straddled);
         }
         hn::Store(straddled, du, result.planes + l);
         result.alive |= bits_of(alive) << l;
     }
-    result.alive &= (1u << node.count) - 1;  // count ≤ 16
     return result;
 }
 
@@ -80,34 +91,66 @@ struct LeafTest {
     MF undecided;   // the rest of those that are not certainly outside
 };
 
-HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, const LocalPlane* local,
-                              unsigned plane_count, std::size_t l, bool exact) {
-    const DF d;
-    const DU du;
-    const DI di;
-    const D16 d16;
-    const VF x = hn::Load(d, leaf.x + l), y = hn::Load(d, leaf.y + l), z = hn::Load(d, leaf.z + l);
-    const VF unit = hn::Mul(hn::Load(d, leaf.radius + l), hn::Set(d, tree::kEdgeUnit));
+// The boxes of a leaf in floats.
+struct LeafBoxes {
+    VF x, y, z, unit, edge_slack;
     VF edge[9];
-    for (unsigned i = 0; i < 9; ++i) edge[i] = hn::ConvertTo(d, hn::PromoteTo(di, hn::Load(d16, leaf.edge[i] + l)));
-    // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
-    const VF edge_slack = hn::Mul(unit, hn::Set(d, 6.0f));
-    const MF present = hn::And(
-        hn::FirstN(d, leaf.count > l ? leaf.count - l : 0),
-        hn::RebindMask(d, hn::Ne(hn::And(hn::Load(du, leaf.layers + l), hn::Set(du, view.layer_mask)), hn::Zero(du))));
-    MF maybe = present, passes = present, center = present;
+    MF present;
+
+    HWY_INLINE LeafBoxes(const KernelView& view, const tree::Leaf& leaf, std::size_t l) {
+        const DF d;
+        x = hn::Load(d, leaf.x + l);
+        y = hn::Load(d, leaf.y + l);
+        z = hn::Load(d, leaf.z + l);
+        unit = hn::Mul(hn::Load(d, leaf.radius + l), hn::Set(d, tree::kEdgeUnit));
+        // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums'
+        // rounding.
+        edge_slack = hn::Mul(unit, hn::Set(d, 6.0f));
+        for (unsigned i = 0; i < 9; ++i)
+            edge[i] = hn::ConvertTo(d, hn::PromoteTo(DI(), hn::Load(D16(), leaf.edge[i] + l)));
+        present = shares_layer(view, leaf.layers + l);
+    }
+
+    HWY_INLINE VF reach(const KernelPlane& plane) const {
+        const DF d;
+        const VF nx = hn::Set(d, plane.normal_f[0]), ny = hn::Set(d, plane.normal_f[1]),
+                 nz = hn::Set(d, plane.normal_f[2]);
+        VF sum = hn::Abs(hn::MulAdd(nx, edge[0], hn::MulAdd(ny, edge[1], hn::Mul(nz, edge[2]))));
+        for (unsigned k = 3; k < 9; k += 3)
+            sum = hn::Add(sum, hn::Abs(hn::MulAdd(nx, edge[k], hn::MulAdd(ny, edge[k + 1], hn::Mul(nz, edge[k + 2])))));
+        return hn::Mul(sum, unit);
+    }
+};
+
+// Most leaves that cross a frustum cross one plane; then a box that straddles it meets the frustum for certain.
+HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, const KernelPlane& plane,
+                              LocalPlane local) {
+    const DF d;
+    const LeafBoxes boxes(view, leaf, l);
+    const VF middle = plane_value(plane, boxes.x, boxes.y, boxes.z, local.offset);
+    const VF reach = boxes.reach(plane);
+    const VF slack = hn::Add(boxes.edge_slack, hn::Set(d, local.slack));
+    const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
+    LeafTest result;
+    result.inside = hn::And(boxes.present, hn::Ge(bottom, slack));
+    result.straddling = hn::And(boxes.present, hn::And(hn::Ge(top, slack), hn::Lt(bottom, hn::Neg(slack))));
+    const MF maybe = hn::And(boxes.present, hn::Ge(top, hn::Neg(slack)));
+    result.undecided = hn::AndNot(hn::Or(result.inside, result.straddling), maybe);
+    return result;
+}
+
+HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, std::uint32_t planes,
+                              const LocalPlane* local, bool exact) {
+    const DF d;
+    const LeafBoxes boxes(view, leaf, l);
     const MF none = hn::FirstN(d, 0);
+    MF maybe = boxes.present, passes = boxes.present, center = boxes.present;
     MF crosses = none, open_once = none, open_twice = none;
-    for (unsigned i = 0; i < plane_count; ++i) {
-        const VF nx = hn::Set(d, local[i].normal[0]), ny = hn::Set(d, local[i].normal[1]),
-                 nz = hn::Set(d, local[i].normal[2]);
-        const VF middle = hn::MulAdd(nx, x, hn::MulAdd(ny, y, hn::MulAdd(nz, z, hn::Set(d, local[i].offset))));
-        VF reach = hn::Zero(d);
-        for (unsigned k = 0; k < 9; k += 3)
-            reach =
-                hn::Add(reach, hn::Abs(hn::MulAdd(nx, edge[k], hn::MulAdd(ny, edge[k + 1], hn::Mul(nz, edge[k + 2])))));
-        reach = hn::Mul(reach, unit);
-        const VF slack = hn::Add(edge_slack, hn::Set(d, local[i].slack));
+    for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+        const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+        const VF middle = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
+        const VF reach = boxes.reach(view.planes[i]);
+        const VF slack = hn::Add(boxes.edge_slack, hn::Set(d, local[i].slack));
         const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
         const MF open = hn::Lt(bottom, slack);
         maybe = hn::And(maybe, hn::Ge(top, hn::Neg(slack)));
@@ -118,7 +161,7 @@ HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, co
         open_once = hn::Or(open_once, open);
     }
     LeafTest result;
-    result.inside = hn::AndNot(open_once, present);
+    result.inside = hn::AndNot(open_once, boxes.present);
     result.straddling = hn::And(passes, crosses);
     // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
     if (exact) result.straddling = hn::And(result.straddling, hn::Or(hn::Not(open_twice), center));

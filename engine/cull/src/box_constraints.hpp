@@ -1,5 +1,7 @@
 // A frustum's planes as the box sees them.
 #pragma once
+#include <cmath>
+#include <crofton/cull/classify.hpp>
 #include <crofton/geometry/dyadic.hpp>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/geometry/obb.hpp>
@@ -21,7 +23,7 @@ struct Constraint {
     double base_size;
 
     // The largest and least value over the box, each within 12u · size() of the exact one (6u, and 4 more additions).
-    [[nodiscard]] double reach() const;
+    [[nodiscard]] double reach() const { return std::fabs(slope[0]) + std::fabs(slope[1]) + std::fabs(slope[2]); }
     [[nodiscard]] double size() const { return slope_size[0] + slope_size[1] + slope_size[2] + base_size; }
 };
 
@@ -30,16 +32,49 @@ inline constexpr double kRounding = 6.0;
 // Below this, underflow may have eaten bits; the exact path decides.
 inline constexpr double kTiny = 1e-200;
 
-[[nodiscard]] Constraint constraint_of(const Plane& plane, const glm::dvec3& origin, const Obb& box);
+[[nodiscard]] inline glm::dvec3 half_edge(const Obb& box, int k) {
+    return glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]);
+}
+
+[[nodiscard]] inline Constraint constraint_of(const Plane& plane, const glm::dvec3& origin, const Obb& box) {
+    const glm::dvec3& n = plane.normal;
+    Constraint result;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 edge = half_edge(box, k);
+        const double x = n.x * edge.x, y = n.y * edge.y, z = n.z * edge.z;
+        result.slope[k] = x + y + z;
+        result.slope_size[k] = std::fabs(x) + std::fabs(y) + std::fabs(z);
+    }
+    const glm::dvec3 d = box.center - origin;
+    const double x = n.x * d.x, y = n.y * d.y, z = n.z * d.z;
+    result.base = x + y + z + plane.offset;
+    result.base_size = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(plane.offset);
+    return result;
+}
 
 // Entry k of constraint (slopes 0, 1, 2, base 3), exactly.
 [[nodiscard]] Dyadic exact_entry(const Plane& plane, const glm::dvec3& origin, const Obb& box, unsigned k);
 
-// Signs of base + Σ|slope| (the box's innermost corner) and base − Σ|slope| (its outermost), exactly.
-[[nodiscard]] int innermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
-                                 const Obb& box);
-[[nodiscard]] int outermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
-                                 const Obb& box);
+// The sign of base + Σ|slope| (the box's innermost corner) or base − Σ|slope| (its outermost), exactly.
+[[nodiscard]] int exact_corner_sign(const Plane& plane, const glm::dvec3& origin, const Obb& box, bool innermost);
+
+[[nodiscard]] inline int innermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
+                                        const Obb& box) {
+    const double value = constraint.base + constraint.reach();
+    const double bound = 12.0 * kUnit * constraint.size() + kTiny;
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    return exact_corner_sign(plane, origin, box, true);
+}
+
+[[nodiscard]] inline int outermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
+                                        const Obb& box) {
+    const double value = constraint.base - constraint.reach();
+    const double bound = 12.0 * kUnit * constraint.size() + kTiny;
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    return exact_corner_sign(plane, origin, box, false);
+}
 
 // True iff box and frustum share a point, exactly, for boxes that no single plane of the frustum rejects.
 [[nodiscard]] bool meets(const Frustum& frustum, const Obb& box, const Constraint* constraints);
@@ -47,5 +82,8 @@ inline constexpr double kTiny = 1e-200;
 // Whether all numbers are finite and small enough for exact arithmetic.
 [[nodiscard]] bool is_usable(const Obb& box);
 [[nodiscard]] bool is_usable(const Frustum& frustum);
+
+// classify() for numbers that are known to be usable.
+[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode);
 
 }  // namespace crofton::cull

@@ -7,6 +7,10 @@ namespace crofton::cull {
 
 Verdict classify(const Frustum& frustum, const Obb& box, Mode mode) {
     if (!is_usable(box) || !is_usable(frustum)) return Verdict::straddling;
+    return classify_usable(frustum, box, mode);
+}
+
+Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode) {
     Constraint constraints[Frustum::kMaxPlanes];
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
         constraints[i] = constraint_of(frustum.planes[i], frustum.origin, box);
@@ -21,7 +25,9 @@ Verdict classify(const Frustum& frustum, const Obb& box, Mode mode) {
 
 void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts, Mode mode) {
     CROFTON_ASSERT(verdicts.size() == boxes.size(), "classify needs one verdict per box");
-    for (std::size_t i = 0; i < boxes.size(); ++i) verdicts[i] = classify(frustum, boxes[i], mode);
+    const bool usable = is_usable(frustum);
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        verdicts[i] = usable && is_usable(boxes[i]) ? classify_usable(frustum, boxes[i], mode) : Verdict::straddling;
 }
 
 }  // namespace crofton::cull

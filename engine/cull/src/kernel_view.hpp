@@ -1,5 +1,6 @@
 // A view as the vector kernels read it: plain numbers, no GLM.
 #pragma once
+#include <cmath>
 #include <cstdint>
 
 namespace crofton::cull {
@@ -18,27 +19,37 @@ struct KernelView {
     std::uint32_t layer_mask;
 };
 
-// A plane as seen from a block's origin o: value(x) = normal_f · x + offset for x relative to o, and the bound on what
-// that, with the reach added or taken away, is off from the exact value for |x| + box ≤ reach (sums over the axes).
-// Error, u = 2^-24: the normal's and the offset's rounding, the products' and at most seven additions' 1u each of reach
-// + |offset|, 10u in all, doubled; the offset itself is computed in double, off by at most 8 · 2^-53 of the sizes of
-// its terms.
+// A block of boxes as the view sees it: its origin relative to the view's.
+struct LocalOrigin {
+    double d[3];
+    double size;   // Σ|d|
+    double reach;  // ≥ |x| + extent, summed over the axes, of all that lies in the block
+};
+
+inline LocalOrigin local_origin(const KernelView& view, const double* origin, float reach) {
+    LocalOrigin result;
+    for (int j = 0; j < 3; ++j) result.d[j] = origin[j] - view.origin[j];
+    result.size = std::fabs(result.d[0]) + std::fabs(result.d[1]) + std::fabs(result.d[2]);
+    result.reach = static_cast<double>(reach);
+    return result;
+}
+
+// A plane as seen from the block's origin: value(x) = normal_f · x + offset, for x relative to it. `slack` bounds how
+// far that, with a box's reach added or taken away, is from the exact value. With u = 2^-24: the roundings of the
+// normal, of the offset, of the products and of at most seven additions cost u each, of reach + |offset|: 10u in all,
+// doubled here. The offset itself is computed in double: seven roundings of 2^-53 of size + |plane offset| each,
+// |normal| ≤ 1.001 per component; 2^-49.
 struct LocalPlane {
-    float normal[3];
     float offset;
     float slack;
 };
 
-inline LocalPlane local_plane(const KernelPlane& plane, const double* view_origin, const double* origin, float reach) {
-    const double dx = origin[0] - view_origin[0], dy = origin[1] - view_origin[1], dz = origin[2] - view_origin[2];
-    const double x = plane.normal[0] * dx, y = plane.normal[1] * dy, z = plane.normal[2] * dz;
-    const double offset = x + y + z + plane.offset;
-    const auto magnitude = [](double v) { return v < 0.0 ? -v : v; };
-    const double size = magnitude(x) + magnitude(y) + magnitude(z) + magnitude(plane.offset);
-    const double slack = 0x1p-49 * size + 20.0 * 0x1p-24 * (static_cast<double>(reach) + magnitude(offset)) + 1e-37;
-    return {{plane.normal_f[0], plane.normal_f[1], plane.normal_f[2]},
-            static_cast<float>(offset),
-            static_cast<float>(slack * 1.000001)};
+inline LocalPlane local_plane(const KernelPlane& plane, const LocalOrigin& at) {
+    const double offset =
+        plane.normal[0] * at.d[0] + plane.normal[1] * at.d[1] + plane.normal[2] * at.d[2] + plane.offset;
+    const double slack =
+        0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.4p-20 * (at.reach + std::fabs(offset)) + 1e-37;
+    return {static_cast<float>(offset), static_cast<float>(slack)};
 }
 
 }  // namespace crofton::cull

@@ -1,7 +1,6 @@
 // Box against convex volume, exactly: certificates in double first, vertex enumeration where they do not decide.
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "box_constraints.hpp"
 
@@ -12,24 +11,28 @@ namespace {
 // entries 6u, at most three products and additions per entry 5u, four additions and absolute values 4u.
 constexpr double kCombinationRounding = 32.0 * kUnit;
 
+struct Weighted {
+    double weight;
+    const Constraint& constraint;
+};
+
 // A combination Σ y_i · constraint_i, y ≥ 0, that is negative on the whole cube proves that no point satisfies all.
-bool separates(std::initializer_list<std::pair<double, const Constraint*>> terms) {
-    double slope[3] = {0.0, 0.0, 0.0}, base = 0.0, size = 0.0;
-    for (const auto& [y, constraint] : terms) {
-        if (!(y >= 0.0)) return false;
-        for (unsigned k = 0; k < 3; ++k) slope[k] += y * constraint->slope[k];
-        base += y * constraint->base;
-        size += y * constraint->size();
-    }
-    return base + std::fabs(slope[0]) + std::fabs(slope[1]) + std::fabs(slope[2]) <
-           -(kCombinationRounding * size + kTiny);
+template <class... Terms>
+bool separates(const Terms&... terms) {
+    if (!((terms.weight >= 0.0) && ...)) return false;
+    double reach = 0.0;
+    for (unsigned k = 0; k < 3; ++k) reach += std::fabs(((terms.weight * terms.constraint.slope[k]) + ...));
+    const double base = ((terms.weight * terms.constraint.base) + ...);
+    const double size = ((terms.weight * terms.constraint.size()) + ...);
+    return base + reach < -(kCombinationRounding * size + kTiny);
 }
 
 // The separating axes of a frustum edge against a box edge: base + Σ|slope| of (1−y) i + y j is convex and piecewise
 // linear in y, so its minimum lies where one slope vanishes.
 bool edge_separates(const Constraint& i, const Constraint& j) {
     for (unsigned k = 0; k < 3; ++k)
-        if (i.slope[k] * j.slope[k] < 0.0 && separates({{std::fabs(j.slope[k]), &i}, {std::fabs(i.slope[k]), &j}}))
+        if (i.slope[k] * j.slope[k] < 0.0 &&
+            separates(Weighted{std::fabs(j.slope[k]), i}, Weighted{std::fabs(i.slope[k]), j}))
             return true;
     return false;
 }
@@ -42,15 +45,15 @@ bool vertex_separates(const Constraint& a, const Constraint& b, const Constraint
         double y = c.slope[p] * a.slope[q] - c.slope[q] * a.slope[p];
         double z = a.slope[p] * b.slope[q] - a.slope[q] * b.slope[p];
         if (x < 0.0 || (x == 0.0 && (y < 0.0 || (y == 0.0 && z < 0.0)))) x = -x, y = -y, z = -z;
-        if (y >= 0.0 && z >= 0.0 && separates({{x, &a}, {y, &b}, {z, &c}})) return true;
+        if (y >= 0.0 && z >= 0.0 && separates(Weighted{x, a}, Weighted{y, b}, Weighted{z, c})) return true;
     }
     return false;
 }
 
 // Looks for a point of the box inside all planes by projecting onto the most violated one; true is proof.
-bool finds_witness(std::span<const Constraint> constraints) {
+bool finds_witness(std::span<const Constraint> constraints, int rounds) {
     double t[3] = {0.0, 0.0, 0.0};
-    for (int round = 0; round < 16; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         double worst = 0.0;
         const Constraint* violated = nullptr;
         for (const Constraint& c : constraints) {
@@ -191,11 +194,12 @@ bool meets(const Frustum& frustum, const Obb& box, const Constraint* constraints
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i)
         if (!(all[i].base > kRounding * kUnit * all[i].base_size + kTiny)) outside[outside_count++] = i;
     if (outside_count == 0) return true;  // the centre is inside
+    if (finds_witness(all, 3)) return true;
     // Σ y_i base_i < 0 takes a plane that the centre is outside of.
     for (std::uint32_t n = 0; n < outside_count; ++n)
         for (std::uint32_t j = 0; j < frustum.plane_count; ++j)
             if (j != outside[n] && edge_separates(all[outside[n]], all[j])) return false;
-    if (finds_witness(all)) return true;
+    if (finds_witness(all, 16)) return true;
     for (std::uint32_t n = 0; n < outside_count; ++n)
         for (std::uint32_t j = 0; j < frustum.plane_count; ++j)
             for (std::uint32_t k = j + 1; k < frustum.plane_count; ++k)

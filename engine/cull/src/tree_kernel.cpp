@@ -1,5 +1,6 @@
 #include "tree_kernel.hpp"
 
+#include <hwy/cache_control.h>
 #include <crofton/cull/statistics.hpp>
 
 #undef HWY_TARGET_INCLUDE
@@ -20,9 +21,12 @@ constexpr std::uint32_t kWhole = 1u << 31;
 
 class Walk {
   public:
-    Walk(const TreeKernelInput& input, TreeKernelOutput& output) : in_(input), out_(output) {}
+    HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output) : in_(input), out_(output) {}
 
-    void run(std::size_t stack_size) {
+    // A copy of the output travels with the walk, so that the compiler keeps it in registers.
+    [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
+
+    HWY_INLINE void run(std::size_t stack_size) {
         while (stack_size > 0) {
             const std::uint64_t entry = out_.stack[--stack_size];
             const auto child = static_cast<std::uint32_t>(entry >> 32);
@@ -36,20 +40,41 @@ class Walk {
     }
 
   private:
-    std::size_t visit_node(std::uint32_t id, std::uint32_t planes, std::size_t stack_size) {
+    HWY_INLINE std::size_t visit_node(std::uint32_t id, std::uint32_t planes, std::size_t stack_size) {
         const tree::Node& node = in_.nodes[id];
         const NodeTest test = test_node(*in_.view, node, planes & ~kWhole);
         if (kCountStatistics) out_.nodes_tested += node.count;
+        const auto entry_planes = [&](unsigned lane) {
+            const bool whole = test.planes[lane] == 0 && (node.layers_all[lane] & in_.view->layer_mask);
+            return whole ? kWhole : test.planes[lane];
+        };
+        if (node.only_leaves) {
+            for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
+                const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
+                const tree::Leaf* leaf = &in_.leaves[node.child[lane] & ~tree::kLeafBit];
+                if (test.planes[lane])
+                    for (unsigned line = 0; line < sizeof(tree::Leaf) / 64; ++line)
+                        hwy::Prefetch(reinterpret_cast<const char*>(leaf) + 64 * line);
+            }
+            for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
+                const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
+                const std::uint32_t below = entry_planes(lane);
+                if (below & kWhole)
+                    accept_whole(node.child[lane]);
+                else
+                    visit_leaf(node.child[lane] & ~tree::kLeafBit, below);
+            }
+            return stack_size;
+        }
         for (std::uint32_t alive = test.alive; alive;) {
             const unsigned lane = 31u - static_cast<unsigned>(hwy::Num0BitsAboveMS1Bit_Nonzero32(alive));
             alive ^= 1u << lane;
-            const bool whole = test.planes[lane] == 0 && (node.layers_all[lane] & in_.view->layer_mask);
-            out_.stack[stack_size++] = std::uint64_t{node.child[lane]} << 32 | (whole ? kWhole : test.planes[lane]);
+            out_.stack[stack_size++] = std::uint64_t{node.child[lane]} << 32 | entry_planes(lane);
         }
         return stack_size;
     }
 
-    void copy_leaf(std::uint32_t leaf) {
+    HWY_INLINE void copy_leaf(std::uint32_t leaf) {
         const DU du;
         for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
             hn::StoreU(hn::Load(du, in_.slot_items + leaf * tree::kWidth + l), du, out_.inside + out_.inside_count + l);
@@ -57,7 +82,7 @@ class Walk {
     }
 
     // False for a node whose leaves are not consecutive.
-    bool accept_whole(std::uint32_t child) {
+    HWY_INLINE bool accept_whole(std::uint32_t child) {
         const std::size_t before = out_.inside_count;
         if (child & tree::kLeafBit) {
             copy_leaf(child & ~tree::kLeafBit);
@@ -71,39 +96,54 @@ class Walk {
     }
 
     template <class V>
-    static void append(const V& values, MF mask, std::uint32_t* list, std::size_t& count) {
+    static HWY_INLINE void append(const V& values, MF mask, std::uint32_t* list, std::size_t& count) {
         const DU du;
         const auto bits = hn::RebindMask(du, mask);
         hn::StoreU(hn::Compress(values, bits), du, list + count);
         count += hn::CountTrue(du, bits);
     }
 
-    void visit_leaf(std::uint32_t id, std::uint32_t planes) {
-        const tree::Leaf& leaf = in_.leaves[id];
-        LocalPlane local[KernelView::kMaxPlanes];
-        unsigned count = 0;
-        for (std::uint32_t rest = planes & ~kWhole; rest; rest &= rest - 1)
-            local[count++] = local_plane(in_.view->planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(rest)], in_.view->origin,
-                                         leaf.origin, leaf.reach);
-        if (kCountStatistics) out_.boxes_tested += leaf.count;
+    HWY_INLINE void emit(std::uint32_t id, std::size_t l, const LeafTest& test) {
         const DU du;
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-            const LeafTest test = test_leaf(*in_.view, leaf, local, count, l, in_.exact);
-            const VU items = hn::Load(du, in_.slot_items + id * tree::kWidth + l);
-            append(items, test.inside, out_.inside, out_.inside_count);
-            append(items, test.straddling, out_.straddling, out_.straddling_count);
-            if (!hn::AllFalse(DF(), test.undecided))
-                append(hn::Iota(du, static_cast<std::uint32_t>(id * tree::kWidth + l)), test.undecided, out_.undecided,
-                       out_.undecided_count);
+        const VU items = hn::Load(du, in_.slot_items + id * tree::kWidth + l);
+        append(items, test.inside, out_.inside, out_.inside_count);
+        append(items, test.straddling, out_.straddling, out_.straddling_count);
+        if (HWY_UNLIKELY(!hn::AllFalse(DF(), test.undecided)))
+            append(hn::Iota(du, static_cast<std::uint32_t>(id * tree::kWidth + l)), test.undecided, out_.undecided,
+                   out_.undecided_count);
+    }
+
+    HWY_INLINE void visit_leaf(std::uint32_t id, std::uint32_t planes) {
+        const tree::Leaf& leaf = in_.leaves[id];
+        const KernelView& view = *in_.view;
+        if (kCountStatistics) out_.boxes_tested += in_.leaf_counts[id];
+        planes &= ~kWhole;
+        const LocalOrigin at = local_origin(view, leaf.origin, leaf.reach);
+        const DU du;
+        if (HWY_LIKELY(planes && !(planes & (planes - 1)))) {
+            const KernelPlane& plane = view.planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(planes)];
+            const LocalPlane local = local_plane(plane, at);
+            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
+                emit(id, l, test_leaf(view, leaf, l, plane, local));
+            return;
         }
+        LocalPlane local[KernelView::kMaxPlanes];
+        for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+            local[i] = local_plane(view.planes[i], at);
+        }
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
+            emit(id, l, test_leaf(view, leaf, l, planes, local, in_.exact));
     }
 
     const TreeKernelInput& in_;
-    TreeKernelOutput& out_;
+    TreeKernelOutput out_;
 };
 
 void RunTree(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {
-    Walk(input, output).run(stack_size);
+    Walk walk(input, output);
+    walk.run(stack_size);
+    output = walk.result();
 }
 
 }  // namespace

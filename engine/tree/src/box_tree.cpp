@@ -88,7 +88,9 @@ void BoxTree::rebuild(Executor&) {
             whole.include(bounds[lane]);
         }
         place(node.origin, whole);
+        node.only_leaves = 1;
         for (std::uint32_t lane = 0; lane < record.count; ++lane) {
+            if (!(record.child[lane] & kLeafBit)) node.only_leaves = 0;
             node.child[lane] = record.child[lane];
             write_lane(node, lane, bounds[lane]);
             update_layers(n, lane);

@@ -24,6 +24,7 @@ struct alignas(64) Node {
     std::uint32_t count;
     NodeId parent;  // kNone for the root
     std::uint32_t lane_in_parent;
+    std::uint32_t only_leaves;  // 1 if all children are leaves
 };
 
 // Up to 16 oriented boxes, compressed for filtering. Lane i < count holds an item:
