@@ -1,4 +1,5 @@
 #include <crofton/core/assert.hpp>
+#include <crofton/fit/fit.hpp>
 #include <utility>
 
 #include "scene_state.hpp"
@@ -21,17 +22,15 @@ Result<void> check_id(std::uint32_t id, std::size_t count, const char* what) {
                     std::to_string(count));
 }
 
-Result<MeshRecord> make_record(TriangleMesh mesh, std::string name) {
+Result<MeshRecord> make_record(TriangleMesh mesh, std::string name, const measure::Criterion& criterion) {
     if (mesh.indices.empty() || mesh.positions.empty())
         return fail(ErrorCode::empty, kNoItem, "mesh: it has no triangles" + (name.empty() ? "" : " (" + name + ")"));
     if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    Aabb bounds;
-    for (const glm::vec3& p : mesh.positions) bounds.include(glm::dvec3(p));
-    const Obb box = obb_of(bounds);
-    if (auto valid = validate(box); !valid) return tl::unexpected(valid.error());
+    auto box = fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::Options{.criterion = criterion});
+    if (!box) return tl::unexpected(box.error());
     MeshRecord record;
     record.mesh = std::move(mesh);
-    record.box = box;
+    record.box = *box;
     record.name = std::move(name);
     return record;
 }
@@ -48,7 +47,7 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string name) {
     if (auto room = check_room(state_->meshes, "meshes"); !room) return tl::unexpected(room.error());
-    auto record = make_record(std::move(mesh), std::move(name));
+    auto record = make_record(std::move(mesh), std::move(name), state_->options.criterion);
     if (!record) return tl::unexpected(record.error());
     state_->meshes.push_back(std::move(*record));
     return static_cast<MeshId>(state_->meshes.size() - 1);
