@@ -34,9 +34,13 @@ tl::unexpected<Error> in_file(const std::string& path, const std::string& what, 
     return tl::unexpected<Error>(std::move(error));
 }
 
-std::string file_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+std::string file_name(const std::string& path) {
+    return path.substr(path.find_last_of('/') + 1);
+}
 
-std::string folder(const std::string& path) { return path.substr(0, path.find_last_of('/') + 1); }
+std::string folder(const std::string& path) {
+    return path.substr(0, path.find_last_of('/') + 1);
+}
 
 std::string extension(const std::string& path) {
     const std::string name = file_name(path);

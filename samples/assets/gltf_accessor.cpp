@@ -30,7 +30,8 @@ Result<Elements> find(const tinygltf::Model& model, int index) {
     if (!exists(view.buffer, model.buffers)) return bad(ErrorCode::out_of_range, "its view has no buffer");
     const auto& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
     if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset)
-        return bad(ErrorCode::out_of_range, "its view ends beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
+        return bad(ErrorCode::out_of_range,
+                   "its view ends beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
     const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
     const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
     if (size <= 0 || components <= 0) return bad(ErrorCode::parse, "unknown type");
@@ -41,8 +42,12 @@ Result<Elements> find(const tinygltf::Model& model, int index) {
     const std::size_t room = accessor.byteOffset <= view.byteLength ? view.byteLength - accessor.byteOffset : 0;
     if (room < element || accessor.count - 1 > (room - element) / stride)
         return bad(ErrorCode::out_of_range, std::to_string(accessor.count) + " elements do not fit its view");
-    return Elements{bytes.data() + view.byteOffset + accessor.byteOffset, accessor.count, stride, accessor.componentType,
-                    components, accessor.normalized};
+    return Elements{bytes.data() + view.byteOffset + accessor.byteOffset,
+                    accessor.count,
+                    stride,
+                    accessor.componentType,
+                    components,
+                    accessor.normalized};
 }
 
 template <class T>
@@ -57,14 +62,22 @@ float decode(const unsigned char* from, bool normalized) {
 float component(const Elements& e, std::size_t element, int k) {
     const auto at = [&](std::size_t size) { return e.data + element * e.stride + static_cast<std::size_t>(k) * size; };
     switch (e.component_type) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return decode<float>(at(4), false);
-        case TINYGLTF_COMPONENT_TYPE_DOUBLE: return decode<double>(at(8), false);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return decode<std::uint32_t>(at(4), false);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return decode<std::uint16_t>(at(2), e.normalized);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return decode<std::int16_t>(at(2), e.normalized);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return decode<std::uint8_t>(at(1), e.normalized);
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return decode<std::int8_t>(at(1), e.normalized);
-        default: return decode<std::int32_t>(at(4), false);
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return decode<float>(at(4), false);
+        case TINYGLTF_COMPONENT_TYPE_DOUBLE:
+            return decode<double>(at(8), false);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return decode<std::uint32_t>(at(4), false);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return decode<std::uint16_t>(at(2), e.normalized);
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return decode<std::int16_t>(at(2), e.normalized);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return decode<std::uint8_t>(at(1), e.normalized);
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return decode<std::int8_t>(at(1), e.normalized);
+        default:
+            return decode<std::int32_t>(at(4), false);
     }
 }
 

@@ -10,9 +10,9 @@ class Model;
 
 namespace crofton::assets {
 
-// `components` floats per element; integers are normalised to [0, 1] or [−1, 1] where the accessor asks for it. Elements of
-// more components are cut, of fewer (RGB for RGBA) filled with 1. Errors: no such accessor, view or buffer; an element
-// beyond its view or a view beyond its buffer; unknown types; sparse accessors (unsupported).
+// `components` floats per element; integers are normalised to [0, 1] or [−1, 1] where the accessor asks for it.
+// Elements of more components are cut, of fewer (RGB for RGBA) filled with 1. Errors: no such accessor, view or buffer;
+// an element beyond its view or a view beyond its buffer; unknown types; sparse accessors (unsupported).
 [[nodiscard]] Result<std::vector<float>> read_floats(const tinygltf::Model& model, int accessor, int components);
 
 // Unsigned scalars.

@@ -13,7 +13,9 @@ namespace {
 
 constexpr int kMaxSide = 16384;
 
-float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+float linear_from_srgb(float v) {
+    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
 
 int wrap(float coordinate, int size) {
     const float turns = coordinate - std::floor(coordinate);
@@ -63,13 +65,14 @@ bool TexturePyramid::decode(const unsigned char* bytes, std::size_t size) {
         Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
         coarse.texels.reserve(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
         const auto at = [&](int x, int y) {
-            return fine.texels[static_cast<std::size_t>(std::min(y, fine.height - 1)) * static_cast<std::size_t>(fine.width) +
-                               static_cast<std::size_t>(std::min(x, fine.width - 1))];
+            return fine
+                .texels[static_cast<std::size_t>(std::min(y, fine.height - 1)) * static_cast<std::size_t>(fine.width) +
+                        static_cast<std::size_t>(std::min(x, fine.width - 1))];
         };
         for (int y = 0; y < coarse.height; ++y)
             for (int x = 0; x < coarse.width; ++x)
-                coarse.texels.push_back(
-                    0.25f * (at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) + at(2 * x + 1, 2 * y + 1)));
+                coarse.texels.push_back(0.25f * (at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) +
+                                                 at(2 * x + 1, 2 * y + 1)));
         levels_.push_back(std::move(coarse));
     }
     return true;
@@ -97,7 +100,8 @@ const TexturePyramid* MaterialColors::texture(int index) {
     if (added) {
         const auto& bytes = model_.images[static_cast<std::size_t>(source)].image;
         if (bytes.empty() || !entry->second.decode(bytes.data(), bytes.size()))
-            warnings.push_back("image " + std::to_string(source) + ": missing or not an image we can read; drawn without it");
+            warnings.push_back("image " + std::to_string(source) +
+                               ": missing or not an image we can read; drawn without it");
     }
     return entry->second.empty() ? nullptr : &entry->second;
 }

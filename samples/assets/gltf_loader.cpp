@@ -14,14 +14,16 @@ namespace crofton::assets {
 namespace {
 
 // Keeps the file's bytes; MaterialColors decodes what is used, and reports what cannot be.
-bool keep_bytes(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
-                void*) {
+bool keep_bytes(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                int size, void*) {
     image->image.assign(bytes, bytes + size);
     image->as_is = true;
     return true;
 }
 
-bool exists(int index, std::size_t count) { return index >= 0 && static_cast<std::size_t>(index) < count; }
+bool exists(int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+}
 
 std::string label(const char* what, int index, const std::string& name) {
     return what + (" " + std::to_string(index)) + (name.empty() ? "" : " '" + name + "'");
@@ -128,7 +130,8 @@ class GltfReader {
         const double length = glm::length(rotation);
         if (!(length > 1e-6) || !std::isfinite(length))
             return fail(ErrorCode::degenerate, kNoItem, "its rotation is no quaternion of length one");
-        const scene::Transform result = scene::from_trs(vector(node.translation, 0.0), rotation / length, vector(node.scale, 1.0));
+        const scene::Transform result =
+            scene::from_trs(vector(node.translation, 0.0), rotation / length, vector(node.scale, 1.0));
         if (auto valid = scene::validate(result); !valid) return tl::unexpected(valid.error());
         return result;
     }
@@ -151,7 +154,8 @@ class GltfReader {
         return &meshes_.emplace(index, std::move(ids)).first->second;
     }
 
-    Result<TriangleMesh> mesh_of(const tinygltf::Primitive& primitive, const std::string& name, const std::string& where) {
+    Result<TriangleMesh> mesh_of(const tinygltf::Primitive& primitive, const std::string& name,
+                                 const std::string& where) {
         TriangleMesh mesh;
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) {
@@ -171,7 +175,8 @@ class GltfReader {
         indices = as_triangles(primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode, indices);
         if (indices.empty()) source_.warnings.push_back(where + ": is not made of triangles; left out");
         mesh.indices.assign(indices.begin(), indices.end());
-        for (std::size_t i = 0; i < xyz->size(); i += 3) mesh.positions.emplace_back((*xyz)[i], (*xyz)[i + 1], (*xyz)[i + 2]);
+        for (std::size_t i = 0; i < xyz->size(); i += 3)
+            mesh.positions.emplace_back((*xyz)[i], (*xyz)[i + 1], (*xyz)[i + 2]);
         if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
         const auto optional = [&](const char* attribute, int components) -> std::vector<float> {
             const auto found = primitive.attributes.find(attribute);
@@ -220,8 +225,10 @@ Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& option
     }
     if (!parsed) return fail(ErrorCode::parse, kNoItem, path + ": " + first_line(error));
     for (const std::string& extension : model.extensionsRequired)
-        if (extension != "KHR_mesh_quantization" && extension.rfind("KHR_materials", 0) != 0 && extension != "KHR_texture_transform")
-            return fail(ErrorCode::unsupported, kNoItem, path + ": needs the extension " + extension + ", which is not supported");
+        if (extension != "KHR_mesh_quantization" && extension.rfind("KHR_materials", 0) != 0 &&
+            extension != "KHR_texture_transform")
+            return fail(ErrorCode::unsupported, kNoItem,
+                        path + ": needs the extension " + extension + ", which is not supported");
     auto source = GltfReader(path, model, options).read();
     if (!source) return in_file(path, "", source.error());
     return source;

@@ -43,7 +43,8 @@ Sphere make_sphere() {
         for (std::size_t j = i + 1; j < 12; ++j)
             for (std::size_t k = j + 1; k < 12; ++k) {
                 if (!near(i, j) || !near(j, k) || !near(i, k)) continue;
-                const bool outward = glm::dot(glm::cross(s.points[j] - s.points[i], s.points[k] - s.points[i]), s.points[i]) > 0;
+                const bool outward =
+                    glm::dot(glm::cross(s.points[j] - s.points[i], s.points[k] - s.points[i]), s.points[i]) > 0;
                 coarse.push_back(outward ? std::array{i, j, k} : std::array{i, k, j});
             }
     for (const auto& f : coarse) {
@@ -60,7 +61,8 @@ Sphere make_sphere() {
 
 // A number in [−1, 1] that depends on the point alone, so that shared corners move together.
 double noise(const glm::dvec3& p) {
-    const double x = std::floor(p.x * 64.0 + 0.5) * 12.9898 + std::floor(p.y * 64.0 + 0.5) * 78.233 + std::floor(p.z * 64.0 + 0.5) * 37.719;
+    const double x = std::floor(p.x * 64.0 + 0.5) * 12.9898 + std::floor(p.y * 64.0 + 0.5) * 78.233 +
+                     std::floor(p.z * 64.0 + 0.5) * 37.719;
     const double s = x * 0.31830988618379067 + 0.5 * x * x * 1e-3;
     return 2.0 * (s - std::floor(s)) - 1.0;
 }
@@ -71,7 +73,9 @@ glm::vec3 srgb(int red, int green, int blue) {
     return {linear_from_srgb(red), linear_from_srgb(green), linear_from_srgb(blue)};
 }
 
-glm::vec3 scaled(const glm::vec3& color, double factor) { return color * static_cast<float>(factor); }
+glm::vec3 scaled(const glm::vec3& color, double factor) {
+    return color * static_cast<float>(factor);
+}
 
 void MeshBuilder::triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::vec3& color) {
     for (const glm::dvec3& p : {a, b, c}) {
@@ -107,8 +111,8 @@ void MeshBuilder::bar(const glm::dvec3& a, const glm::dvec3& b, double thickness
     tube(a, b, thickness * std::numbers::sqrt2 / 2.0, thickness * std::numbers::sqrt2 / 2.0, 4, color);
 }
 
-void MeshBuilder::tube(const glm::dvec3& a, const glm::dvec3& b, double ra, double rb, int sides, const glm::vec3& color,
-                       bool open) {
+void MeshBuilder::tube(const glm::dvec3& a, const glm::dvec3& b, double ra, double rb, int sides,
+                       const glm::vec3& color, bool open) {
     glm::dvec3 side, up;
     complete(glm::normalize(b - a), side, up);
     const auto rim = [&](int k, double radius) {
@@ -117,9 +121,12 @@ void MeshBuilder::tube(const glm::dvec3& a, const glm::dvec3& b, double ra, doub
     };
     for (int k = 0; k < sides; ++k) {
         const glm::dvec3 a0 = a + rim(k, ra), a1 = a + rim(k + 1, ra), b0 = b + rim(k, rb), b1 = b + rim(k + 1, rb);
-        if (rb == 0.0) triangle(a0, a1, b, color);
-        else if (ra == 0.0) triangle(a, b1, b0, color);
-        else quad(a0, a1, b1, b0, color);
+        if (rb == 0.0)
+            triangle(a0, a1, b, color);
+        else if (ra == 0.0)
+            triangle(a, b1, b0, color);
+        else
+            quad(a0, a1, b1, b0, color);
         if (open || k == 0 || k + 1 == sides) continue;
         if (ra > 0.0) triangle(a + rim(0, ra), a1, a0, color);
         if (rb > 0.0) triangle(b + rim(0, rb), b0, b1, color);
@@ -137,7 +144,8 @@ void MeshBuilder::blob(const glm::dvec3& center, const glm::dvec3& radii, const 
         for (const std::size_t i : face) mesh_.indices.push_back(first + static_cast<std::uint32_t>(i));
 }
 
-void MeshBuilder::sweep(std::span<const glm::dvec2> profile, double depth, const glm::vec3& sides, const glm::vec3& caps) {
+void MeshBuilder::sweep(std::span<const glm::dvec2> profile, double depth, const glm::vec3& sides,
+                        const glm::vec3& caps) {
     const double z = 0.5 * depth;
     const std::size_t n = profile.size();
     for (std::size_t i = 0; i < n; ++i) {

@@ -18,7 +18,8 @@ class MeshBuilder {
 
     // Counter-clockwise seen from outside.
     void triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::vec3& color);
-    void quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d, const glm::vec3& color);
+    void quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d,
+              const glm::vec3& color);
     // Axis-aligned in the frame, without its bottom face where `open_bottom`.
     void box(const glm::dvec3& min, const glm::dvec3& max, const glm::vec3& color, bool open_bottom = false);
     // A square bar of the given thickness from a to b, with ends.
@@ -26,7 +27,8 @@ class MeshBuilder {
     // A round bar from radius ra at a to rb at b, without ends where the radius is zero or `open`.
     void tube(const glm::dvec3& a, const glm::dvec3& b, double ra, double rb, int sides, const glm::vec3& color,
               bool open = false);
-    // An ellipsoid of 80 faces, darker below as under its own shade; `ragged` moves its points in and out by that share.
+    // An ellipsoid of 80 faces, darker below as under its own shade; `ragged` moves its points in and out by that
+    // share.
     void blob(const glm::dvec3& center, const glm::dvec3& radii, const glm::vec3& color, double ragged);
     // A convex profile (x, y), counter-clockwise, swept from z = −depth/2 to +depth/2; sides and caps in two colours.
     void sweep(std::span<const glm::dvec2> profile, double depth, const glm::vec3& sides, const glm::vec3& caps);

@@ -5,7 +5,8 @@
 
 namespace crofton::assets {
 
-// Linear RGB: of the first word known in `name` ("tree", "rock", …), else a muted colour of its own, the same each time.
+// Linear RGB: of the first word known in `name` ("tree", "rock", …), else a muted colour of its own, the same each
+// time.
 [[nodiscard]] glm::vec3 color_for_name(const std::string& name);
 
 }  // namespace crofton::assets

@@ -14,7 +14,9 @@ namespace {
 // A file is one frozen mesh as often as not; pieces of this size make it a scene that culling can work on.
 constexpr std::size_t kTrianglesPerPiece = 512;
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool is_space(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
 
 std::string_view next_word(std::string_view& line) {
     while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
@@ -53,8 +55,10 @@ void read_materials(std::string_view text, Materials& materials) {
         const std::string_view key = next_word(line);
         if (key == "newmtl") name = std::string(next_word(line));
         glm::vec3 color;
-        if (key == "Kd" && parse(next_word(line), color.x) && parse(next_word(line), color.y) && parse(next_word(line), color.z))
-            materials[name] = glm::vec3(linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z));
+        if (key == "Kd" && parse(next_word(line), color.x) && parse(next_word(line), color.y) &&
+            parse(next_word(line), color.z))
+            materials[name] =
+                glm::vec3(linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z));
     }
 }
 
@@ -79,11 +83,16 @@ class ObjReader {
             std::string_view line = next_line(text_);
             const std::string_view key = next_word(line);
             Result<void> done;
-            if (key == "v") done = read_vertex(line);
-            else if (key == "f") done = read_face(line);
-            else if (key == "o" || key == "g") start_part(std::string(next_word(line)), parts.back().color);
-            else if (key == "usemtl") use_material(next_word(line));
-            else if (key == "mtllib") load_library(next_word(line));
+            if (key == "v")
+                done = read_vertex(line);
+            else if (key == "f")
+                done = read_face(line);
+            else if (key == "o" || key == "g")
+                start_part(std::string(next_word(line)), parts.back().color);
+            else if (key == "usemtl")
+                use_material(next_word(line));
+            else if (key == "mtllib")
+                load_library(next_word(line));
             if (!done) return done;
         }
         return {};
@@ -104,7 +113,8 @@ class ObjReader {
         }
         // "v x y z r g b" is common; "v x y z w" is legal and w is ignored.
         glm::vec3 given;
-        if (parse(next_word(line), given.x) && parse(next_word(line), given.y) && parse(next_word(line), given.z)) c = given;
+        if (parse(next_word(line), given.x) && parse(next_word(line), given.y) && parse(next_word(line), given.z))
+            c = given;
         positions.push_back(p);
         colors.push_back(c);
         return {};
@@ -122,7 +132,8 @@ class ObjReader {
             const auto total = static_cast<long long>(positions.size());
             const long long position = index < 0 ? total + index : index - 1;
             if (position < 0 || position >= total)
-                return bad(ErrorCode::out_of_range, "face: vertex " + std::to_string(index) + " of " + std::to_string(total));
+                return bad(ErrorCode::out_of_range,
+                           "face: vertex " + std::to_string(index) + " of " + std::to_string(total));
             const auto current = static_cast<std::uint32_t>(position);
             if (count == 0) first = current;
             if (count >= 2) parts.back().indices.insert(parts.back().indices.end(), {first, previous, current});
@@ -145,8 +156,10 @@ class ObjReader {
 
     void load_library(std::string_view name) {
         const auto text = read_file(folder(path_) + std::string(name));
-        if (text) read_materials(*text, materials_);
-        else warnings.push_back("line " + std::to_string(line_) + ": " + text.error().message);
+        if (text)
+            read_materials(*text, materials_);
+        else
+            warnings.push_back("line " + std::to_string(line_) + ": " + text.error().message);
     }
 
     std::string path_;

@@ -14,26 +14,28 @@ struct LoadOptions {
     measure::Criterion criterion = measure::minimal_perimeter();  // for the boxes around meshes
     std::string map;                                              // which level of a WAD; empty: the first
     std::uint64_t seed = 1;                                       // of the town
-    std::uint32_t instances = 0;                                  // of the town, roughly, at most 1,000,000; 0: about 3,000
+    std::uint32_t instances = 0;  // of the town, roughly, at most 1,000,000; 0: about 3,000
 };
 
 // A scene with what one needs to visit it. +y is up, lengths are metres where the format says so.
 struct SceneSource {
     std::string name;
     scene::Scene scene;
-    std::vector<glm::dvec3> walk;            // a closed path at eye height that leads where people go; may be empty
-    std::vector<scene::InstanceId> movers;   // ascending: the instances that animate() moves; may be empty
-    std::vector<std::string> warnings;       // what a file held that was left out, and why
+    std::vector<glm::dvec3> walk;           // a closed path at eye height that leads where people go; may be empty
+    std::vector<scene::InstanceId> movers;  // ascending: the instances that animate() moves; may be empty
+    std::vector<std::string> warnings;      // what a file held that was left out, and why
     std::function<void(scene::Scene&, std::uint32_t)> motion;
 
-    // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the caller's.
+    // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
+    // caller's.
     void animate(std::uint32_t frame) {
         if (motion) motion(scene, frame);
     }
 };
 
 // "town", or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the item in it and the reason:
-// missing or damaged file, unknown extension, unknown map, NaN or singular matrices, indices out of range, nothing to draw.
+// missing or damaged file, unknown extension, unknown map, NaN or singular matrices, indices out of range, nothing to
+// draw.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 
 [[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);

@@ -44,10 +44,14 @@ void fill_blocks(Builder& builder, Library& library, const Grid& grid) {
             const Block block = block_at(grid, i, j);
             // The middle of the town is always its market; a park and a building site are never far.
             const std::size_t number = j * columns + i, middle = (rows / 2) * columns + columns / 2;
-            if (number == middle) builder.add_market(block);
-            else if (number % 11 == 2) builder.add_building_site(block);
-            else if (number % 9 == 8 || library.chance(0.02)) builder.add_park(block);
-            else builder.add_terraces(block);
+            if (number == middle)
+                builder.add_market(block);
+            else if (number % 11 == 2)
+                builder.add_building_site(block);
+            else if (number % 9 == 8 || library.chance(0.02))
+                builder.add_park(block);
+            else
+                builder.add_terraces(block);
             builder.add_street_furniture(block);
         }
 }
@@ -57,7 +61,8 @@ Loop random_loop(Library& library, const Grid& grid) {
     const int i = library.pick(columns), j = library.pick(rows);
     const int wide = 1 + library.pick(std::min(4, columns - i)), deep = 1 + library.pick(std::min(4, rows - j));
     const auto at = [](const std::vector<double>& lines, int k) { return lines[static_cast<std::size_t>(k)]; };
-    return {at(grid.x_lines, i), at(grid.x_lines, i + wide), at(grid.z_lines, j), at(grid.z_lines, j + deep), library.chance(0.5)};
+    return {at(grid.x_lines, i), at(grid.x_lines, i + wide), at(grid.z_lines, j), at(grid.z_lines, j + deep),
+            library.chance(0.5)};
 }
 
 std::vector<Driver> add_traffic(Builder& builder, Library& library, const Grid& grid, int count) {
@@ -66,14 +71,16 @@ std::vector<Driver> add_traffic(Builder& builder, Library& library, const Grid& 
     for (int k = 0; k < count; ++k) {
         // Few buses and lorries among many cars.
         const int kinds = static_cast<int>(vehicles.size()), cars = kinds - 5;
-        const Vehicle& vehicle = vehicles[static_cast<std::size_t>(library.chance(0.15) ? cars + library.pick(5) : library.pick(cars))];
+        const Vehicle& vehicle =
+            vehicles[static_cast<std::size_t>(library.chance(0.15) ? cars + library.pick(5) : library.pick(cars))];
         Driver driver;
         driver.loop = random_loop(library, grid);
         driver.start = library.random.uniform(0.0, driver.loop.length());
         driver.speed = library.random.uniform(6.0, 13.0);
         driver.hitch = vehicle.hitch;
         driver.node = builder.place(Parts{vehicle.mesh}, pose(driver, 0.0));
-        if (vehicle.trailer != scene::kNone) driver.trailer = builder.place(Parts{vehicle.trailer}, trailer_pose(driver, 0.0));
+        if (vehicle.trailer != scene::kNone)
+            driver.trailer = builder.place(Parts{vehicle.trailer}, trailer_pose(driver, 0.0));
         drivers.push_back(driver);
     }
     return drivers;
@@ -112,7 +119,8 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     const auto root = source.scene.add_node(scene::kNone, turn, ~0u, "town");
     if (!root) return tl::unexpected(root.error());
     const double blocks = std::max(1.0, std::round(wanted / kInstancesPerBlock));
-    const int columns = static_cast<int>(std::ceil(std::sqrt(blocks))), rows = static_cast<int>(std::lround(blocks / columns));
+    const int columns = static_cast<int>(std::ceil(std::sqrt(blocks))),
+              rows = static_cast<int>(std::lround(blocks / columns));
     Library library(source.scene, options.seed);
     const Grid grid = make_grid(library, columns, std::max(1, rows));
     Builder builder(source.scene, library, *root);
@@ -140,14 +148,17 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     source.movers = instances_on(source.scene, std::move(moving));
     source.walk = make_walk(grid, turn);
     // Poses of valid drivers are valid transforms, so the results need no look.
-    source.motion = [drivers = std::move(drivers), cranes = std::move(cranes)](scene::Scene& scene, std::uint32_t frame) {
+    source.motion = [drivers = std::move(drivers), cranes = std::move(cranes)](scene::Scene& scene,
+                                                                               std::uint32_t frame) {
         const double seconds = frame / 60.0;
         for (const Driver& driver : drivers) {
             (void)scene.set_local(driver.node, pose(driver, seconds));
             if (driver.trailer != scene::kNone) (void)scene.set_local(driver.trailer, trailer_pose(driver, seconds));
         }
         for (const Crane& crane : cranes)
-            (void)scene.set_local(crane.node, crane.start * scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)), glm::dvec3(1.0)));
+            (void)scene.set_local(crane.node,
+                                  crane.start * scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
+                                                                glm::dvec3(1.0)));
     };
     return source;
 }

@@ -16,7 +16,8 @@ scene::Transform turned(double x, double y, double z, double turn, double scale 
 
 }  // namespace
 
-Builder::Builder(scene::Scene& scene, Library& library, scene::NodeId root) : scene_(scene), library_(library), root_(root) {
+Builder::Builder(scene::Scene& scene, Library& library, scene::NodeId root)
+    : scene_(scene), library_(library), root_(root) {
     for (int width = kLeastWidth; width <= kMostWidth; ++width)
         for (int k = 0; k < kHousesPerWidth; ++k) houses_[width].push_back(make_house(library, width));
     for (int k = 0; k < 7; ++k) trees_.push_back(make_broadleaf(library));
@@ -28,6 +29,8 @@ Builder::Builder(scene::Scene& scene, Library& library, scene::NodeId root) : sc
         sheds_.push_back(make_shed(library));
         poles_.push_back(make_poles(library));
     }
+    for (int k = 0; k < 10; ++k) people_.push_back(make_person(library));
+    for (int k = 0; k < 2; ++k) signs_.push_back(make_sign(library));
     lamp_ = make_lamp(library);
     bench_ = make_bench(library);
     ladder_ = make_ladder(library);
@@ -92,9 +95,11 @@ void Builder::add_terraces(const Block& b) {
         if (library_.chance(0.35)) place(any(sheds_), x + 2.5, back0 + 3.0, library_.pick(4) * quarter);
         if (library_.chance(0.35)) place(any(sheds_), x + 4.5, back1 - 3.0, library_.pick(4) * quarter);
         if (library_.chance(0.7))
-            place(any(trees_), x + 3.5, back0 + library_.random.uniform(4.0, 6.5), library_.random.uniform(0.0, 6.28), library_.random.uniform(0.7, 1.0));
+            place(any(trees_), x + 3.5, back0 + library_.random.uniform(4.0, 6.5), library_.random.uniform(0.0, 6.28),
+                  library_.random.uniform(0.7, 1.0));
         if (library_.chance(0.7))
-            place(any(trees_), x - 1.0, back1 - library_.random.uniform(4.0, 6.5), library_.random.uniform(0.0, 6.28), library_.random.uniform(0.7, 1.0));
+            place(any(trees_), x - 1.0, back1 - library_.random.uniform(4.0, 6.5), library_.random.uniform(0.0, 6.28),
+                  library_.random.uniform(0.7, 1.0));
     }
     place(ladder_, b.x0 + 12.0 + library_.random.uniform(0.0, 20.0), back0 + 1.7, 0.0);
     place(any(poles_), b.x1 - 14.0 - library_.random.uniform(0.0, 18.0), back1, std::numbers::pi);
@@ -112,12 +117,14 @@ void Builder::add_park(const Block& b) {
     for (int k = 0; k < 46; ++k) {
         const double x = random.uniform(b.x0 + 3.0, b.x1 - 3.0), z = random.uniform(b.z0 + 3.0, b.z1 - 3.0);
         if (std::hypot(x - b.center().x, z - b.center().z) < 11.0) continue;
-        place(any(library_.chance(0.25) ? conifers_ : trees_), x, z, random.uniform(0.0, 6.28), random.uniform(0.85, 1.35));
+        place(any(library_.chance(0.25) ? conifers_ : trees_), x, z, random.uniform(0.0, 6.28),
+              random.uniform(0.85, 1.35));
     }
     for (int k = 0; k < 8; ++k) {
         const double angle = (k + 0.5) * std::numbers::pi / 4.0;
         const glm::dvec3 c = b.center();
-        place(k % 2 == 0 ? bench_ : lamp_, c.x + 9.4 * std::sin(angle), c.z + 9.4 * std::cos(angle), angle + std::numbers::pi);
+        place(k % 2 == 0 ? bench_ : lamp_, c.x + 9.4 * std::sin(angle), c.z + 9.4 * std::cos(angle),
+              angle + std::numbers::pi);
     }
     place(fountain_, b.center().x, b.center().z, 0.0);
     for (double x = b.x0 + 1.0; x + 6.0 < b.x1; x += 6.0) {
@@ -142,7 +149,8 @@ void Builder::add_market(const Block& b) {
         place(any(trees_), x, b.z0 + 2.0, random.uniform(0.0, 6.28), random.uniform(0.8, 1.0));
         place(any(trees_), x, b.z1 - 2.0, random.uniform(0.0, 6.28), random.uniform(0.8, 1.0));
     }
-    for (const double dz : {-8.0, 8.0}) place(bench_, b.center().x + 4.0, b.center().z + dz, dz > 0.0 ? std::numbers::pi : 0.0);
+    for (const double dz : {-8.0, 8.0})
+        place(bench_, b.center().x + 4.0, b.center().z + dz, dz > 0.0 ? std::numbers::pi : 0.0);
 }
 
 void Builder::add_building_site(const Block& b) {
@@ -156,10 +164,12 @@ void Builder::add_building_site(const Block& b) {
         frame.box({-14.0, y, -7.0}, {14.0 - (floor == 3 ? 10.0 : 0.0), y + 0.25, 7.0}, concrete);
         for (int i = 0; i < 5 && floor < 3; ++i)
             for (int j = 0; j < 3; ++j)
-                frame.bar({-13.0 + 6.5 * i, y, -6.0 + 6.0 * j}, {-13.0 + 6.5 * i, y + 3.2, -6.0 + 6.0 * j}, 0.4, scaled(concrete, 0.9));
+                frame.bar({-13.0 + 6.5 * i, y, -6.0 + 6.0 * j}, {-13.0 + 6.5 * i, y + 3.2, -6.0 + 6.0 * j}, 0.4,
+                          scaled(concrete, 0.9));
     }
     for (int i = 0; i < 14; ++i)  // starter bars stick out of the top
-        frame.tube({-13.0 + 0.7 * i, 9.8, -6.0}, {-13.0 + 0.7 * i + 0.1, 11.4, -6.1}, 0.02, 0.02, 4, srgb(130, 80, 56), true);
+        frame.tube({-13.0 + 0.7 * i, 9.8, -6.0}, {-13.0 + 0.7 * i + 0.1, 11.4, -6.1}, 0.02, 0.02, 4, srgb(130, 80, 56),
+                   true);
     const glm::dvec3 c = b.center();
     place(library_.add(frame, "concrete frame"), c.x, c.z, 0.0);
     for (const double x : {-13.0, -1.0}) {
@@ -170,7 +180,8 @@ void Builder::add_building_site(const Block& b) {
     if (tower != scene::kNone)
         jibs_.push_back(place(Parts{jib_}, turned(0.0, kCraneHeight, 0.0, library_.random.uniform(0.0, 6.28)), tower));
     for (int k = 0; k < 5; ++k) place(any(sheds_), b.x0 + 4.0 + 3.0 * k, b.z0 + 3.0, 0.0);
-    for (int k = 0; k < 4; ++k) place(any(poles_), b.x0 + 8.0 + 9.0 * k, b.z1 - 5.0, library_.random.uniform(0.0, 6.28));
+    for (int k = 0; k < 4; ++k)
+        place(any(poles_), b.x0 + 8.0 + 9.0 * k, b.z1 - 5.0, library_.random.uniform(0.0, 6.28));
     for (int k = 0; k < 4; ++k) place(ladder_, c.x - 10.0 + 6.0 * k, c.z + 9.9, 0.0);
     for (double x = b.x0; x + 6.0 <= b.x1; x += 6.0) {
         place(any(fences_), x, b.z0, 0.0);
@@ -190,7 +201,7 @@ void Builder::add_street_furniture(const Block& b) {
         if (k % 2 == 0) {
             place(lamp_, x, b.z1 + edge, 0.0);
             place(lamp_, x + 4.0, b.z0 - edge, std::numbers::pi);
-        } else if (library_.chance(0.8)) {
+        } else if (library_.chance(0.6)) {
             place(any(trees_), x, b.z1 + edge, random.uniform(0.0, 6.28), random.uniform(0.6, 0.8));
             place(any(trees_), x + 4.0, b.z0 - edge, random.uniform(0.0, 6.28), random.uniform(0.6, 0.8));
         }
@@ -198,6 +209,17 @@ void Builder::add_street_furniture(const Block& b) {
     for (double z = b.z0 + 5.0; z < b.z1 - 3.0; z += 15.0) {
         place(lamp_, b.x1 + edge, z, 0.5 * std::numbers::pi);
         place(lamp_, b.x0 - edge, z + 6.0, -0.5 * std::numbers::pi);
+    }
+    for (const double x : {b.x0 - 1.2, b.x1 + 1.2})
+        for (const double z : {b.z0 - 1.6, b.z1 + 1.6}) place(any(signs_), x, z, random.uniform(-0.6, 0.6));
+    for (int p = 0; p < 14; ++p) {  // strollers on the pavement
+        const double along = random.uniform(-0.5, 0.5), off = random.uniform(0.7, 1.2),
+                     s = library_.chance(0.5) ? 1.0 : -1.0;
+        const bool on_x = library_.chance(0.6);
+        const glm::dvec3 c = b.center();
+        place(any(people_), on_x ? c.x + along * b.width() : c.x + s * (0.5 * b.width() + off),
+              on_x ? c.z + s * (0.5 * b.depth() + off) : c.z + along * b.depth(),
+              (on_x ? 1.57 : 0.0) + (library_.chance(0.5) ? 3.14 : 0.0));
     }
     // Cables across the street toward +z, slanted in plan and in height.
     const double across = kStreet, along = std::sqrt(kCableLength * kCableLength - across * across - 1.0);

@@ -11,7 +11,7 @@ namespace crofton::assets::town {
 
 inline constexpr double kCarriageway = 7.6;
 inline constexpr double kSidewalk = 2.2;
-inline constexpr double kKerb = 0.12;  // height of blocks above streets
+inline constexpr double kKerb = 0.12;                              // height of blocks above streets
 inline constexpr double kStreet = kCarriageway + 2.0 * kSidewalk;  // from house to house
 
 // Inside of the sidewalks, in the town's frame.
@@ -55,7 +55,7 @@ class Builder {
     scene::NodeId root_;
     Result<void> status_;
     std::map<int, std::vector<Parts>> houses_;  // by width
-    std::vector<scene::MeshId> trees_, conifers_, fences_, hedges_, stalls_, sheds_, poles_;
+    std::vector<scene::MeshId> trees_, conifers_, fences_, hedges_, stalls_, sheds_, poles_, people_, signs_;
     scene::MeshId lamp_, bench_, ladder_, cable_, scaffold_, fountain_, tower_, jib_;
     Parts church_;
     std::map<std::pair<int, int>, Ground> grounds_;  // by size in decimetres, negative with courtyard

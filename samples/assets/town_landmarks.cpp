@@ -24,13 +24,14 @@ std::vector<glm::dvec2> lancet(double x, double y, double width, double height) 
         for (int k = 0; k <= 4; ++k) {
             if (side == 1 && k == 0) continue;
             const double t = side == 0 ? k / 4.0 : 1.0 - k / 4.0, s = side == 0 ? -1.0 : 1.0;
-            result.emplace_back(x + s * 0.5 * width * std::cos(0.5 * std::numbers::pi * t), y + height + width * std::sin(0.5 * std::numbers::pi * t));
+            result.emplace_back(x + s * 0.5 * width * std::cos(0.5 * std::numbers::pi * t),
+                                y + height + width * std::sin(0.5 * std::numbers::pi * t));
         }
     return result;
 }
 
-void add_lattice(MeshBuilder& b, const glm::dvec3& from, const glm::dvec3& along, const glm::dvec3& u, const glm::dvec3& v,
-                 int bays, const glm::vec3& color) {
+void add_lattice(MeshBuilder& b, const glm::dvec3& from, const glm::dvec3& along, const glm::dvec3& u,
+                 const glm::dvec3& v, int bays, const glm::vec3& color) {
     // Four chords, and in every bay and side a slanted strut.
     const auto corner = [&](int c, int bay) {
         return from + along * static_cast<double>(bay) + (c == 0 || c == 3 ? -u : u) + (c < 2 ? -v : v);
@@ -51,21 +52,25 @@ Parts make_church(Library& library) {
     Parts parts;
     constexpr double kWidth = 12.0, kLength = 22.0, kWall = 9.0, kRidge = 15.0;
     const double x0 = -0.5 * kWidth, z0 = -0.5 * kLength;
-    std::vector<std::vector<glm::dvec2>> front{{{0, 0}, {kWidth, 0}, {kWidth, kWall}, {0.5 * kWidth, kRidge}, {0, kWall}}};
+    std::vector<std::vector<glm::dvec2>> front{
+        {{0, 0}, {kWidth, 0}, {kWidth, kWall}, {0.5 * kWidth, kRidge}, {0, kWall}}};
     front.push_back(circle(0.5 * kWidth, 9.6, 1.7, 20));
     front.push_back(lancet(0.5 * kWidth, 0.1, 2.4, 3.0));
     front.push_back(lancet(2.2, 3.0, 1.0, 2.4));
     front.push_back(lancet(kWidth - 2.2, 3.0, 1.0, 2.4));
     parts.push_back(library.add_polygon(front, {x0, 0, -z0}, {1, 0, 0}, {0, 1, 0}, stone, "church front"));
-    parts.push_back(library.add_polygon({front[0], front[1]}, {-x0, 0, z0}, {-1, 0, 0}, {0, 1, 0}, stone, "church back"));
+    parts.push_back(
+        library.add_polygon({front[0], front[1]}, {-x0, 0, z0}, {-1, 0, 0}, {0, 1, 0}, stone, "church back"));
     std::vector<std::vector<glm::dvec2>> side{{{0, 0}, {kLength, 0}, {kLength, kWall}, {0, kWall}}};
     for (int k = 0; k < 5; ++k) side.push_back(lancet(2.4 + 4.3 * k, 2.4, 1.3, 3.6));
     parts.push_back(library.add_polygon(side, {x0, 0, z0}, {0, 0, 1}, {0, 1, 0}, scaled(stone, 0.95), "church side"));
-    parts.push_back(library.add_polygon(side, {-x0, 0, -z0}, {0, 0, -1}, {0, 1, 0}, scaled(stone, 0.95), "church side"));
+    parts.push_back(
+        library.add_polygon(side, {-x0, 0, -z0}, {0, 0, -1}, {0, 1, 0}, scaled(stone, 0.95), "church side"));
 
     MeshBuilder b;
     b.box({x0 + 0.3, 0.0, z0 + 0.3}, {-x0 - 0.3, kWall - 0.1, -z0 - 0.3}, dark, true);  // the glass behind the holes
-    b.triangle({x0 + 0.5, kWall - 0.2, -z0 - 0.3}, {-x0 - 0.5, kWall - 0.2, -z0 - 0.3}, {0, kRidge - 0.5, -z0 - 0.3}, srgb(120, 84, 110));
+    b.triangle({x0 + 0.5, kWall - 0.2, -z0 - 0.3}, {-x0 - 0.5, kWall - 0.2, -z0 - 0.3}, {0, kRidge - 0.5, -z0 - 0.3},
+               srgb(120, 84, 110));
     const double o = 0.5, drop = o * (kRidge - kWall) / (0.5 * kWidth);
     for (const double s : {-1.0, 1.0}) {
         const glm::dvec3 e0(s * (0.5 * kWidth + o), kWall - drop, s * -(0.5 * kLength + 0.3)), e1(e0.x, e0.y, -e0.z);
@@ -76,7 +81,8 @@ Parts make_church(Library& library) {
     for (int k = 0; k < 6; ++k)
         for (const double s : {-1.0, 1.0}) {  // buttresses, slanted outward
             const double z = z0 + 0.25 + 4.3 * k;
-            b.bar({s * (0.5 * kWidth + 1.2), 0.0, z}, {s * (0.5 * kWidth + 0.1), kWall - 1.5, z}, 0.6, scaled(stone, 0.85));
+            b.bar({s * (0.5 * kWidth + 1.2), 0.0, z}, {s * (0.5 * kWidth + 0.1), kWall - 1.5, z}, 0.6,
+                  scaled(stone, 0.85));
         }
     parts.push_back(library.add(b, "church nave"));
     MeshBuilder tower;

@@ -26,7 +26,8 @@ scene::MeshId Library::add_polygon(const std::vector<std::vector<glm::dvec2>>& r
     polygon.color = color;
     const auto triangulation = triangulate::triangulate(polygon.polygon);
     if (!triangulation) {
-        status_ = fail(triangulation.error().code, triangulation.error().item, name + ": " + triangulation.error().message);
+        status_ =
+            fail(triangulation.error().code, triangulation.error().item, name + ": " + triangulation.error().message);
         return scene::kNone;
     }
     auto id = scene_.add_polygon(std::move(polygon), triangulation->triangles, std::move(name));
@@ -35,7 +36,8 @@ scene::MeshId Library::add_polygon(const std::vector<std::vector<glm::dvec2>>& r
     return scene::kNone;
 }
 
-std::vector<std::vector<glm::dvec2>> facade_rings(std::vector<glm::dvec2> outline, const std::vector<Opening>& openings) {
+std::vector<std::vector<glm::dvec2>> facade_rings(std::vector<glm::dvec2> outline,
+                                                  const std::vector<Opening>& openings) {
     std::vector<std::vector<glm::dvec2>> rings{std::move(outline)};
     for (const Opening& o : openings)
         rings.push_back({{o.x, o.y}, {o.x, o.y + o.height}, {o.x + o.width, o.y + o.height}, {o.x + o.width, o.y}});

@@ -46,9 +46,10 @@ inline constexpr int kMostWidth = 8;
 [[nodiscard]] Parts make_house(Library& library, int width);
 [[nodiscard]] Parts make_church(Library& library);  // centred on the origin, 14 × 26 m, door toward +z
 
-// Panes, frames and reveals that show in the openings of a façade whose frame is (x right, y up, z outward).
+// Panes, frames, reveals and, unless `plain`, sills that show in the openings of a façade whose frame is (x right, y
+// up, z outward).
 void add_joinery(MeshBuilder& builder, Library& library, const std::vector<Opening>& openings, const glm::vec3& frame,
-                 const glm::vec3& door, const glm::vec3& sill);
+                 const glm::vec3& door, const glm::vec3& sill, bool plain);
 // The façade's rings: its outline, then one per opening.
 [[nodiscard]] std::vector<std::vector<glm::dvec2>> facade_rings(std::vector<glm::dvec2> outline,
                                                                 const std::vector<Opening>& openings);
@@ -59,10 +60,12 @@ void add_joinery(MeshBuilder& builder, Library& library, const std::vector<Openi
 [[nodiscard]] scene::MeshId make_lamp(Library& library);
 [[nodiscard]] scene::MeshId make_fence(Library& library, double length);  // x in [0, length]
 [[nodiscard]] scene::MeshId make_hedge(Library& library, double length);
+[[nodiscard]] scene::MeshId make_person(Library& library);
+[[nodiscard]] scene::MeshId make_sign(Library& library);  // on a pole that someone has bent
 [[nodiscard]] scene::MeshId make_bench(Library& library);
-[[nodiscard]] scene::MeshId make_ladder(Library& library);                              // leans toward −z
-[[nodiscard]] scene::MeshId make_poles(Library& library);                               // leaning poles and planks
-[[nodiscard]] scene::MeshId make_cable(Library& library, double length, double sag);    // hangs from y = 0 along +x
+[[nodiscard]] scene::MeshId make_ladder(Library& library);                            // leans toward −z
+[[nodiscard]] scene::MeshId make_poles(Library& library);                             // leaning poles and planks
+[[nodiscard]] scene::MeshId make_cable(Library& library, double length, double sag);  // hangs from y = 0 along +x
 [[nodiscard]] scene::MeshId make_scaffold(Library& library, double length, double height);
 [[nodiscard]] scene::MeshId make_stall(Library& library);
 [[nodiscard]] scene::MeshId make_fountain(Library& library);

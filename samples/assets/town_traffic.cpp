@@ -7,8 +7,8 @@
 namespace crofton::assets::town {
 namespace {
 
-constexpr double kLane = 1.9;     // from the centre line
-constexpr double kCorner = 4.0;   // radius
+constexpr double kLane = 1.9;    // from the centre line
+constexpr double kCorner = 4.0;  // radius
 constexpr double kTrailerBase = 6.0;
 
 struct Rectangle {

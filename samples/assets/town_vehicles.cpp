@@ -10,8 +10,9 @@ const glm::vec3 kTyre = srgb(28, 28, 30), kGlass = srgb(44, 56, 68), kChrome = s
 
 void add_wheel(MeshBuilder& b, double x, double z, double radius) {
     const double side = z > 0.0 ? 1.0 : -1.0;
-    b.tube({x, radius, z - side * 0.22}, {x, radius, z}, radius, radius, 14, kTyre);
-    b.tube({x, radius, z}, {x, radius, z + side * 0.015}, 0.55 * radius, 0.5 * radius, 8, kChrome);
+    b.tube({x, radius, z - side * 0.22}, {x, radius, z}, radius, radius, 10, kTyre, true);
+    b.tube({x, radius, z}, {x, radius, z + side * 0.01}, radius, 0.0, 10, kTyre, true);
+    b.tube({x, radius, z}, {x, radius, z + side * 0.03}, 0.55 * radius, 0.0, 6, kChrome, true);
 }
 
 void add_lights(MeshBuilder& b, double front, double back, double y, double half_width) {
@@ -26,15 +27,23 @@ void add_lights(MeshBuilder& b, double front, double back, double y, double half
 scene::MeshId make_car(Library& library, const glm::vec3& paint, double length, double cabin_back, double cabin_front) {
     MeshBuilder b;
     const double f = 0.5 * length, w = 1.74;
-    const std::array<glm::dvec2, 8> body = {{{-f, 0.32}, {f - 0.1, 0.28}, {f, 0.45}, {f - 0.04, 0.68}, {cabin_front + 0.5, 0.86},
-                                             {cabin_back - 0.35, 0.9}, {-f + 0.05, 0.84}, {-f - 0.02, 0.5}}};
+    const std::array<glm::dvec2, 8> body = {{{-f, 0.32},
+                                             {f - 0.1, 0.28},
+                                             {f, 0.45},
+                                             {f - 0.04, 0.68},
+                                             {cabin_front + 0.5, 0.86},
+                                             {cabin_back - 0.35, 0.9},
+                                             {-f + 0.05, 0.84},
+                                             {-f - 0.02, 0.5}}};
     b.sweep(body, w, paint, scaled(paint, 0.94));
-    const std::array<glm::dvec2, 4> cabin = {{{cabin_back - 0.3, 0.88}, {cabin_front + 0.45, 0.86}, {cabin_front - 0.25, 1.38}, {cabin_back + 0.1, 1.40}}};
+    const std::array<glm::dvec2, 4> cabin = {
+        {{cabin_back - 0.3, 0.88}, {cabin_front + 0.45, 0.86}, {cabin_front - 0.25, 1.38}, {cabin_back + 0.1, 1.40}}};
     b.sweep(cabin, w - 0.28, kGlass, kGlass);
     b.box({cabin_back + 0.02, 1.385, -0.5 * w + 0.16}, {cabin_front - 0.2, 1.45, 0.5 * w - 0.16}, paint);
     const double middle = 0.5 * (cabin_back + cabin_front);
     for (const double s : {-1.0, 1.0})
-        b.box({middle - 0.05, 0.86, s * (0.5 * w - 0.15) - 0.02}, {middle + 0.05, 1.4, s * (0.5 * w - 0.15) + 0.02}, paint);
+        b.box({middle - 0.05, 0.86, s * (0.5 * w - 0.15) - 0.02}, {middle + 0.05, 1.4, s * (0.5 * w - 0.15) + 0.02},
+              paint);
     for (const double x : {-0.62 * f, 0.62 * f})
         for (const double z : {-0.5 * w - 0.01, 0.5 * w + 0.01}) add_wheel(b, x, z, 0.32);
     add_lights(b, f, -f, 0.62, 0.5 * w);
@@ -43,7 +52,8 @@ scene::MeshId make_car(Library& library, const glm::vec3& paint, double length, 
 
 scene::MeshId make_van(Library& library, const glm::vec3& paint) {
     MeshBuilder b;
-    const std::array<glm::dvec2, 6> body = {{{-2.6, 0.35}, {2.55, 0.35}, {2.65, 0.95}, {1.95, 1.2}, {1.45, 2.15}, {-2.6, 2.2}}};
+    const std::array<glm::dvec2, 6> body = {
+        {{-2.6, 0.35}, {2.55, 0.35}, {2.65, 0.95}, {1.95, 1.2}, {1.45, 2.15}, {-2.6, 2.2}}};
     b.sweep(body, 1.95, paint, scaled(paint, 0.95));
     for (const double s : {-1.0, 1.0})
         b.quad({s * 0.0 + 0.55, 1.25, s * 0.985}, {s > 0 ? 1.75 : 0.55, s > 0 ? 1.25 : 1.95, s * 0.985},
@@ -61,7 +71,8 @@ scene::MeshId make_bus(Library& library, const glm::vec3& paint) {
     b.box({-5.45, 1.25, -1.22}, {5.45, 2.55, 1.22}, kGlass);
     b.box({-5.5, 2.55, -1.25}, {5.5, 2.95, 1.25}, srgb(238, 234, 224));
     for (int k = 0; k <= 6; ++k)
-        for (const double s : {-1.0, 1.0}) b.box({-5.5 + 1.8 * k, 1.25, s * 1.23 - 0.02}, {-5.3 + 1.8 * k, 2.55, s * 1.23 + 0.02}, paint);
+        for (const double s : {-1.0, 1.0})
+            b.box({-5.5 + 1.8 * k, 1.25, s * 1.23 - 0.02}, {-5.3 + 1.8 * k, 2.55, s * 1.23 + 0.02}, paint);
     for (const double x : {-3.4, 3.6})
         for (const double z : {-1.27, 1.27}) add_wheel(b, x, z, 0.48);
     add_lights(b, 5.5, -5.5, 0.8, 1.25);
@@ -95,10 +106,11 @@ scene::MeshId make_trailer(Library& library, const glm::vec3& paint) {
 }  // namespace
 
 std::vector<Vehicle> make_vehicles(Library& library) {
-    const std::array paints = {srgb(176, 40, 36), srgb(40, 74, 130), srgb(226, 226, 222), srgb(52, 56, 60), srgb(70, 110, 84), srgb(214, 168, 56), srgb(146, 150, 156)};
+    const std::array paints = {srgb(176, 40, 36), srgb(40, 74, 130),  srgb(226, 226, 222), srgb(52, 56, 60),
+                               srgb(70, 110, 84), srgb(214, 168, 56), srgb(146, 150, 156)};
     std::vector<Vehicle> result;
     for (const glm::vec3& paint : paints) {
-        result.push_back({make_car(library, paint, 4.4, -1.3, 0.55), scene::kNone, 0.0});   // saloon
+        result.push_back({make_car(library, paint, 4.4, -1.3, 0.55), scene::kNone, 0.0});                // saloon
         result.push_back({make_car(library, scaled(paint, 0.85), 3.7, -1.35, 0.5), scene::kNone, 0.0});  // hatchback
         result.push_back({make_car(library, scaled(paint, 1.05), 4.6, -1.95, 0.6), scene::kNone, 0.0});  // estate
     }
