@@ -15,14 +15,14 @@ scene::MeshId make_lamp(Library& library) {
     b.tube({0, 0.6, 0}, {0, 5.2, 0}, 0.065, 0.045, 6, iron, true);
     // The arm bends over the street, toward +z.
     glm::dvec3 from(0, 5.2, 0);
-    for (int k = 1; k <= 5; ++k) {
-        const double angle = 0.5 * std::numbers::pi * k / 5.0;
+    for (int k = 1; k <= 4; ++k) {
+        const double angle = 0.5 * std::numbers::pi * k / 4.0;
         const glm::dvec3 to(0.0, 5.2 + 0.7 * std::sin(angle), 1.5 * (1.0 - std::cos(angle)));
         b.tube(from, to, 0.045, 0.04, 5, iron, true);
         from = to;
     }
-    b.tube(from, from + glm::dvec3(0, -0.12, 0), 0.06, 0.26, 10, iron);
-    b.tube(from + glm::dvec3(0, -0.12, 0), from + glm::dvec3(0, -0.24, 0), 0.20, 0.12, 10, srgb(255, 240, 196));
+    b.tube(from, from + glm::dvec3(0, -0.12, 0), 0.06, 0.26, 8, iron);
+    b.tube(from + glm::dvec3(0, -0.12, 0), from + glm::dvec3(0, -0.24, 0), 0.20, 0.12, 8, srgb(255, 240, 196));
     return library.add(b, "street lamp");
 }
 
@@ -136,8 +136,8 @@ scene::MeshId make_stall(Library& library) {
         b.quad({x1, 2.53, 1.3}, {x0, 2.53, 1.3}, {x0, 2.08, -1.2}, {x1, 2.08, -1.2}, scaled(c, 0.5));
         b.quad({x0, 2.3, 1.3}, {x1, 2.3, 1.3}, {x1, 2.55, 1.3}, {x0, 2.55, 1.3}, c);
     }
-    for (int k = 0; k < 7; ++k)
-        b.blob({-1.2 + 0.4 * k, 0.98, 0.5}, {0.17, 0.14, 0.22},
+    for (int k = 0; k < 3; ++k)
+        b.blob({-0.9 + 0.9 * k, 0.95, 0.5}, {0.38, 0.16, 0.25},
                std::array{srgb(196, 60, 40), srgb(226, 160, 50), srgb(110, 150, 60)}[static_cast<std::size_t>(k % 3)],
                0.1);
     return library.add(b, "market stall");

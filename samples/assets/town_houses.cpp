@@ -193,13 +193,11 @@ void add_joinery(MeshBuilder& b, Library& library, const std::vector<Opening>& o
             b.box({x0 - 0.2, 0.0, 0.0}, {x1 + 0.2, y0, 0.5}, sill);
             continue;
         }
-        b.quad({x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z},
+        // The frame shows around a pane that lies a little before it.
+        const double f = 0.07, zp = z + 0.02, zf = z + 0.05;
+        b.quad({x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}, frame);
+        b.quad({x0 + f, y0 + f, zp}, {x1 - f, y0 + f, zp}, {x1 - f, y1 - f, zp}, {x0 + f, y1 - f, zp},
                panes[static_cast<std::size_t>(library.pick(panes.size()))]);
-        const double f = 0.07, zf = z + 0.05;
-        b.quad({x0, y0, zf}, {x1, y0, zf}, {x1, y0 + f, zf}, {x0, y0 + f, zf}, frame);
-        b.quad({x0, y1 - f, zf}, {x1, y1 - f, zf}, {x1, y1, zf}, {x0, y1, zf}, frame);
-        b.quad({x0, y0, zf}, {x0 + f, y0, zf}, {x0 + f, y1, zf}, {x0, y1, zf}, frame);
-        b.quad({x1 - f, y0, zf}, {x1, y0, zf}, {x1, y1, zf}, {x1 - f, y1, zf}, frame);
         const double mx = 0.5 * (x0 + x1);
         b.quad({mx - 0.035, y0, zf}, {mx + 0.035, y0, zf}, {mx + 0.035, y1, zf}, {mx - 0.035, y1, zf}, frame);
         if (o.kind == Opening::Kind::window) {

@@ -65,10 +65,10 @@ scene::MeshId make_fence(Library& library, double length) {
 scene::MeshId make_hedge(Library& library, double length) {
     MeshBuilder b;
     const glm::vec3 green = scaled(srgb(78, 108, 54), library.random.uniform(0.85, 1.15));
-    const int count = static_cast<int>(length / 1.15);
+    const int count = static_cast<int>(length / 1.5);
     for (int k = 0; k < count; ++k) {
         const double x = (k + 0.5) * length / count;
-        b.blob({x, 0.55, 0.0}, {0.8, library.random.uniform(0.6, 0.75), 0.45},
+        b.blob({x, 0.55, 0.0}, {0.95, library.random.uniform(0.6, 0.75), 0.45},
                scaled(green, library.random.uniform(0.9, 1.1)), 0.08);
     }
     return library.add(b, "hedge");

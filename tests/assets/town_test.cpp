@@ -68,7 +68,7 @@ TEST_SUITE("assets/town") {
         CHECK_FALSE(same_boxes(town(7).scene, town(8).scene));
     }
 
-    TEST_CASE("movers, and only they, move; a frame's poses do not depend on the frames before") {
+    TEST_CASE("movers, and only they, move - a frame's poses do not depend on the frames before") {
         SceneSource a = town(1), b = town(1);
         for (const std::uint32_t frame : {1u, 2u, 50u}) {
             a.animate(frame);
