@@ -42,12 +42,16 @@ HWY_INLINE std::uint32_t all_lanes(const tree::MeshLeaf& leaf) {
 HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafVisitor visit,
                              TraversalCounts& counts) {
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
-    LeafLanes lanes;
-    load_lanes(pair, leaf_b, lanes);
+    LeafLanes lanes_a, lanes_b;
+    load_lanes(pair, leaf_a, false, lanes_a);
+    load_lanes(pair, leaf_b, true, lanes_b);
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+    const std::uint32_t used = all_lanes(leaf_b);
     for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        const std::uint32_t mask = triangle_mask(pair, load_one(pair, leaf_a, lane), lanes) & all_lanes(leaf_b);
-        if (mask != 0 && visit(a, lane, b, mask)) return true;
+        LaneVerdict verdict = judge(lanes_a, lane, lanes_b);
+        verdict.hits &= used;
+        verdict.open &= used;
+        if ((verdict.hits | verdict.open) != 0 && visit(a, lane, b, verdict)) return true;
     }
     return false;
 }
@@ -84,13 +88,13 @@ void VisitOverlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& cou
 bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, const double& limit, LeafVisitor visit,
                        TraversalCounts& counts) {
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
-    LeafLanes lanes;
-    load_lanes(pair, leaf_b, lanes);
+    LeafLanes lanes_a, lanes_b;
+    load_lanes(pair, leaf_a, false, lanes_a);
+    load_lanes(pair, leaf_b, true, lanes_b);
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
     for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        const OneTriangle t = load_one(pair, leaf_a, lane);
-        const std::uint32_t mask = near_mask(pair, t, lanes, static_cast<float>(limit)) & all_lanes(leaf_b);
-        if (mask != 0 && visit(a, lane, b, mask)) return true;
+        const std::uint32_t mask = near_mask(lanes_a, lane, lanes_b, limit) & all_lanes(leaf_b);
+        if (mask != 0 && visit(a, lane, b, {0, mask})) return true;
     }
     return false;
 }
