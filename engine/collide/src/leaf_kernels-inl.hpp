@@ -33,6 +33,8 @@ struct LeafLanes {
     alignas(64) double normal[3][tree::kMeshWidth];  // not of unit length
     alignas(64) double size[tree::kMeshWidth];       // edge sum of the bound
     alignas(64) double edges[tree::kMeshWidth];      // |u|₁ |v|₁ of the normal's factors
+    double all_low[3], all_high[3];                  // of the whole leaf
+    std::uint32_t leaf = ~std::uint32_t{0};          // whose lanes these are
 };
 
 HWY_INLINE VD sum_abs(const VD* v) {
@@ -88,6 +90,36 @@ HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, boo
         hn::Store(size, d, out.size + l);
         hn::Store(hn::Mul(sum_abs(u), sum_abs(v)), d, out.edges + l);
     }
+    for (int i = 0; i < 3; ++i) {
+        VD low = hn::Load(d, out.low[i]), high = hn::Load(d, out.high[i]);
+        for (std::size_t l = hn::Lanes(d); l < tree::kMeshWidth; l += hn::Lanes(d)) {
+            low = hn::Min(low, hn::Load(d, out.low[i] + l));
+            high = hn::Max(high, hn::Load(d, out.high[i] + l));
+        }
+        out.all_low[i] = hn::GetLane(hn::MinOfLanes(d, low));
+        out.all_high[i] = hn::GetLane(hn::MaxOfLanes(d, high));
+    }
+}
+
+HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return static_cast<std::uint32_t>(bits[0]) << l;
+}
+
+// Triangles of a whose bounds meet the bound of all of b's.
+HWY_INLINE std::uint32_t candidates(const LeafLanes& in_a, const LeafLanes& in_b) {
+    const DD d;
+    std::uint32_t lanes = 0;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
+        for (int i = 0; i < 3; ++i) {
+            near = hn::And(near, hn::Le(hn::Load(d, in_a.low[i] + l), hn::Set(d, in_b.all_high[i])));
+            near = hn::And(near, hn::Ge(hn::Load(d, in_a.high[i] + l), hn::Set(d, in_b.all_low[i])));
+        }
+        lanes |= bits_of(d, near, l);
+    }
+    return lanes;
 }
 
 struct Sides {
@@ -155,12 +187,6 @@ HWY_INLINE void judge_edges(DD d, const VD (&a)[3][3], const VD (&b)[3][3], cons
         const MD down[3] = {negative[0][k], negative[1][k], negative[2][k]};
         judge_edge(of_b, k, up, down, hit, miss);
     }
-}
-
-HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, mask, bits);
-    return static_cast<std::uint32_t>(bits[0]) << l;
 }
 
 // Triangle `one` of a against all of b: lanes that surely meet it, and lanes that need exact arithmetic.
