@@ -1,0 +1,65 @@
+/* What does a view see? */
+#ifndef CROFTON_CAPI_CULL_H
+#define CROFTON_CAPI_CULL_H
+#include <crofton/capi/geometry.h>
+#include <crofton/capi/hooks.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct crofton_tree crofton_tree;               /* a hierarchy over boxes */
+typedef struct crofton_visible_set crofton_visible_set; /* the answer to a query, in buffers that are kept */
+
+typedef enum crofton_verdict { CROFTON_OUTSIDE = 0, CROFTON_STRADDLING = 1, CROFTON_INSIDE = 2 } crofton_verdict;
+
+/* Sees the items whose layer mask shares a bit with its own. */
+typedef struct crofton_view {
+    size_t size;
+    uint32_t layer_mask;
+    crofton_frustum frustum;
+} crofton_view;
+
+typedef struct crofton_cull_options {
+    size_t size;
+    uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the frustum's corners */
+    uint32_t tree_order;   /* 0: ids ascending; 1: as the tree lies in memory, a little faster */
+} crofton_cull_options;
+
+typedef struct crofton_cull_statistics {
+    size_t size;
+    uint64_t nodes_tested, boxes_tested, accepted_whole, straddling, exact_tests, improper;
+} crofton_cull_statistics;
+
+/* Item i is boxes[i], seen in the layers layer_masks[i] (or NULL: in all). Both are copied. */
+CROFTON_API crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
+                                               const crofton_jobs* jobs, crofton_tree** tree);
+CROFTON_API crofton_status crofton_tree_destroy(crofton_tree* tree);
+
+CROFTON_API crofton_status crofton_visible_set_create(crofton_visible_set** visible);
+CROFTON_API crofton_status crofton_visible_set_destroy(crofton_visible_set* visible);
+
+/* Finds what `view` sees of the tree; `options`, `jobs` or NULL. Allocates nothing once `visible` has grown to the
+ * largest answer. */
+CROFTON_API crofton_status crofton_cull_tree(const crofton_tree* tree, const crofton_view* view,
+                                             const crofton_cull_options* options, const crofton_jobs* jobs,
+                                             crofton_visible_set* visible);
+/* The same from a plain list of boxes. */
+CROFTON_API crofton_status crofton_cull_boxes(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
+                                              const crofton_view* view, const crofton_cull_options* options,
+                                              const crofton_jobs* jobs, crofton_visible_set* visible);
+
+/* The items seen and their verdicts (or NULL; a crofton_verdict each), valid until the set's next query. */
+CROFTON_API crofton_status crofton_visible_set_items(const crofton_visible_set* visible, const uint32_t** ids,
+                                                     const uint8_t** verdicts, size_t* count);
+CROFTON_API crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible,
+                                                          crofton_cull_statistics* statistics);
+
+/* Writes verdicts[i] for boxes[i], exactly. */
+CROFTON_API crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,
+                                            uint8_t* verdicts);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

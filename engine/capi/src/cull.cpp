@@ -1,0 +1,139 @@
+#include <crofton/capi/cull.h>
+
+#include <crofton/cull/cull.hpp>
+
+#include "call.hpp"
+#include "convert.hpp"
+
+using namespace crofton;
+using namespace crofton::capi;
+
+struct crofton_tree {
+    static constexpr std::uint32_t kKind = 0x43724f02;
+    Header header;
+    tree::BoxTree tree;
+};
+
+struct crofton_visible_set {
+    static constexpr std::uint32_t kKind = 0x43724f03;
+    Header header;
+    cull::VisibleSet visible{};
+    cull::View view{};  // here, so that a query need not clear planes that it does not use
+};
+
+namespace {
+
+crofton_status check_frustum(const crofton_frustum* frustum, const char* function) {
+    CROFTON_CHECK(check_struct(frustum, function));
+    if (frustum->plane_count > CROFTON_MAX_PLANES)
+        return report(CROFTON_OUT_OF_RANGE, function, "a frustum has more planes than CROFTON_MAX_PLANES");
+    return CROFTON_OK;
+}
+
+crofton_status check_query(const crofton_view* view, const crofton_cull_options* options, const crofton_jobs* jobs,
+                           const char* function) {
+    CROFTON_CHECK(check_struct(view, function));
+    CROFTON_CHECK(check_frustum(&view->frustum, function));
+    CROFTON_CHECK(check_optional(options, function));
+    return check_jobs(jobs, function);
+}
+
+cull::Options to_options(const crofton_cull_options* options) {
+    if (!options) return {};
+    return {options->conservative ? cull::Mode::conservative : cull::Mode::exact,
+            options->tree_order ? cull::Order::tree : cull::Order::ascending};
+}
+
+const cull::View& set_view(crofton_visible_set& visible, const crofton_view& view) {
+    copy_frustum(view.frustum, visible.view.frustum);
+    visible.view.layer_mask = view.layer_mask;
+    return visible.view;
+}
+
+}  // namespace
+
+crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
+                                   const crofton_jobs* jobs, crofton_tree** tree) {
+    CROFTON_CHECK(check_array(boxes, count, __func__));
+    CROFTON_CHECK(check_jobs(jobs, __func__));
+    CROFTON_CHECK(check_pointer(tree, __func__));
+    HostJobs executor(jobs);
+    auto built =
+        tree::BoxTree::build(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), {}, executor);
+    if (!built) return report(built.error(), __func__);
+    *tree = create<crofton_tree>(std::move(*built));
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_destroy(crofton_tree* tree) {
+    return destroy(tree, __func__);
+}
+
+crofton_status crofton_visible_set_create(crofton_visible_set** visible) {
+    CROFTON_CHECK(check_pointer(visible, __func__));
+    *visible = create<crofton_visible_set>();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_set_destroy(crofton_visible_set* visible) {
+    return destroy(visible, __func__);
+}
+
+crofton_status crofton_cull_tree(const crofton_tree* tree, const crofton_view* view,
+                                 const crofton_cull_options* options, const crofton_jobs* jobs,
+                                 crofton_visible_set* visible) {
+    const SharedUse use_tree(tree, __func__);
+    if (use_tree.failed()) return use_tree.status();
+    const ExclusiveUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_query(view, options, jobs, __func__));
+    HostJobs executor(jobs);
+    cull::cull(tree->tree, set_view(*visible, *view), visible->visible, to_options(options), executor);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_cull_boxes(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
+                                  const crofton_view* view, const crofton_cull_options* options,
+                                  const crofton_jobs* jobs, crofton_visible_set* visible) {
+    const ExclusiveUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(boxes, count, __func__));
+    CROFTON_CHECK(check_query(view, options, jobs, __func__));
+    HostJobs executor(jobs);
+    cull::cull(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), set_view(*visible, *view),
+               visible->visible, to_options(options), executor);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_set_items(const crofton_visible_set* visible, const uint32_t** ids,
+                                         const uint8_t** verdicts, size_t* count) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(ids, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    *ids = visible->visible.ids().data();
+    *count = visible->visible.size();
+    if (verdicts) *verdicts = reinterpret_cast<const std::uint8_t*>(visible->visible.verdicts().data());
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible, crofton_cull_statistics* statistics) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_struct(statistics, __func__));
+    const cull::Statistics& s = visible->visible.statistics();
+    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested, s.accepted_whole,
+                   s.straddling,       s.exact_tests,  s.improper};
+    return CROFTON_OK;
+}
+
+crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,
+                                uint8_t* verdicts) {
+    CROFTON_CHECK(check_frustum(frustum, __func__));
+    CROFTON_CHECK(check_array(boxes, count, __func__));
+    CROFTON_CHECK(check_array(verdicts, count, __func__));
+    Frustum volume;
+    copy_frustum(*frustum, volume);
+    cull::classify(volume, to_boxes(boxes, count), std::span(reinterpret_cast<cull::Verdict*>(verdicts), count));
+    return CROFTON_OK;
+}

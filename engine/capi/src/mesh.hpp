@@ -1,0 +1,12 @@
+// Meshes as C gives them.
+#pragma once
+#include <crofton/capi/scene.h>
+
+#include <crofton/geometry/triangle_mesh.hpp>
+
+namespace crofton::capi {
+
+// Copies the mesh; what its numbers must be is for the callee to say.
+[[nodiscard]] crofton_status to_mesh(const crofton_mesh* mesh, const char* function, TriangleMesh& result);
+
+}  // namespace crofton::capi

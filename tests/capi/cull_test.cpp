@@ -1,0 +1,106 @@
+#include <crofton/cull/cull.hpp>
+#include <limits>
+#include <random>
+
+#include "handles.hpp"
+
+using namespace crofton::capi_test;
+
+namespace {
+
+std::vector<crofton_box> random_boxes(std::size_t count) {
+    std::mt19937 random(5);
+    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    std::vector<crofton_box> boxes;
+    for (std::size_t i = 0; i < count; ++i)
+        boxes.push_back(box_at(80.0 * uniform() - 40.0, 80.0 * uniform() - 40.0, -80.0 * uniform() + 20.0,
+                               static_cast<float>(uniform())));
+    return boxes;
+}
+
+}  // namespace
+
+TEST_SUITE("capi/cull") {
+    TEST_CASE("wrong sizes, too many planes and bad boxes are refused") {
+        auto boxes = random_boxes(3);
+        const VisibleSet visible = make_visible_set();
+        crofton_view view = default_view();
+        const auto cull = [&] {
+            return crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, nullptr, nullptr, visible.get());
+        };
+        view.size = 8;
+        CHECK(cull() == CROFTON_WRONG_SIZE);
+        view = default_view();
+        view.frustum.size = 0;
+        CHECK(cull() == CROFTON_WRONG_SIZE);
+        view = default_view();
+        view.frustum.plane_count = CROFTON_MAX_PLANES + 1;
+        CHECK(cull() == CROFTON_OUT_OF_RANGE);
+        crofton_cull_options options{};
+        view = default_view();
+        CHECK(crofton_cull_boxes(boxes.data(), nullptr, 3, &view, &options, nullptr, visible.get()) ==
+              CROFTON_WRONG_SIZE);
+        CHECK(crofton_cull_boxes(nullptr, nullptr, 3, &view, nullptr, nullptr, visible.get()) ==
+              CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_cull_boxes(boxes.data(), nullptr, 3, &view, nullptr, nullptr, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_cull_tree(nullptr, &view, nullptr, nullptr, visible.get()) == CROFTON_BAD_HANDLE);
+        crofton_cull_statistics statistics{};
+        CHECK(crofton_visible_set_statistics(visible.get(), &statistics) == CROFTON_WRONG_SIZE);
+        boxes[1].center[0] = std::numeric_limits<double>::quiet_NaN();
+        crofton_tree* tree = nullptr;
+        CHECK(crofton_tree_create(boxes.data(), nullptr, 3, nullptr, &tree) == CROFTON_NON_FINITE);
+        CHECK(crofton_last_error_item() == 1);
+        CHECK(tree == nullptr);
+    }
+
+    TEST_CASE("no boxes at all: nothing is seen") {
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(nullptr, nullptr, 0, nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        const VisibleSet visible = make_visible_set();
+        const crofton_view view = default_view();
+        REQUIRE(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        const uint32_t* ids = nullptr;
+        std::size_t count = 1;
+        REQUIRE(crofton_visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
+        CHECK(count == 0);
+    }
+
+    TEST_CASE("tree, list and single verdicts agree with C++") {
+        const auto boxes = random_boxes(3000);
+        std::vector<std::uint32_t> masks(boxes.size());
+        for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = 1u << (i % 3);
+        crofton_view view = default_view();
+        view.layer_mask = 5;
+        crofton::cull::View same;
+        same.frustum = *crofton::frustum_of(crofton::Camera{});
+        same.layer_mask = 5;
+        crofton::cull::VisibleSet expected;
+        crofton::cull::cull(std::span(reinterpret_cast<const crofton::Obb*>(boxes.data()), boxes.size()), masks, same,
+                            expected);
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(boxes.data(), masks.data(), boxes.size(), nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        std::vector<uint8_t> verdicts(boxes.size());
+        REQUIRE(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()) == CROFTON_OK);
+        const VisibleSet visible = make_visible_set();
+        for (const bool use_tree : {false, true}) {
+            REQUIRE((use_tree ? crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get())
+                              : crofton_cull_boxes(boxes.data(), masks.data(), boxes.size(), &view, nullptr, nullptr,
+                                                   visible.get())) == CROFTON_OK);
+            const uint32_t* ids = nullptr;
+            const uint8_t* kinds = nullptr;
+            std::size_t count = 0;
+            REQUIRE(crofton_visible_set_items(visible.get(), &ids, &kinds, &count) == CROFTON_OK);
+            REQUIRE(count == expected.size());
+            REQUIRE(count > 50);
+            for (std::size_t i = 0; i < count; ++i) {
+                CHECK(ids[i] == expected.ids()[i]);
+                CHECK(kinds[i] == verdicts[ids[i]]);
+            }
+        }
+        auto statistics = sized<crofton_cull_statistics>();
+        REQUIRE(crofton_visible_set_statistics(visible.get(), &statistics) == CROFTON_OK);
+        if (crofton::cull::kCountStatistics) CHECK(statistics.nodes_tested > 0);
+    }
+}

@@ -1,0 +1,83 @@
+// Handles that destroy themselves, and structs with their size set, for the tests of the C API.
+#pragma once
+#include <crofton/capi/crofton.h>
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crofton::capi_test {
+
+template <class Handle, crofton_status (*kDestroy)(Handle*)>
+struct Destroy {
+    void operator()(Handle* handle) const { kDestroy(handle); }
+};
+template <class Handle, crofton_status (*kDestroy)(Handle*)>
+using Owned = std::unique_ptr<Handle, Destroy<Handle, kDestroy>>;
+using Scene = Owned<crofton_scene, crofton_scene_destroy>;
+using Tree = Owned<crofton_tree, crofton_tree_destroy>;
+using VisibleSet = Owned<crofton_visible_set, crofton_visible_set_destroy>;
+using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
+using Collider = Owned<crofton_collider, crofton_collider_destroy>;
+using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
+
+template <class OwnedHandle, class... Arguments>
+OwnedHandle make(crofton_status (*create)(Arguments..., typename OwnedHandle::pointer*), Arguments... arguments) {
+    typename OwnedHandle::pointer handle = nullptr;
+    REQUIRE(create(arguments..., &handle) == CROFTON_OK);
+    return OwnedHandle(handle);
+}
+inline Scene make_scene() {
+    return make<Scene>(crofton_scene_create);
+}
+inline VisibleSet make_visible_set() {
+    return make<VisibleSet>(crofton_visible_set_create);
+}
+inline Broadphase make_broadphase() {
+    return make<Broadphase>(crofton_broadphase_create);
+}
+inline Triangulator make_triangulator() {
+    return make<Triangulator>(crofton_triangulator_create);
+}
+
+template <class Struct>
+Struct sized() {
+    Struct result{};
+    result.size = sizeof result;
+    return result;
+}
+
+inline crofton_box box_at(double x, double y, double z, float half = 0.5f) {
+    return {{x, y, z}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {half, half, half}};
+}
+
+inline crofton_view default_view() {
+    auto camera = sized<crofton_camera>();
+    REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+    auto view = sized<crofton_view>();
+    view.layer_mask = ~0u;
+    view.frustum.size = sizeof view.frustum;
+    REQUIRE(crofton_frustum_from_camera(&camera, &view.frustum) == CROFTON_OK);
+    return view;
+}
+
+// A tetrahedron with its right angle at the origin and legs of one.
+struct Tetrahedron {
+    std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    std::vector<std::uint32_t> indices{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    crofton_mesh mesh() const {
+        return {sizeof(crofton_mesh), positions.data(), positions.size() / 3,
+                indices.data(),       indices.size(),   "tetrahedron"};
+    }
+};
+
+inline crofton_transform translation(double x, double y, double z) {
+    return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}};
+}
+
+inline bool mentions(const char* text, const char* part) {
+    return std::string(text).find(part) != std::string::npos;
+}
+
+}  // namespace crofton::capi_test
