@@ -1,0 +1,173 @@
+#include "crofton_scene_manager.hpp"
+
+#include <OgreCamera.h>
+#include <OgreEntity.h>
+#include <OgreRenderQueue.h>
+
+#include <chrono>
+#include <crofton/scene/transform.hpp>
+#include <optional>
+
+namespace crofton::ogre {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+glm::dvec3 to_glm(const Ogre::Vector3& v) {
+    return {v.x, v.y, v.z};
+}
+
+Aabb to_aabb(const Ogre::AxisAlignedBox& box) {
+    Aabb result;
+    result.include(to_glm(box.getMinimum()));
+    result.include(to_glm(box.getMaximum()));
+    return result;
+}
+
+// Entities deform nothing outside their local box, which turns with the node; other objects (particles, billboards) may
+// live in world space, where only their axis-aligned box is known. Empty if the objects have no extent at all.
+std::optional<Obb> box_of(const SceneNode& node) {
+    Aabb local, world;
+    for (const Ogre::MovableObject* object : node.getAttachedObjects()) {
+        const Ogre::AxisAlignedBox& box = object->getBoundingBox();
+        if (box.isNull()) continue;
+        if (object->getMovableType() == Ogre::EntityFactory::FACTORY_TYPE_NAME)
+            local.include(to_aabb(box));
+        else
+            world.include(to_aabb(object->getWorldBoundingBox(true)));
+    }
+    if (local.is_empty() && world.is_empty()) return std::nullopt;
+    if (local.is_empty()) return obb_of(world);
+    const Ogre::Affine3& matrix = node._getFullTransform();
+    scene::Transform transform;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) transform.linear[column][row] = matrix[row][column];
+        transform.translation[row] = matrix[row][3];
+    }
+    const auto turned = scene::transformed_box(transform, obb_of(local), measure::minimal_perimeter());
+    if (turned && world.is_empty()) return *turned;
+    for (const Ogre::MovableObject* object : node.getAttachedObjects())
+        if (!object->getBoundingBox().isNull()) world.include(to_aabb(object->getWorldBoundingBox(true)));
+    return obb_of(world);
+}
+
+bool is_unbounded(const SceneNode& node) {
+    for (const Ogre::MovableObject* object : node.getAttachedObjects())
+        if (object->getBoundingBox().isInfinite()) return true;
+    return false;
+}
+
+}  // namespace
+
+SceneNode::SceneNode(SceneManager& manager) : Ogre::SceneNode(&manager), manager_(manager) {}
+SceneNode::SceneNode(SceneManager& manager, const Ogre::String& name)
+    : Ogre::SceneNode(&manager, name), manager_(manager) {}
+SceneNode::~SceneNode() {
+    manager_.forget(*this);
+}
+
+void SceneNode::_updateBounds() {
+    Ogre::SceneNode::_updateBounds();
+    manager_.bounds_changed(*this);
+}
+
+void SceneNode::setInSceneGraph(bool in_graph) {
+    if (!in_graph) manager_.forget(*this);
+    Ogre::SceneNode::setInSceneGraph(in_graph);
+}
+
+SceneManager::SceneManager(const Ogre::String& name) : Ogre::SceneManager(name) {}
+
+// Nodes tell their manager when they go, so they must go while it is still whole.
+SceneManager::~SceneManager() {
+    clearScene();
+    mSceneRoot.reset();
+}
+
+const Ogre::String& SceneManager::getTypeName() const {
+    static const Ogre::String name = SceneManagerFactory::kTypeName;
+    return name;
+}
+
+Ogre::SceneNode* SceneManager::createSceneNodeImpl() {
+    return OGRE_NEW SceneNode(*this);
+}
+Ogre::SceneNode* SceneManager::createSceneNodeImpl(const Ogre::String& name) {
+    return OGRE_NEW SceneNode(*this, name);
+}
+
+void SceneManager::bounds_changed(SceneNode& node) {
+    if (node.getAttachedObjects().empty() && node.item_ == tree::kNone && !node.unbounded_) return;
+    const bool unbounded = is_unbounded(node);
+    const std::optional<Obb> box = unbounded ? std::nullopt : box_of(node);
+    if (!box || unbounded != node.unbounded_) forget(node);
+    if (unbounded && !node.unbounded_) {
+        node.unbounded_ = true;
+        unbounded_.push_back(&node);
+    }
+    if (!box) return;
+    if (node.item_ != tree::kNone) {
+        index_.move(node.item_, *box);
+        return;
+    }
+    node.item_ = index_.insert(*box);
+    if (nodes_.size() <= node.item_) nodes_.resize(node.item_ + 1);
+    nodes_[node.item_] = &node;
+}
+
+void SceneManager::forget(SceneNode& node) {
+    if (node.unbounded_) std::erase(unbounded_, &node);
+    node.unbounded_ = false;
+    if (node.item_ == tree::kNone) return;
+    index_.remove(node.item_);
+    nodes_[node.item_] = nullptr;
+    node.item_ = tree::kNone;
+}
+
+Frustum SceneManager::frustum_of(const Ogre::Camera& camera) {
+    const Ogre::Frustum* custom = camera.getCullingFrustum();
+    const Ogre::Frustum& source = custom ? *custom : camera;
+    const Ogre::Plane* planes = source.getFrustumPlanes();
+    Frustum frustum;
+    for (int i = 0; i < 6; ++i) {
+        if (i == Ogre::FRUSTUM_PLANE_FAR && source.getFarClipDistance() == 0) continue;
+        frustum.planes[frustum.plane_count++] = {to_glm(planes[i].normal), planes[i].d};
+    }
+    return frustum;
+}
+
+void SceneManager::queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
+                                 bool only_shadow_casters) {
+    for (Ogre::MovableObject* object : node.getAttachedObjects())
+        getRenderQueue()->processVisibleObject(object, camera, only_shadow_casters, bounds);
+    if (Ogre::DebugDrawer* drawer = getDebugDrawer()) drawer->drawSceneNode(&node);
+}
+
+void SceneManager::_findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
+                                       bool only_shadow_casters) {
+    const auto start = Clock::now();
+    if (use_ogre_culling_) {
+        Ogre::SceneManager::_findVisibleObjects(camera, bounds, only_shadow_casters);
+        find_times_ = {0.0, microseconds_since(start)};
+        return;
+    }
+    index_.update();
+    const auto cull_start = Clock::now();
+    const cull::VisibleSet& visible = index_.cull({.frustum = frustum_of(*camera)});
+    const double cull_time = microseconds_since(cull_start);
+    visible_nodes_ = visible.size();
+    for (const cull::ItemId item : visible.ids()) queue_objects(*nodes_[item], camera, bounds, only_shadow_casters);
+    for (SceneNode* node : unbounded_) queue_objects(*node, camera, bounds, only_shadow_casters);
+    find_times_ = {cull_time, microseconds_since(start)};
+}
+
+void SceneManagerFactory::initMetaData() const {
+    mMetaData.typeName = kTypeName;
+    mMetaData.worldGeometrySupported = false;
+}
+
+}  // namespace crofton::ogre

@@ -1,0 +1,82 @@
+// An OGRE scene manager that asks Crofton which objects a camera sees; the rest of OGRE notices nothing.
+#pragma once
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+
+#include <vector>
+
+#include "../adapter/cull_index.hpp"
+
+namespace crofton::ogre {
+
+class SceneManager;
+
+// Tells its manager whenever the box around its objects may have changed.
+class SceneNode final : public Ogre::SceneNode {
+  public:
+    SceneNode(SceneManager& manager);
+    SceneNode(SceneManager& manager, const Ogre::String& name);
+    ~SceneNode() override;
+    void _updateBounds() override;
+
+  private:
+    friend class SceneManager;
+    void setInSceneGraph(bool in_graph) override;
+
+    SceneManager& manager_;
+    cull::ItemId item_ = tree::kNone;
+    bool unbounded_ = false;  // in the manager's list of objects that every camera sees
+};
+
+// Where the time of the last _findVisibleObjects went, in microseconds.
+struct FindTimes {
+    double cull = 0.0;   // the frustum against the objects' boxes
+    double total = 0.0;  // with filling OGRE's render queue
+};
+
+class SceneManager final : public Ogre::SceneManager {
+  public:
+    explicit SceneManager(const Ogre::String& name);
+    ~SceneManager() override;
+    const Ogre::String& getTypeName() const override;
+
+    // True hands the search back to OGRE, for comparison.
+    void use_ogre_culling(bool use) { use_ogre_culling_ = use; }
+    [[nodiscard]] const FindTimes& find_times() const { return find_times_; }
+    // Objects with a box that the last search of ours saw.
+    [[nodiscard]] std::size_t visible_nodes() const { return visible_nodes_; }
+
+    void _findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
+                             bool only_shadow_casters) override;
+
+    // The half-spaces that OGRE itself tests with, their stored floats taken as they are.
+    [[nodiscard]] static Frustum frustum_of(const Ogre::Camera& camera);
+
+  private:
+    friend class SceneNode;
+    Ogre::SceneNode* createSceneNodeImpl() override;
+    Ogre::SceneNode* createSceneNodeImpl(const Ogre::String& name) override;
+    void bounds_changed(SceneNode& node);
+    void forget(SceneNode& node);
+    void queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
+                       bool only_shadow_casters);
+
+    adapter::CullIndex index_;
+    std::vector<SceneNode*> nodes_;      // by item
+    std::vector<SceneNode*> unbounded_;  // hold skies and the like
+    bool use_ogre_culling_ = false;
+    std::size_t visible_nodes_ = 0;
+    FindTimes find_times_;
+};
+
+class SceneManagerFactory final : public Ogre::SceneManagerFactory {
+  public:
+    static constexpr const char* kTypeName = "CroftonSceneManager";
+    Ogre::SceneManager* createInstance(const Ogre::String& name) override { return OGRE_NEW SceneManager(name); }
+    void destroyInstance(Ogre::SceneManager* manager) override { OGRE_DELETE manager; }
+
+  private:
+    void initMetaData() const override;
+};
+
+}  // namespace crofton::ogre
