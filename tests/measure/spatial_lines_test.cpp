@@ -14,7 +14,10 @@ using std::numbers::pi;
 namespace {
 
 ConvexBody box(const glm::dvec3& low, const glm::dvec3& high) {
-    return ConvexBody::box(obb_of(Aabb{low, high}));
+    ConvexBody result;
+    for (int i = 0; i < 8; ++i)
+        result.points.emplace_back((i & 1 ? high : low).x, (i & 2 ? high : low).y, (i & 4 ? high : low).z);
+    return result;
 }
 
 void check(const Result<Enclosure>& measured, double expected) {
