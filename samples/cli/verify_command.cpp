@@ -19,6 +19,7 @@ struct Topic {
 };
 constexpr Topic kTopics[] = {
     {"paper", verify_paper},
+    {"lines", verify_lines},
 };
 
 struct Request {

@@ -1,16 +1,13 @@
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <numbers>
+#include <utility>
 
 #include "verify_topics.hpp"
 
 namespace crofton::cli {
 
-std::vector<VerifyRow> verify_paper(const VerifyOptions&) {
-    const double pi = std::numbers::pi;
+std::vector<VerifyRow> verify_paper(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
-    rows.push_back(computed_row("a unit ball grown by a unit ball is a ball of radius 2 (kinematic formula)",
-                                "THEORY.md (1)", 32.0 / 3.0 * pi,
-                                measure::kinematic_measure(measure::of_ball(1.0), measure::of_ball(1.0)), 1e-12));
+    for (const auto part : {kinematic_rows, planar_rows, criterion_rows})
+        for (VerifyRow& row : part(options)) rows.push_back(std::move(row));
     return rows;
 }
 

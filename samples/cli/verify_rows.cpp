@@ -59,13 +59,18 @@ Share share_of(std::uint64_t hits, std::uint64_t trials) {
 }
 
 std::string table_of(const std::vector<VerifyRow>& rows) {
+    // In characters, not bytes: continuation bytes of UTF-8 take no room.
+    const auto width_of = [](const std::string& text) {
+        return static_cast<std::size_t>(
+            std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+    };
     std::size_t claim_width = 5, source_width = 6;
     for (const VerifyRow& r : rows) {
-        claim_width = std::max(claim_width, r.claim.size());
-        source_width = std::max(source_width, r.source.size());
+        claim_width = std::max(claim_width, width_of(r.claim));
+        source_width = std::max(source_width, width_of(r.source));
     }
-    const auto padded = [](const std::string& text, std::size_t width) {
-        return text + std::string(width - text.size() + 2, ' ');
+    const auto padded = [&](const std::string& text, std::size_t width) {
+        return text + std::string(width - width_of(text) + 2, ' ');
     };
     const auto right = [](const std::string& text) {
         return std::string(text.size() < 14 ? 14 - text.size() : 1, ' ') + text;

@@ -1,0 +1,55 @@
+#include <doctest/doctest.h>
+#include <cmath>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+
+TEST_SUITE("cli/verify") {
+    TEST_CASE("a topic that does not exist, no trials and a folder that is missing are bad usage") {
+        for (const char* arguments :
+             {"verify nothing", "verify lines --trials 0", "verify lines --trials many", "verify --seed"}) {
+            const CliRun run = run_cli(arguments);
+            CHECK(run.status == 2);
+            CHECK(run.out.empty());
+            CHECK_FALSE(run.err.empty());
+        }
+        const CliRun run = run_cli("verify lines --trials 1000 --json /no/such/folder/rows.json");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("/no/such/folder/rows.json") != std::string::npos);
+    }
+
+    TEST_CASE("every claim on lines holds, right ones by agreement and wrong ones by rejection") {
+        const CliRun run = run_cli("verify lines --trials 2000 --json -");
+        CHECK(run.status == 0);
+        const auto rows = run.json();
+        REQUIRE(rows.is_array());
+        int wrong = 0;
+        for (const auto& row : rows) {
+            for (const char* key : {"claim", "source", "predicted", "measured", "standard_error", "z", "holds"})
+                CHECK(row.contains(key));
+            CHECK(row["holds"] == true);
+            const bool is_wrong = row["claim"].get<std::string>().rfind("wrong, must be rejected: ", 0) == 0;
+            wrong += is_wrong;
+            CHECK((std::abs(row["z"].get<double>()) > 4.0) == is_wrong);
+        }
+        CHECK(wrong >= 4);
+    }
+
+    TEST_CASE("the paper's claims hold for several seeds, and a seed gives the same bits again") {
+        for (const char* seed : {"1", "7", "123456789"}) {
+            const std::string arguments = std::string("verify paper --trials 2000 --json - --seed ") + seed;
+            const CliRun run = run_cli(arguments);
+            CHECK(run.status == 0);
+            CHECK(run.json().size() > 60);
+            CHECK(run_cli(arguments).out == run.out);
+        }
+    }
+
+    TEST_CASE("the table lists one claim a line") {
+        const CliRun run = run_cli("verify lines --trials 1000");
+        CHECK(run.status == 0);
+        CHECK(run.out.rfind("claim", 0) == 0);
+        CHECK(run.out.find("cosine-weighted from a box") != std::string::npos);
+    }
+}
