@@ -136,7 +136,7 @@ void Builder::add_park(const Block& b) {
 
 void Builder::add_market(const Block& b) {
     const Ground& g = ground(b, false);
-    place(Parts{g.paving, g.gravel, g.kerb}, turned(b.center().x, kKerb, b.center().z, 0.0));
+    place(Parts{g.paving, g.setts, g.gravel, g.kerb}, turned(b.center().x, kKerb, b.center().z, 0.0));
     place(church_, turned(b.x0 + 11.0, kKerb, b.center().z + 1.0, 0.0));
     place(fountain_, b.center().x + 4.0, b.center().z, 0.0);
     auto& random = library_.random;
@@ -155,7 +155,7 @@ void Builder::add_market(const Block& b) {
 
 void Builder::add_building_site(const Block& b) {
     const Ground& g = ground(b, false);
-    place(Parts{g.paving, g.gravel, g.kerb}, turned(b.center().x, kKerb, b.center().z, 0.0));
+    place(Parts{g.paving, g.setts, g.gravel, g.kerb}, turned(b.center().x, kKerb, b.center().z, 0.0));
     // A concrete frame under construction, with scaffolds on its long sides.
     MeshBuilder frame;
     const glm::vec3 concrete = srgb(176, 174, 168);

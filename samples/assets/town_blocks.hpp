@@ -44,7 +44,7 @@ class Builder {
 
   private:
     struct Ground {
-        scene::MeshId paving, lawn, gravel, kerb;
+        scene::MeshId paving, lawn, setts, gravel, kerb;
     };
     const Ground& ground(const Block& block, bool courtyard);
     void add_row(double length, const scene::Transform& frame);
