@@ -236,7 +236,7 @@ Result<void> Domain::check_holes() {
 // Turning clockwise from the corner, the first constraint bounds its sector; the ring that made it has its point there.
 Index Domain::input_index(Index e) const {
     const Index v = mesh_.origin[e];
-    if (points_.size() == vertex_of_.size()) return input_of_[v];
+    if (!has_shared_positions()) return input_of_[v];
     for (Index edge = e;;) {
         for (Index id = mesh_.mark[edge] - 1; id != kNone; id = record(id).next) {
             const Index input = record(id).input;

@@ -27,6 +27,9 @@ class Domain {
     [[nodiscard]] double scale() const { return scale_; }
     // The caller's index for the corner of triangle e / 4 at origin[e]; e's triangle must be inside.
     [[nodiscard]] Index input_index(Index e) const;
+    [[nodiscard]] bool has_shared_positions() const { return points_.size() != vertex_of_.size(); }
+    // The only index of a vertex where no positions are shared.
+    [[nodiscard]] Index input_of(Index vertex) const { return input_of_[vertex]; }
     [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
 
   private:

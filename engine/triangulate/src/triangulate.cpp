@@ -4,11 +4,13 @@
 #include <new>
 
 #include "domain.hpp"
+#include "minimum_weight.hpp"
 
 namespace crofton::triangulate {
 
 struct Triangulator::Workspace {
     Domain domain;
+    MinimumWeight minimum_weight;
 };
 
 Triangulator::Triangulator() : workspace_(new (Allocator<Workspace>().allocate(1)) Workspace) {}
@@ -48,8 +50,12 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
     result.weight = 0.0;
     result.optimal = false;
     result.gap = std::numeric_limits<double>::infinity();
-    (void)options;
     if (auto built = workspace_->domain.build(polygon); !built) return built;
+    if (options.method == Method::minimum_weight) {
+        const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, result);
+        if (!solved) return tl::unexpected<Error>(solved.error());
+        if (*solved) return {};
+    }
     write(workspace_->domain, result);
     return {};
 }

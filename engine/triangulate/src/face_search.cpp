@@ -1,0 +1,251 @@
+#include "face_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crofton::triangulate {
+namespace {
+
+constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
+
+double total_length(std::span<const glm::dvec2> points, std::span<const Segment> segments) {
+    double sum = 0.0;
+    for (const Segment& s : segments) {
+        const glm::dvec2 d = points[s.from] - points[s.to];
+        sum += std::sqrt(d.x * d.x + d.y * d.y);
+    }
+    return sum;
+}
+
+}  // namespace
+
+FaceSearch::Outcome FaceSearch::solve(std::span<const glm::dvec2> points, const CandidateGraph& graph,
+                                      const Faces& faces, Index name, SearchBudget& budget,
+                                      Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) {
+    if (faces.component_size[name] > kMostPieces) return Outcome::gave_up;
+    levels_.resize(kMostPieces + 1);
+    extract(points, graph, faces, name, levels_[0]);
+    const Outcome outcome = solve_level(0, budget);
+    if (outcome == Outcome::solved) raise(levels_[0], triangles, diagonals);
+    return outcome;
+}
+
+void FaceSearch::raise(const Level& level, Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const {
+    for (const auto& t : level.best_triangles) {
+        triangles.push_back({level.outer_half_edge[t[0]], level.outer_half_edge[t[1]], level.outer_half_edge[t[2]]});
+    }
+    for (const auto& d : level.best_diagonals)
+        diagonals.push_back({level.outer_vertex[d.from], level.outer_vertex[d.to]});
+}
+
+// Copies one face: its walks with both half-edges of every side, and the living candidates inside.
+void FaceSearch::extract(std::span<const glm::dvec2> points, const CandidateGraph& graph, const Faces& faces,
+                         Index name, Level& level) {
+    members_.clear();
+    const auto member = [&](Index h) { return faces.walk_of[h] != kNone && faces.component[faces.walk_of[h]] == name; };
+    const auto add_candidate = [&](Index h) {
+        if ((graph.flags[h] & CandidateGraph::kDead) == 0) members_.push_back(h);
+    };
+    for (std::size_t w = 0; w < faces.walk_count(); ++w) {
+        if (faces.component[w] != name) continue;
+        const auto walk = faces.walk(w);
+        for (std::size_t i = 0; i < walk.size(); ++i) {
+            members_.push_back(walk[i]);
+            members_.push_back(graph.twin[walk[i]]);
+            const Index incoming = graph.twin[walk[i == 0 ? walk.size() - 1 : i - 1]];
+            const Index v = graph.destination[graph.twin[walk[i]]], begin = graph.first[v], end = graph.first[v + 1];
+            for (Index h = walk[i] + 1 == end ? begin : walk[i] + 1; h != incoming; h = h + 1 == end ? begin : h + 1) {
+                add_candidate(h);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < faces.isolated.size(); ++i) {
+        if (faces.component[faces.walk_count() + i] != name) continue;
+        const Index v = faces.isolated[i];
+        for (Index h = graph.first[v]; h < graph.first[v + 1]; ++h) add_candidate(h);
+    }
+    std::sort(members_.begin(), members_.end());
+    members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
+
+    CandidateGraph& g = level.graph;
+    const auto count = static_cast<Index>(members_.size());
+    level.outer_half_edge.assign(members_.begin(), members_.end());
+    level.outer_vertex.clear();
+    level.points.clear();
+    g.first.clear();
+    g.destination.resize(count);
+    g.twin.resize(count);
+    g.flags.resize(count);
+    // Half-edges of one vertex are neighbours in the outer graph, and so they are here.
+    for (Index h = 0; h < count; ++h) {
+        const Index v = graph.destination[graph.twin[members_[h]]];
+        if (level.outer_vertex.empty() || level.outer_vertex.back() != v) {
+            level.outer_vertex.push_back(v);
+            level.points.push_back(points[v]);
+            g.first.push_back(h);
+        }
+    }
+    g.first.push_back(count);
+    const auto local = [](const Vector<Index>& sorted, Index outer) {
+        return static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), outer) - sorted.begin());
+    };
+    for (Index h = 0; h < count; ++h) {
+        const Index outer = members_[h];
+        g.twin[h] = local(level.outer_half_edge, graph.twin[outer]);
+        g.destination[h] = local(level.outer_vertex, graph.destination[outer]);
+        const bool fixed = (graph.flags[outer] & kFixed) != 0;
+        g.flags[h] = fixed ? CandidateGraph::kConstraint : 0;
+        if (fixed && !member(outer)) g.flags[h] |= CandidateGraph::kLeftOutside;
+    }
+}
+
+// All pairs: faces that end up here are small.
+void FaceSearch::find_crossings(Level& level) const {
+    const CandidateGraph& g = level.graph;
+    const auto count = static_cast<Index>(g.half_edge_count());
+    level.crossing_begin.assign(1, 0);
+    level.crossings.clear();
+    const auto open = [&](Index h) { return (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0; };
+    for (Index h = 0; h < count; ++h) {
+        if (open(h)) {
+            const Index a = g.destination[g.twin[h]], b = g.destination[h];
+            for (Index k = 0; k < count; ++k) {
+                const Index c = g.destination[g.twin[k]], d = g.destination[k];
+                if (c < d && open(k) && std::min(a, b) < d && c < std::max(a, b) &&
+                    candidates_cross(level.points, a, b, c, d)) {
+                    level.crossings.push_back(k);
+                }
+            }
+        }
+        level.crossing_begin.push_back(static_cast<Index>(level.crossings.size()));
+    }
+}
+
+// The smallest set of edges of which one must be in every triangulation.
+void FaceSearch::choose(Level& level) const {
+    const CandidateGraph& g = level.graph;
+    level.choices.clear();
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    Vector<Index> found;
+    const auto consider = [&](Index v, bool smaller) {
+        found.clear();
+        for (Index h = g.first[v]; h < g.first[v + 1]; ++h) {
+            const bool open = (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0;
+            if (open && (g.destination[h] < v) == smaller) found.push_back(h);
+        }
+        if (found.size() < fewest) fewest = found.size(), level.choices = found;
+    };
+    for (const Index v : level.faces.isolated) consider(v, true), consider(v, false);
+    for (std::size_t w = 0; w < level.faces.walk_count(); ++w) {
+        const auto walk = level.faces.walk(w);
+        if (is_outer(level.points, g, walk)) continue;
+        Index low = kNone, high = 0;
+        for (const Index h : walk) low = std::min(low, g.destination[h]), high = std::max(high, g.destination[h]);
+        consider(low, true);
+        consider(high, false);
+    }
+    std::sort(level.choices.begin(), level.choices.end(), [&](Index h, Index k) {
+        const glm::dvec2 d = level.points[g.destination[h]] - level.points[g.destination[g.twin[h]]];
+        const glm::dvec2 e = level.points[g.destination[k]] - level.points[g.destination[g.twin[k]]];
+        const double dd = d.x * d.x + d.y * d.y, ee = e.x * e.x + e.y * e.y;
+        return dd != ee ? dd < ee : h < k;
+    });
+}
+
+FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, SearchBudget& budget) {
+    Level& level = levels_[depth];
+    find_crossings(level);
+    find_faces(level.graph, kFixed, level.faces);
+    choose(level);
+    level.flags = level.graph.flags;
+    bool found = false;
+    double best = 0.0;
+    for (std::size_t i = 0; i < level.choices.size(); ++i) {
+        if (!budget.spend()) return Outcome::gave_up;
+        level.graph.flags = level.flags;
+        const Outcome outcome = solve_choice(depth, level.choices[i], budget);
+        if (outcome == Outcome::gave_up) return outcome;
+        if (outcome == Outcome::solved) {
+            const double weight = total_length(level.points, level.diagonals);
+            const double tolerance = (static_cast<double>(level.diagonals.size()) + 8.0) * 0x1p-51 * weight;
+            const bool lighter =
+                !found || weight < best - tolerance ||
+                (weight <= best + tolerance && sums_.compare(level.points, level.diagonals, level.best_diagonals) < 0);
+            if (lighter) {
+                best = weight;
+                std::swap(level.triangles, level.best_triangles);
+                std::swap(level.diagonals, level.best_diagonals);
+            }
+            found = true;
+        }
+        // The branches to come need not try what has been tried.
+        const Index choice = level.choices[i];
+        level.flags[choice] |= CandidateGraph::kDead;
+        level.flags[level.graph.twin[choice]] |= CandidateGraph::kDead;
+    }
+    return found ? Outcome::solved : Outcome::infeasible;
+}
+
+FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, SearchBudget& budget) {
+    Level& level = levels_[depth];
+    CandidateGraph& g = level.graph;
+    const auto fix = [&](Index h) {
+        g.flags[h] = static_cast<std::uint8_t>((g.flags[h] & ~CandidateGraph::kDead) | CandidateGraph::kConstraint);
+    };
+    for (Index i = level.crossing_begin[choice]; i < level.crossing_begin[choice + 1]; ++i) {
+        const Index k = level.crossings[i];
+        g.flags[k] |= CandidateGraph::kDead;
+        g.flags[g.twin[k]] |= CandidateGraph::kDead;
+    }
+    fix(choice);
+    fix(g.twin[choice]);
+    skeleton_.prune(level.points, g);
+    mark_certain(level);
+    level.triangles.clear();
+    level.diagonals.clear();
+    for (Index h = 0; h < g.half_edge_count(); ++h) {
+        const bool fresh = (g.flags[h] & kFixed) != 0 && (level.flags[h] & kFixed) == 0;
+        if (fresh && h < g.twin[h]) level.diagonals.push_back({g.destination[g.twin[h]], g.destination[h]});
+    }
+    return solve_rest(depth, budget);
+}
+
+void FaceSearch::mark_certain(Level& level) const {
+    CandidateGraph& g = level.graph;
+    for (Index h = 0; h < g.half_edge_count(); ++h) {
+        if ((g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0) continue;
+        bool crossed = false;
+        for (Index i = level.crossing_begin[h]; i < level.crossing_begin[h + 1] && !crossed; ++i) {
+            crossed = (g.flags[level.crossings[i]] & CandidateGraph::kDead) == 0;
+        }
+        if (!crossed) g.flags[h] |= CandidateGraph::kCertain;
+    }
+}
+
+FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, SearchBudget& budget) {
+    Level& level = levels_[depth];
+    find_faces(level.graph, kFixed, level.faces);
+    const auto pieces = static_cast<Index>(level.faces.component.size());
+    // Simple faces first: they tell at once if this branch has no triangulation.
+    program_.start(level.points, level.graph);
+    for (Index w = 0; w < pieces; ++w) {
+        if (level.faces.component[w] != w || level.faces.component_size[w] != 1) continue;
+        if (w >= level.faces.walk_count()) return Outcome::infeasible;
+        const auto walk = level.faces.walk(w);
+        if (walk.size() < 3 || !is_outer(level.points, level.graph, walk)) return Outcome::infeasible;
+        if (!(program_.solve(walk) < std::numeric_limits<double>::infinity())) return Outcome::infeasible;
+        program_.append(level.triangles, level.diagonals);
+    }
+    for (Index w = 0; w < pieces; ++w) {
+        if (level.faces.component[w] != w || level.faces.component_size[w] == 1) continue;
+        if (depth + 1 >= levels_.size()) return Outcome::gave_up;
+        extract(level.points, level.graph, level.faces, w, levels_[depth + 1]);
+        const Outcome outcome = solve_level(depth + 1, budget);
+        if (outcome != Outcome::solved) return outcome;
+        raise(levels_[depth + 1], level.triangles, level.diagonals);
+    }
+    return Outcome::solved;
+}
+
+}  // namespace crofton::triangulate

@@ -1,0 +1,169 @@
+#include "lmt_skeleton.hpp"
+
+#include <algorithm>
+#include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/predicates.hpp>
+
+namespace crofton::triangulate {
+
+void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph) {
+    points_ = points;
+    graph_ = &graph;
+    const auto count = static_cast<Index>(graph.half_edge_count());
+    origin_.resize(count);
+    for (Index v = 0; v < graph.vertex_count(); ++v) {
+        for (Index h = graph.first[v]; h < graph.first[v + 1]; ++h) origin_[h] = v;
+    }
+    certificates_.assign(count, {});
+    queued_.assign(count, 0);
+    stamp_.assign(graph.vertex_count(), 0);
+    stamp_value_ = 0;
+    stack_.clear();
+    for (Index h = 0; h < count; ++h) {
+        if (h < graph.twin[h] && (graph.flags[h] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0) {
+            stack_.push_back(h);
+            queued_[h] = 1;
+        }
+    }
+    while (!stack_.empty()) {
+        const Index h = stack_.back();
+        stack_.pop_back();
+        queued_[h] = 0;
+        if (alive(h) && !certify(h)) kill(h);
+    }
+}
+
+// Looks for a common neighbour on each side that makes h locally minimal.
+bool LmtSkeleton::certify(Index h) {
+    const auto& g = *graph_;
+    const Index p = origin_[h], q = g.destination[h];
+    ++stamp_value_;
+    for (Index k = g.first[q]; k < g.first[q + 1]; ++k) {
+        if (alive(k)) stamp_[g.destination[k]] = stamp_value_;
+    }
+    left_.clear();
+    right_.clear();
+    const auto &a = points_[p], &b = points_[q];
+    for (Index k = g.first[p]; k < g.first[p + 1]; ++k) {
+        const Index s = g.destination[k];
+        if (stamp_[s] != stamp_value_ || !alive(k)) continue;
+        const int side = orientation(a, b, points_[s]);
+        if (side > 0) left_.push_back(s);
+        if (side < 0) right_.push_back(s);
+    }
+    for (const Index left : left_) {
+        for (const Index right : right_) {
+            if (locally_minimal(p, q, left, right)) {
+                certificates_[h] = {left, right};
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool LmtSkeleton::locally_minimal(Index p, Index q, Index left, Index right) const {
+    const auto& points = points_;
+    const bool convex = orientation(points[right], points[left], points[p]) > 0 &&
+                        orientation(points[right], points[left], points[q]) < 0;
+    return !convex || !shorter(left, right, p, q);
+}
+
+bool LmtSkeleton::shorter(Index a, Index b, Index p, Index q) const {
+    const auto& points = points_;
+    const glm::dvec2 d = points[a] - points[b], e = points[p] - points[q];
+    const double dd = d.x * d.x + d.y * d.y, ee = e.x * e.x + e.y * e.y;
+    // Each squared length errs by less than 4 units of 2^-53.
+    if (std::fabs(dd - ee) > (dd + ee) * 0x1p-50) return dd < ee;
+    const auto square = [&](Index i, Index j) {
+        const auto x = exact_difference(points[i].x, points[j].x), y = exact_difference(points[i].y, points[j].y);
+        return x * x + y * y;
+    };
+    const int sign = (square(a, b) - square(p, q)).sign();
+    if (sign != 0) return sign < 0;
+    return std::pair(std::min(a, b), std::max(a, b)) < std::pair(std::min(p, q), std::max(p, q));
+}
+
+// Removes an edge and puts those on the stack whose certificate used it.
+void LmtSkeleton::kill(Index h) {
+    auto& g = *graph_;
+    for (const Index k : {h, g.twin[h]}) {
+        g.flags[k] |= CandidateGraph::kDead;
+        const Index p = origin_[k], q = g.destination[k];
+        for (Index e = g.first[p]; e < g.first[p + 1]; ++e) {
+            const Index canonical = std::min(e, g.twin[e]);
+            const Certificate& c = certificates_[canonical];
+            if ((c.left == q || c.right == q) && !queued_[canonical] && alive(canonical)) {
+                queued_[canonical] = 1;
+                stack_.push_back(canonical);
+            }
+        }
+    }
+}
+
+// Living Delaunay edges cross only others; those walk through the Delaunay triangles and meet each other inside them.
+void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh) {
+    mesh_ = &mesh;
+    auto& g = *graph_;
+    const auto count = static_cast<Index>(g.half_edge_count());
+    crossed_.assign(count, 0);
+    chord_head_.assign(mesh_->triangle_count(), kNone);
+    chords_.clear();
+    for (Index h = 0; h < count; ++h) {
+        if (h < g.twin[h] && alive(h) && (g.flags[h] & CandidateGraph::kDelaunay) == 0) walk(h);
+    }
+    cross_within_triangles();
+    for (Index h = 0; h < count; ++h) {
+        if (alive(h) && !crossed_[h] && !crossed_[g.twin[h]]) g.flags[h] |= CandidateGraph::kCertain;
+    }
+}
+
+void LmtSkeleton::walk(Index h) {
+    const auto& g = *graph_;
+    const Index p = origin_[h], q = g.destination[h];
+    const auto &from = mesh_->points[p], &to = mesh_->points[q];
+    const auto visit = [&](Index triangle) {
+        chords_.push_back({h, chord_head_[triangle]});
+        chord_head_[triangle] = static_cast<Index>(chords_.size() - 1);
+    };
+    Index e = mesh_->vertex_edge[p];
+    while (orientation(from, to, mesh_->points[mesh_->destination(e)]) >= 0 ||
+           orientation(from, to, mesh_->points[mesh_->apex(e)]) <= 0) {
+        e = mesh_->rotate(e);
+    }
+    visit(e / 4);
+    for (Index crossing = next(e);;) {
+        const Index u = mesh_->origin[crossing], w = mesh_->destination(crossing);
+        for (Index k = g.first[u]; k < g.first[u + 1]; ++k) {
+            if (g.destination[k] == w && alive(k)) crossed_[k] = crossed_[g.twin[k]] = crossed_[h] = 1;
+        }
+        e = mesh_->twin[crossing];
+        visit(e / 4);
+        const Index apex = mesh_->apex(e);
+        if (apex == q) return;
+        // e runs from the left side to the right one.
+        crossing = orientation(from, to, mesh_->points[apex]) > 0 ? next(e) : previous(e);
+    }
+}
+
+void LmtSkeleton::cross_within_triangles() {
+    const auto& g = *graph_;
+    for (const Index head : chord_head_) {
+        for (Index i = head; i != kNone; i = chords_[i].next) {
+            for (Index j = chords_[i].next; j != kNone; j = chords_[j].next) {
+                const Index h = chords_[i].half_edge, k = chords_[j].half_edge;
+                if ((!crossed_[h] || !crossed_[k]) &&
+                    candidates_cross(points_, origin_[h], g.destination[h], origin_[k], g.destination[k]))
+                    crossed_[h] = crossed_[k] = 1;
+            }
+        }
+    }
+}
+
+bool candidates_cross(std::span<const glm::dvec2> points, Index a, Index b, Index c, Index d) {
+    if (a == c || a == d || b == c || b == d) return false;
+    return orientation(points[a], points[b], points[c]) * orientation(points[a], points[b], points[d]) < 0 &&
+           orientation(points[c], points[d], points[a]) * orientation(points[c], points[d], points[b]) < 0;
+}
+
+}  // namespace crofton::triangulate

@@ -1,0 +1,182 @@
+#include "root_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/expansion.hpp>
+#include <limits>
+
+namespace crofton::triangulate {
+namespace {
+
+auto exact_square(std::span<const glm::dvec2> points, const Segment& s) {
+    const auto x = exact_difference(points[s.from].x, points[s.to].x);
+    const auto y = exact_difference(points[s.from].y, points[s.to].y);
+    return x * x + y * y;
+}
+
+struct DoubleDouble {
+    double high = 0.0, low = 0.0;
+    void add(double h, double l) {
+        const auto sum = detail::two_sum(high, h);
+        const auto renormalised = detail::two_sum(sum.high, sum.low + low + l);
+        high = renormalised.high;
+        low = renormalised.low;
+    }
+};
+
+}  // namespace
+
+int RootSums::compare(std::span<const glm::dvec2> points, std::span<const Segment> a, std::span<const Segment> b) {
+    terms_.clear();
+    append(points, a, 1);
+    append(points, b, -1);
+    cancel(points);
+    if (terms_.empty()) return 0;
+    if (const int sign = sum_to_100_bits(); sign != 0) return sign;
+    widen(points);
+    if (classes_cancel()) return 0;
+    for (std::size_t bits = 128;; bits *= 2) {
+        if (const int sign = sum_to(bits); sign != 0) return sign;
+    }
+}
+
+void RootSums::append(std::span<const glm::dvec2> points, std::span<const Segment> segments, int sign) {
+    for (const Segment& s : segments) {
+        const auto x = detail::two_sum(points[s.from].x, -points[s.to].x);
+        const auto y = detail::two_sum(points[s.from].y, -points[s.to].y);
+        const auto xx = detail::two_product(x.high, x.high), yy = detail::two_product(y.high, y.high);
+        const auto sum = detail::two_sum(xx.high, yy.high);
+        const bool exact = x.low == 0.0 && y.low == 0.0 && xx.low == 0.0 && yy.low == 0.0;
+        const double rest = sum.low + (xx.low + yy.low + 2.0 * (x.high * x.low + y.high * y.low));
+        terms_.push_back({s, sum.high, rest, sign, exact});
+    }
+}
+
+// Sums the coefficients of equal lengths and drops those that vanish.
+void RootSums::cancel(std::span<const glm::dvec2> points) {
+    const auto less = [](const Term& a, const Term& b) { return a.square < b.square; };
+    std::sort(terms_.begin(), terms_.end(), less);
+    const auto equal = [&](const Term& a, const Term& b) {
+        if (a.exact && b.exact) return a.square == b.square && a.rest == b.rest;
+        if (a.segment.from == b.segment.from && a.segment.to == b.segment.to) return true;
+        return (exact_square(points, a.segment) - exact_square(points, b.segment)).sign() == 0;
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+        const Term term = terms_[i];
+        bool merged = false;
+        for (std::size_t j = kept; j-- > 0 && !merged && terms_[j].square >= term.square * (1.0 - 0x1p-49);) {
+            if (equal(terms_[j], term)) {
+                terms_[j].coefficient += term.coefficient;
+                merged = true;
+            }
+        }
+        if (!merged) terms_[kept++] = term;
+    }
+    terms_.resize(kept);
+    terms_.erase(std::remove_if(terms_.begin(), terms_.end(), [](const Term& t) { return t.coefficient == 0; }),
+                 terms_.end());
+}
+
+// √(s + r) = q + (s − q² + r) / 2q with q = √s rounded: the neglected term is below q·2^-104, as are the roundings of
+// the correction; each addition errs by at most 2^-104 of the running sum.
+int RootSums::sum_to_100_bits() const {
+    DoubleDouble sum;
+    double magnitude = 0.0;
+    for (const Term& t : terms_) {
+        const double root = std::sqrt(t.square);
+        const double rest = (std::fma(-root, root, t.square) + t.rest) / (2.0 * root);
+        const double c = t.coefficient;
+        const auto high = detail::two_product(root, c);
+        sum.add(high.high, high.low + rest * c);
+        magnitude += root * std::fabs(c);
+    }
+    const double bound = magnitude * (static_cast<double>(terms_.size()) + 8.0) * 0x1p-101;
+    return std::fabs(sum.high) > bound ? (sum.high > 0.0 ? 1 : -1) : 0;
+}
+
+// The squared lengths as integers: every coordinate is an integer multiple of the smallest unit in the last place.
+void RootSums::widen(std::span<const glm::dvec2> points) {
+    int unit = std::numeric_limits<int>::max();
+    const auto split = [](double x, int& exponent) {
+        const double mantissa = std::frexp(x, &exponent);
+        exponent -= 53;
+        return static_cast<std::int64_t>(std::ldexp(mantissa, 53));
+    };
+    const auto difference_unit = [&](double a, double b) {
+        for (const double x : {a, b}) {
+            int exponent = 0;
+            if (split(x, exponent) != 0) unit = std::min(unit, exponent);
+        }
+    };
+    for (const Term& t : terms_) {
+        difference_unit(points[t.segment.from].x, points[t.segment.to].x);
+        difference_unit(points[t.segment.from].y, points[t.segment.to].y);
+    }
+    const auto magnitude = [&](double x) {
+        int exponent = 0;
+        const auto mantissa = static_cast<std::uint64_t>(std::abs(split(x, exponent)));
+        return mantissa == 0 ? WideInteger() : WideInteger(mantissa) << static_cast<std::size_t>(exponent - unit);
+    };
+    const auto squared_difference = [&](double a, double b) {
+        WideInteger wide_a = magnitude(a);
+        const WideInteger wide_b = magnitude(b);
+        if ((a < 0.0) != (b < 0.0)) return (wide_a += wide_b) * wide_a;
+        if (wide_a.compare(wide_b) < 0) {
+            WideInteger d = wide_b;
+            d -= wide_a;
+            return d * d;
+        }
+        wide_a -= wide_b;
+        return wide_a * wide_a;
+    };
+    squares_.clear();
+    for (const Term& t : terms_) {
+        WideInteger square = squared_difference(points[t.segment.from].x, points[t.segment.to].x);
+        square += squared_difference(points[t.segment.from].y, points[t.segment.to].y);
+        squares_.push_back(std::move(square));
+    }
+}
+
+// With r the class's first member, √N = √(N·r) / r · √r where √(N·r) is an integer: so the integers' sum must vanish.
+bool RootSums::classes_cancel() const {
+    Vector<std::uint8_t> done(terms_.size(), 0);
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+        if (done[i]) continue;
+        WideInteger positive, negative;
+        for (std::size_t j = i; j < terms_.size(); ++j) {
+            if (done[j]) continue;
+            bool square = false;
+            const WideInteger root = WideInteger::square_root(squares_[i] * squares_[j], square);
+            if (!square) continue;
+            done[j] = 1;
+            const int c = terms_[j].coefficient;
+            (c > 0 ? positive : negative) += root * WideInteger(static_cast<std::uint64_t>(std::abs(c)));
+        }
+        if (positive.compare(negative) != 0) return false;
+    }
+    return true;
+}
+
+// Each root is cut off after so many bits behind the point, which errs by less than 1 in its last place.
+int RootSums::sum_to(std::size_t bits) const {
+    WideInteger positive, negative;
+    std::uint64_t positive_error = 0, negative_error = 0;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+        bool exact = false;
+        const WideInteger root = WideInteger::square_root(squares_[i] << (2 * bits), exact);
+        const auto c = static_cast<std::uint64_t>(std::abs(terms_[i].coefficient));
+        const bool plus = terms_[i].coefficient > 0;
+        (plus ? positive : negative) += root * WideInteger(c);
+        if (!exact) (plus ? positive_error : negative_error) += c;
+    }
+    // The true sums lie in [positive, positive + positive_error] and so on.
+    WideInteger negative_top = negative, positive_top = positive;
+    negative_top += WideInteger(negative_error);
+    positive_top += WideInteger(positive_error);
+    if (positive.compare(negative_top) > 0) return 1;
+    if (negative.compare(positive_top) > 0) return -1;
+    return 0;
+}
+
+}  // namespace crofton::triangulate

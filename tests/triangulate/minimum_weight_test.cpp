@@ -1,0 +1,137 @@
+#include <doctest/doctest.h>
+#include <crofton/triangulate/triangulate.hpp>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <oracle/minimum_weight.hpp>
+#include <oracle/triangulation_check.hpp>
+
+#include "polygons.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+
+namespace {
+
+// Empty if the result is conforming, claims to be optimal and has the reference's weight.
+std::string compare(const Polygon& polygon, triangulate::Triangulator& triangulator) {
+    triangulate::Triangulation result;
+    const auto done = triangulator.triangulate(polygon, {}, result);
+    if (!done) return done.error().message;
+    if (!result.optimal || result.gap != 0.0) return "not optimal";
+    if (const auto wrong = oracle::check_triangulation(polygon, result.triangles); !wrong.empty()) return wrong;
+    const auto truth = static_cast<double>(oracle::MinimumWeightReference(polygon).solve());
+    if (std::fabs(result.weight - truth) > 1e-12 * truth) {
+        return "weight " + std::to_string(result.weight) + " instead of " + std::to_string(truth);
+    }
+    return "";
+}
+
+bool is_valid(const Polygon& polygon) {
+    return triangulate::triangulate(polygon, {.method = triangulate::Method::delaunay}).has_value();
+}
+
+}  // namespace
+
+TEST_SUITE("triangulate/minimum_weight") {
+    TEST_CASE("a quadrilateral takes its shorter diagonal") {
+        const auto result = triangulate::triangulate(polygon({{{0, 0}, {4, -1}, {8, 0}, {4, 1}}}));
+        REQUIRE(result.has_value());
+        CHECK(result->weight == 2.0);
+        CHECK(result->optimal);
+    }
+
+    TEST_CASE("where Delaunay is not minimal: the flat kite of five points") {
+        // Checked by hand: the pentagon has five triangulations, each two diagonals from one corner.
+        const glm::dvec2 p[] = {{0, 0}, {10, 0}, {11, 3}, {5, 4}, {-1, 3}};
+        double best = 1e9;
+        for (int corner = 0; corner < 5; ++corner) {
+            best = std::min(
+                best, glm::distance(p[corner], p[(corner + 2) % 5]) + glm::distance(p[corner], p[(corner + 3) % 5]));
+        }
+        const auto result = triangulate::triangulate(polygon({{p[0], p[1], p[2], p[3], p[4]}}));
+        REQUIRE(result.has_value());
+        CHECK(result->weight == doctest::Approx(best).epsilon(1e-15));
+    }
+
+    TEST_CASE("regular polygons, where everything ties") {
+        triangulate::Triangulator triangulator;
+        for (int n = 3; n <= 24; ++n) {
+            Polygon p;
+            for (int i = 0; i < n; ++i) {
+                p.points.emplace_back(1000.0 * std::cos(6.283185307179586 * i / n),
+                                      1000.0 * std::sin(6.283185307179586 * i / n));
+            }
+            p.ring_ends = {static_cast<std::uint32_t>(n)};
+            CHECK(compare(p, triangulator) == "");
+        }
+    }
+
+    TEST_CASE("combs and stairs on a grid, where sums of different roots tie") {
+        triangulate::Triangulator triangulator;
+        for (int steps = 1; steps <= 8; ++steps) {
+            Polygon stairs;
+            for (int i = 0; i <= steps; ++i) {
+                stairs.points.emplace_back(i, i);
+                stairs.points.emplace_back(i + 1, i);
+            }
+            stairs.points.emplace_back(steps + 1, steps + 1);
+            stairs.points.emplace_back(0, steps + 1);
+            stairs.ring_ends = {static_cast<std::uint32_t>(stairs.points.size())};
+            CHECK(compare(stairs, triangulator) == "");
+        }
+    }
+
+    TEST_CASE("agrees with the unpruned programme on random simple polygons, on and off grids") {
+        std::mt19937_64 random(21);
+        triangulate::Triangulator triangulator;
+        int compared = 0;
+        for (int trial = 0; trial < 2500; ++trial) {
+            Polygon p;
+            const double grid = trial % 3 == 0 ? 1.0 : trial % 3 == 1 ? 64.0 : 0.0;
+            add_star(p, random, {0, 0}, 1.0 + trial % 9, 10.0, 4 + trial % 33, grid);
+            if (!is_valid(p) || triangulate::triangulate(p)->triangles.size() + 2 != p.points.size()) continue;
+            ++compared;
+            REQUIRE(compare(p, triangulator) == "");
+        }
+        CHECK(compared > 1500);
+    }
+
+    TEST_CASE("agrees with the unpruned search on random polygons with one to three holes") {
+        std::mt19937_64 random(22);
+        triangulate::Triangulator triangulator;
+        int compared = 0;
+        for (int trial = 0; trial < 600; ++trial) {
+            Polygon p;
+            const double grid = trial % 3 == 0 ? 2.0 : 0.0;
+            const int holes = 1 + (trial % 7 == 0) + (trial % 14 == 0);
+            add_star(p, random, {0, 0}, 5.0, 10.0, 4 + trial % 9, grid);
+            add_star(p, random, {-2.2, 0.3}, 0.3, 0.7 + trial % 4 * 0.4, 3 + trial % 3, grid);
+            if (holes > 1) add_star(p, random, {2.2, -0.4}, 0.3, 0.9, 3 + trial % 2, grid);
+            if (holes > 2) add_star(p, random, {0.1, 2.4}, 0.3, 0.9, 3, grid);
+            const auto result = triangulate::triangulate(p, {.method = triangulate::Method::delaunay});
+            if (!result || result->triangles.size() != p.points.size() - 2 + 2 * static_cast<std::size_t>(holes))
+                continue;
+            ++compared;
+            INFO(trial);
+            REQUIRE(compare(p, triangulator) == "");
+        }
+        CHECK(compared > 400);
+    }
+
+    TEST_CASE("agrees with the unpruned programme on real level sectors and glyphs without holes") {
+        const std::string folder = std::string(CROFTON_SHARED_DATA) + "/polygons/";
+        if (!std::filesystem::exists(folder)) return;
+        triangulate::Triangulator triangulator;
+        for (const char* file : {"doom.poly", "glyphs.poly", "counties10.poly"}) {
+            std::size_t index = 0;
+            for (const auto& [name, p] : read_poly_file(folder + file)) {
+                if (index++ % 23 != 0 || p.ring_count() != 1 || p.points.size() > 48 || name == "Hardin") continue;
+                std::set<oracle::Point> distinct;
+                for (const auto& q : p.points) distinct.insert({q.x, q.y});
+                if (distinct.size() != p.points.size() || !is_valid(p)) continue;
+                INFO(name);
+                CHECK(compare(p, triangulator) == "");
+            }
+        }
+    }
+}
