@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/predicates.hpp>
 #include <limits>
 
 namespace crofton::triangulate {
@@ -100,54 +101,44 @@ void FaceSearch::extract(std::span<const glm::dvec2> points, const CandidateGrap
     }
 }
 
-// All pairs: faces that end up here are small.
-void FaceSearch::find_crossings(Level& level) const {
+// The smallest set of edges of which one must be in every triangulation and all of which join different pieces.
+void FaceSearch::choose(Level& level) {
     const CandidateGraph& g = level.graph;
-    const auto count = static_cast<Index>(g.half_edge_count());
-    level.crossing_begin.assign(1, 0);
-    level.crossings.clear();
+    const auto& walk_of = level.faces.walk_of;
+    const std::span<const glm::dvec2> points = level.points;
     const auto open = [&](Index h) { return (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0; };
-    for (Index h = 0; h < count; ++h) {
-        if (open(h)) {
-            const Index a = g.destination[g.twin[h]], b = g.destination[h];
-            for (Index k = 0; k < count; ++k) {
-                const Index c = g.destination[g.twin[k]], d = g.destination[k];
-                if (c < d && open(k) && std::min(a, b) < d && c < std::max(a, b) &&
-                    candidates_cross(level.points, a, b, c, d)) {
-                    level.crossings.push_back(k);
-                }
-            }
-        }
-        level.crossing_begin.push_back(static_cast<Index>(level.crossings.size()));
-    }
-}
-
-// The smallest set of edges of which one must be in every triangulation.
-void FaceSearch::choose(Level& level) const {
-    const CandidateGraph& g = level.graph;
-    level.choices.clear();
-    std::size_t fewest = std::numeric_limits<std::size_t>::max();
-    Vector<Index> found;
-    const auto consider = [&](Index v, bool smaller) {
-        found.clear();
+    bool found = false;
+    // Candidates from v strictly left of the line through points[a] and points[b].
+    const auto consider = [&](Index v, Index walk, const glm::dvec2& a, const glm::dvec2& b) {
+        option_.clear();
         for (Index h = g.first[v]; h < g.first[v + 1]; ++h) {
-            const bool open = (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0;
-            if (open && (g.destination[h] < v) == smaller) found.push_back(h);
+            if (!open(h) || walk_of[h] != walk || orientation(a, b, points[g.destination[h]]) <= 0) continue;
+            if (walk_of[g.twin[h]] == walk) return;
+            option_.push_back(h);
         }
-        if (found.size() < fewest) fewest = found.size(), level.choices = found;
+        if (!found || option_.size() < level.choices.size()) level.choices = option_;
+        found = true;
     };
-    for (const Index v : level.faces.isolated) consider(v, true), consider(v, false);
+    level.choices.clear();
+    for (std::size_t i = 0; i < level.faces.isolated.size(); ++i) {
+        const Index v = level.faces.isolated[i], walk = static_cast<Index>(level.faces.walk_count() + i);
+        for (Index h = g.first[v]; h < g.first[v + 1]; ++h) {
+            if (open(h)) consider(v, walk, points[v], points[g.destination[h]]);
+        }
+    }
     for (std::size_t w = 0; w < level.faces.walk_count(); ++w) {
         const auto walk = level.faces.walk(w);
-        if (is_outer(level.points, g, walk)) continue;
-        Index low = kNone, high = 0;
-        for (const Index h : walk) low = std::min(low, g.destination[h]), high = std::max(high, g.destination[h]);
-        consider(low, true);
-        consider(high, false);
+        for (std::size_t i = 0; i < walk.size(); ++i) {
+            const Index after = g.destination[walk[i]], v = g.destination[g.twin[walk[i]]];
+            const Index before = g.destination[g.twin[walk[i == 0 ? walk.size() - 1 : i - 1]]];
+            if (before != after && orientation(points[before], points[v], points[after]) > 0) continue;
+            consider(v, static_cast<Index>(w), points[before], points[v]);
+            consider(v, static_cast<Index>(w), points[v], points[after]);
+        }
     }
     std::sort(level.choices.begin(), level.choices.end(), [&](Index h, Index k) {
-        const glm::dvec2 d = level.points[g.destination[h]] - level.points[g.destination[g.twin[h]]];
-        const glm::dvec2 e = level.points[g.destination[k]] - level.points[g.destination[g.twin[k]]];
+        const glm::dvec2 d = points[g.destination[h]] - points[g.destination[g.twin[h]]];
+        const glm::dvec2 e = points[g.destination[k]] - points[g.destination[g.twin[k]]];
         const double dd = d.x * d.x + d.y * d.y, ee = e.x * e.x + e.y * e.y;
         return dd != ee ? dd < ee : h < k;
     });
@@ -155,9 +146,11 @@ void FaceSearch::choose(Level& level) const {
 
 FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, SearchBudget& budget) {
     Level& level = levels_[depth];
-    find_crossings(level);
     find_faces(level.graph, kFixed, level.faces);
     choose(level);
+    level.witness.assign(level.graph.half_edge_count(), kNone);
+    level.pieces = level.faces.component.size();
+    if (level.pieces > 2) skeleton_.prune(level.points, level.graph, level.certificates);
     level.flags = level.graph.flags;
     bool found = false;
     double best = 0.0;
@@ -193,15 +186,25 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Se
     const auto fix = [&](Index h) {
         g.flags[h] = static_cast<std::uint8_t>((g.flags[h] & ~CandidateGraph::kDead) | CandidateGraph::kConstraint);
     };
-    for (Index i = level.crossing_begin[choice]; i < level.crossing_begin[choice + 1]; ++i) {
-        const Index k = level.crossings[i];
-        g.flags[k] |= CandidateGraph::kDead;
-        g.flags[g.twin[k]] |= CandidateGraph::kDead;
+    const Index from = g.destination[g.twin[choice]], to = g.destination[choice];
+    dead_.clear();
+    for (Index h = 0; h < g.half_edge_count(); ++h) {
+        const Index c = g.destination[g.twin[h]], d = g.destination[h];
+        if (c < d && (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0 &&
+            candidates_cross(level.points, from, to, c, d)) {
+            dead_.push_back(h);
+            g.flags[h] |= CandidateGraph::kDead;
+            g.flags[g.twin[h]] |= CandidateGraph::kDead;
+        }
     }
     fix(choice);
     fix(g.twin[choice]);
-    skeleton_.prune(level.points, g);
-    mark_certain(level);
+    // With all pieces joined the interval programme is the quickest.
+    if (level.pieces > 2) {
+        level.working_certificates = level.certificates;
+        skeleton_.prune_after(dead_, level.points, g, level.working_certificates);
+        mark_certain(level);
+    }
     level.triangles.clear();
     level.diagonals.clear();
     for (Index h = 0; h < g.half_edge_count(); ++h) {
@@ -214,13 +217,34 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Se
 void FaceSearch::mark_certain(Level& level) const {
     CandidateGraph& g = level.graph;
     for (Index h = 0; h < g.half_edge_count(); ++h) {
-        if ((g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0) continue;
-        bool crossed = false;
-        for (Index i = level.crossing_begin[h]; i < level.crossing_begin[h + 1] && !crossed; ++i) {
-            crossed = (g.flags[level.crossings[i]] & CandidateGraph::kDead) == 0;
-        }
-        if (!crossed) g.flags[h] |= CandidateGraph::kCertain;
+        if (h > g.twin[h] || (g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0 || has_crossing(level, h)) continue;
+        g.flags[h] |= CandidateGraph::kCertain;
+        g.flags[g.twin[h]] |= CandidateGraph::kCertain;
     }
+}
+
+bool FaceSearch::has_crossing(Level& level, Index h) const {
+    const CandidateGraph& g = level.graph;
+    const auto open = [&](Index k) {
+        return (g.flags[k] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0;
+    };
+    if (level.witness[h] != kNone && open(level.witness[h])) return true;
+    const Index a = g.destination[g.twin[h]], b = g.destination[h];
+    const Index low = std::min(a, b), high = std::max(a, b);
+    const auto [y_low, y_high] = std::minmax(level.points[a].y, level.points[b].y);
+    for (Index v = 0; v < high; ++v) {
+        for (Index k = g.first[v]; k < g.first[v + 1]; ++k) {
+            const Index d = g.destination[k];
+            if (d <= v || d <= low || !open(k)) continue;
+            const double c_y = level.points[v].y, d_y = level.points[d].y;
+            if (std::max(c_y, d_y) < y_low || std::min(c_y, d_y) > y_high) continue;
+            if (candidates_cross(level.points, a, b, v, d)) {
+                level.witness[h] = k;
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, SearchBudget& budget) {

@@ -8,10 +8,11 @@ namespace crofton::triangulate {
 
 struct SearchBudget;
 
-// In every triangulation the lexicographically first vertex of a hole has an edge to a smaller vertex (else the
-// triangles around it would leave more than a half-turn open), and the last one to a larger. So one of these few edges
-// is in the optimum: each in turn becomes certain, what crosses it dies, the skeleton is recomputed, and the faces that
-// remain are solved separately, in the same way. Every branch joins a piece to another one, which bounds the depth.
+// At a corner of more than a half-turn every triangulation has an edge on the inner side of either of its sides' lines,
+// for the triangle at that side spans less than a half-turn. Where all candidates there lead to other pieces, one of
+// these few edges is in the optimum: each in turn becomes certain, what crosses it dies, the skeleton is recomputed,
+// and the faces that remain are solved separately, in the same way. Every choice joins two pieces, which bounds the
+// depth.
 class FaceSearch {
   public:
     enum class Outcome : std::uint8_t { solved, infeasible, gave_up };
@@ -29,9 +30,11 @@ class FaceSearch {
         CandidateGraph graph;
         Vector<glm::dvec2> points;
         Vector<Index> outer_half_edge, outer_vertex;  // the names one level up
-        Vector<Index> crossing_begin, crossings;      // per half-edge: the candidates that it crosses
-        Vector<std::uint8_t> flags;                   // of the current branching, before the choice
+        LmtSkeleton::Certificates certificates, working_certificates;
+        Vector<Index> witness;       // per half-edge: a candidate that crosses it, if known
+        Vector<std::uint8_t> flags;  // of the current branching, before the choice
         Faces faces;
+        std::size_t pieces = 0;
         Vector<Index> choices;
         Vector<std::array<Index, 3>> triangles, best_triangles;
         Vector<Segment> diagonals, best_diagonals;
@@ -42,16 +45,16 @@ class FaceSearch {
     [[nodiscard]] Outcome solve_rest(std::size_t depth, SearchBudget& budget);
     void extract(std::span<const glm::dvec2> points, const CandidateGraph& graph, const Faces& faces, Index name,
                  Level& level);
-    void find_crossings(Level& level) const;
-    void choose(Level& level) const;
+    void choose(Level& level);
     void mark_certain(Level& level) const;
+    [[nodiscard]] bool has_crossing(Level& level, Index h) const;
     void raise(const Level& level, Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;
 
     Vector<Level> levels_;
     LmtSkeleton skeleton_;
     IntervalProgram program_;
     RootSums sums_;
-    Vector<Index> members_, local_vertex_;
+    Vector<Index> members_, option_, dead_;
 };
 
 // How much searching is left; shared by all faces of a polygon.

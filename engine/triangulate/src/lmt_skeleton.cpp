@@ -6,25 +6,36 @@
 
 namespace crofton::triangulate {
 
-void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph) {
+void LmtSkeleton::start(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates) {
     points_ = points;
     graph_ = &graph;
+    certificates_ = &certificates;
+    // Both are clean between runs: nothing is queued, and stamps only grow.
+    if (queued_.size() < graph.half_edge_count()) queued_.resize(graph.half_edge_count(), 0);
+    if (stamp_.size() < graph.vertex_count()) stamp_.resize(graph.vertex_count(), 0);
+}
+
+void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates) {
+    start(points, graph, certificates);
     const auto count = static_cast<Index>(graph.half_edge_count());
-    origin_.resize(count);
-    for (Index v = 0; v < graph.vertex_count(); ++v) {
-        for (Index h = graph.first[v]; h < graph.first[v + 1]; ++h) origin_[h] = v;
-    }
-    certificates_.assign(count, {});
-    queued_.assign(count, 0);
-    stamp_.assign(graph.vertex_count(), 0);
-    stamp_value_ = 0;
-    stack_.clear();
+    certificates.assign(count, {});
     for (Index h = 0; h < count; ++h) {
         if (h < graph.twin[h] && (graph.flags[h] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0) {
             stack_.push_back(h);
             queued_[h] = 1;
         }
     }
+    run();
+}
+
+void LmtSkeleton::prune_after(std::span<const Index> dead, std::span<const glm::dvec2> points, CandidateGraph& graph,
+                              Certificates& certificates) {
+    start(points, graph, certificates);
+    for (const Index h : dead) kill(h);
+    run();
+}
+
+void LmtSkeleton::run() {
     while (!stack_.empty()) {
         const Index h = stack_.back();
         stack_.pop_back();
@@ -36,7 +47,7 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
 // Looks for a common neighbour on each side that makes h locally minimal.
 bool LmtSkeleton::certify(Index h) {
     const auto& g = *graph_;
-    const Index p = origin_[h], q = g.destination[h];
+    const Index p = origin(h), q = g.destination[h];
     ++stamp_value_;
     for (Index k = g.first[q]; k < g.first[q + 1]; ++k) {
         if (alive(k)) stamp_[g.destination[k]] = stamp_value_;
@@ -54,7 +65,7 @@ bool LmtSkeleton::certify(Index h) {
     for (const Index left : left_) {
         for (const Index right : right_) {
             if (locally_minimal(p, q, left, right)) {
-                certificates_[h] = {left, right};
+                (*certificates_)[h] = {left, right};
                 return true;
             }
         }
@@ -89,11 +100,12 @@ void LmtSkeleton::kill(Index h) {
     auto& g = *graph_;
     for (const Index k : {h, g.twin[h]}) {
         g.flags[k] |= CandidateGraph::kDead;
-        const Index p = origin_[k], q = g.destination[k];
+        const Index p = origin(k), q = g.destination[k];
         for (Index e = g.first[p]; e < g.first[p + 1]; ++e) {
             const Index canonical = std::min(e, g.twin[e]);
-            const Certificate& c = certificates_[canonical];
-            if ((c.left == q || c.right == q) && !queued_[canonical] && alive(canonical)) {
+            const Certificate& c = (*certificates_)[canonical];
+            if ((c.left == q || c.right == q) && !queued_[canonical] && alive(canonical) &&
+                (g.flags[canonical] & CandidateGraph::kConstraint) == 0) {
                 queued_[canonical] = 1;
                 stack_.push_back(canonical);
             }
@@ -102,9 +114,11 @@ void LmtSkeleton::kill(Index h) {
 }
 
 // Living Delaunay edges cross only others; those walk through the Delaunay triangles and meet each other inside them.
-void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh) {
+void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) {
     mesh_ = &mesh;
-    auto& g = *graph_;
+    graph_ = &graph;
+    points_ = mesh.points;
+    auto& g = graph;
     const auto count = static_cast<Index>(g.half_edge_count());
     crossed_.assign(count, 0);
     chord_head_.assign(mesh_->triangle_count(), kNone);
@@ -120,7 +134,7 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh) {
 
 void LmtSkeleton::walk(Index h) {
     const auto& g = *graph_;
-    const Index p = origin_[h], q = g.destination[h];
+    const Index p = origin(h), q = g.destination[h];
     const auto &from = mesh_->points[p], &to = mesh_->points[q];
     const auto visit = [&](Index triangle) {
         chords_.push_back({h, chord_head_[triangle]});
@@ -153,7 +167,7 @@ void LmtSkeleton::cross_within_triangles() {
             for (Index j = chords_[i].next; j != kNone; j = chords_[j].next) {
                 const Index h = chords_[i].half_edge, k = chords_[j].half_edge;
                 if ((!crossed_[h] || !crossed_[k]) &&
-                    candidates_cross(points_, origin_[h], g.destination[h], origin_[k], g.destination[k]))
+                    candidates_cross(points_, origin(h), g.destination[h], origin(k), g.destination[k]))
                     crossed_[h] = crossed_[k] = 1;
             }
         }

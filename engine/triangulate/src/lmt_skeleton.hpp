@@ -10,16 +10,22 @@ namespace crofton::triangulate {
 // that is the unique minimum for lengths with an infinitesimal added by rank, and a minimum for the lengths themselves.
 class LmtSkeleton {
   public:
-    // Sets kDead on edges without a pair of candidate triangles that makes them locally minimal, until none is left.
-    void prune(std::span<const glm::dvec2> points, CandidateGraph& graph);
-    // Sets kCertain on living edges that no living edge crosses. `mesh` is the constrained Delaunay triangulation that
-    // the candidates of this graph, just pruned, come from.
-    void mark_certain(const HalfEdgeMesh& mesh);
-
-  private:
+    // Common neighbours on both sides that make an edge locally minimal; kept at the smaller half-edge.
     struct Certificate {
         Index left = kNone, right = kNone;
     };
+    using Certificates = Vector<Certificate>;
+
+    // Sets kDead on edges without a certificate until none is left.
+    void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates);
+    // The same after some half-edges (one of each edge) have died, given the certificates from before.
+    void prune_after(std::span<const Index> dead, std::span<const glm::dvec2> points, CandidateGraph& graph,
+                     Certificates& certificates);
+    // Sets kCertain on living edges that no living edge crosses. `mesh` is the constrained Delaunay triangulation that
+    // the candidates of this graph, just pruned, come from.
+    void mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph);
+
+  private:
     struct Chord {
         Index half_edge, next;
     };
@@ -28,15 +34,18 @@ class LmtSkeleton {
     [[nodiscard]] bool certify(Index h);
     [[nodiscard]] bool locally_minimal(Index p, Index q, Index left, Index right) const;
     [[nodiscard]] bool shorter(Index a, Index b, Index p, Index q) const;
+    [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
+    void start(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates);
     void kill(Index h);
+    void run();
     void walk(Index h);
     void cross_within_triangles();
 
     std::span<const glm::dvec2> points_;
     const HalfEdgeMesh* mesh_ = nullptr;
     CandidateGraph* graph_ = nullptr;
-    Vector<Index> origin_, stack_, stamp_, left_, right_;
-    Vector<Certificate> certificates_;
+    Certificates* certificates_ = nullptr;
+    Vector<Index> stack_, stamp_, left_, right_;
     Vector<std::uint8_t> queued_, crossed_;
     Vector<Index> chord_head_;
     Vector<Chord> chords_;

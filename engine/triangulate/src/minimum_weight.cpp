@@ -13,14 +13,14 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     find_faces(graph_, CandidateGraph::kConstraint, faces_);
     const auto in_pieces = [](Index size) { return size > 1; };
     if (std::any_of(faces_.component_size.begin(), faces_.component_size.end(), in_pieces)) {
-        skeleton_.prune(points, graph_);
-        skeleton_.mark_certain(domain.mesh());
+        skeleton_.prune(points, graph_, certificates_);
+        skeleton_.mark_certain(domain.mesh(), graph_);
         find_faces(graph_, CandidateGraph::kConstraint | CandidateGraph::kCertain, faces_);
     }
     program_.start(points, graph_);
     corners_.clear();
     diagonals_.clear();
-    SearchBudget budget{100000};
+    SearchBudget budget{20000};
     for (Index w = 0; w < faces_.component.size(); ++w) {
         if (faces_.component[w] != w) continue;
         if (faces_.component_size[w] > 1) {

@@ -21,6 +21,7 @@ class MinimumWeight {
     CandidateGraph graph_;
     CandidateFinder finder_;
     LmtSkeleton skeleton_;
+    LmtSkeleton::Certificates certificates_;
     Faces faces_;
     IntervalProgram program_;
     FaceSearch search_;
