@@ -14,6 +14,12 @@ float float_at_least(double value) {
     return static_cast<double>(rounded) < value ? std::nextafter(rounded, kInfinity) : rounded;
 }
 
+// To the nearest integer of at most 32767, for |value| ≤ 32769: adding 1.5 · 2^52 leaves no fraction.
+std::int16_t rounded(double value) {
+    const double integer = (value + 0x1.8p52) - 0x1.8p52;
+    return static_cast<std::int16_t>(std::min(32767.0, std::max(-32767.0, integer)));
+}
+
 float norm1(float x, float y, float z) {
     return float_at_least((std::fabs(double{x}) + std::fabs(double{y}) + std::fabs(double{z})) * (1.0 + 0x1p-50));
 }
@@ -68,14 +74,29 @@ void write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers)
     leaf.radius[lane] = radius;
     const double per_unit = 1.0 / (double{radius} * double{kEdgeUnit});
     for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j)
-            leaf.edge[3 * k + j][lane] =
-                static_cast<std::int16_t>(std::clamp(std::nearbyint(edge[k][j] * per_unit), -32767.0, 32767.0));
+        for (int j = 0; j < 3; ++j) leaf.edge[3 * k + j][lane] = rounded(edge[k][j] * per_unit);
     leaf.layers[lane] = layers;
     leaf.reach = std::max(leaf.reach, norm1(leaf.x[lane], leaf.y[lane], leaf.z[lane]));
 }
 
+void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count) {
+    std::uint32_t some = 0, every = ~std::uint32_t{0};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        some |= any[i];
+        every &= all[i];
+    }
+    node.layers_any[lane] = some;
+    node.layers_all[lane] = every;
+}
+
 void write_lane(Node& node, unsigned lane, const Aabb& bounds) {
+    if (bounds.is_empty()) {
+        for (int j = 0; j < 3; ++j) {
+            node.center[j][lane] = 0.0f;
+            node.half[j][lane] = -kInfinity;
+        }
+        return;
+    }
     double reach = 0.0;
     for (int j = 0; j < 3; ++j) {
         const double low = bounds.min[j] - node.origin[j], high = bounds.max[j] - node.origin[j];
@@ -92,6 +113,7 @@ void write_lane(Node& node, unsigned lane, const Aabb& bounds) {
 
 Aabb bounds_of_lane(const Node& node, unsigned lane) {
     Aabb result;
+    if (node.half[0][lane] < 0.0f) return result;
     for (int j = 0; j < 3; ++j) {
         const double center = double{node.center[j][lane]}, half = double{node.half[j][lane]};
         // Two roundings of at most 2^-53 of the largest magnitude each.
@@ -104,12 +126,16 @@ Aabb bounds_of_lane(const Node& node, unsigned lane) {
 
 Aabb bounds_of(const Node& node) {
     Aabb result;
-    for (unsigned lane = 0; lane < node.count; ++lane) result.include(bounds_of_lane(node, lane));
+    for (unsigned lane = 0; lane < node.count; ++lane) {
+        const Aabb child = bounds_of_lane(node, lane);
+        if (!child.is_empty()) result.include(child);
+    }
     return result;
 }
 
 Aabb bounds_of(const Leaf& leaf) {
     Aabb result;
+    if (leaf.count == 0) return result;
     for (int j = 0; j < 3; ++j) {
         const float* position = j == 0 ? leaf.x : j == 1 ? leaf.y : leaf.z;
         double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -16,6 +16,9 @@ void clear_lane(Leaf& leaf, unsigned lane);
 void write_lane(Node& node, unsigned lane, const Aabb& bounds);
 void clear_lane(Node& node, unsigned lane);
 
+// OR and AND of `count` masks each.
+void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count);
+
 [[nodiscard]] Aabb bounds_of(const Leaf& leaf);
 [[nodiscard]] Aabb bounds_of(const Node& node);
 [[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane);

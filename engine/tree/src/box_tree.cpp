@@ -1,25 +1,23 @@
-#include <crofton/core/assert.hpp>
 #include <crofton/tree/box_tree.hpp>
-#include <numeric>
+
+#include <cmath>
+#include <crofton/core/assert.hpp>
 
 #include "bounds.hpp"
-#include "builder.hpp"
+#include "rebuild.hpp"
 
 namespace crofton::tree {
 namespace {
 
 constexpr std::size_t kMaxItems = std::size_t{1} << 30;
-
-glm::dvec3 origin_of(const Aabb& bounds) {
-    return bounds.is_empty() ? glm::dvec3(0.0) : bounds.center();
-}
-
-void place(double (&origin)[3], const Aabb& bounds) {
-    const glm::dvec3 center = origin_of(bounds);
-    for (int j = 0; j < 3; ++j) origin[j] = center[j];
-}
+constexpr std::size_t kGrain = 4096;
 
 }  // namespace
+
+BoxTree::BoxTree() = default;
+BoxTree::~BoxTree() = default;
+BoxTree::BoxTree(BoxTree&&) noexcept = default;
+BoxTree& BoxTree::operator=(BoxTree&&) noexcept = default;
 
 Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, const BuildOptions& options, Executor& executor) {
     return build(boxes, {}, options, executor);
@@ -31,97 +29,124 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
     if (!layer_masks.empty() && layer_masks.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "box tree: as many layer masks as boxes are needed, or none");
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    Aabb scene;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (auto valid = crofton::validate(boxes[i], i); !valid) return tl::unexpected(valid.error());
+        scene.include(boxes[i].center);
+    }
     BoxTree tree;
     tree.criterion_ = options.criterion;
     tree.boxes_.assign(boxes.begin(), boxes.end());
     tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
     tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
-    tree.rebuild(executor);
+    Builder builder(scene, boxes.size(), options.criterion);
+    for (std::size_t i = 0; i < boxes.size(); ++i) builder.add(static_cast<ItemId>(i), boxes[i]);
+    while (!builder.step(~std::size_t{0} / 4, executor)) {
+    }
+    tree.adopt(tree.now_, builder.result());
+    executor.parallel_for(tree.now_.leaves.size(), kGrain / kWidth, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t l = begin; l < end; ++l) tree.fill_leaf(tree.now_, static_cast<LeafId>(l), builder.result());
+    });
+    tree.finish_nodes(tree.now_);
+    tree.dirty_leaves_.assign((tree.now_.leaves.size() + 63) / 64, 0);
     return tree;
 }
 
-void BoxTree::rebuild(Executor&) {
-    Vector<ItemId> items(boxes_.size());
-    std::iota(items.begin(), items.end(), ItemId{0});
-    const Topology topology = build_topology(boxes_, items, criterion_);
-    item_count_ = items.size();
-    height_ = topology.height;
-    item_slots_.assign(boxes_.size(), kNone);
-    nodes_.resize(topology.nodes.size());
-    ranges_.resize(topology.nodes.size());
-    leaves_.resize(topology.leaves.size());
-    leaf_counts_.resize(topology.leaves.size());
-    slot_items_.assign(topology.leaves.size() * kWidth, kNone);
-    for (LeafId l = 0; l < leaves_.size(); ++l) {
-        const Topology::LeafRecord& record = topology.leaves[l];
-        Leaf& leaf = leaves_[l];
-        clear(leaf);
-        leaf.count = record.count;
-        leaf_counts_[l] = static_cast<std::uint8_t>(record.count);
-        leaf.parent = record.parent;
-        leaf.lane_in_parent = record.lane_in_parent;
-        Aabb bounds;
-        for (std::uint32_t i = 0; i < record.count; ++i)
-            bounds.include(boxes_[topology.order[record.first + i]].center);
-        place(leaf.origin, bounds);
-        for (std::uint32_t i = 0; i < record.count; ++i) {
-            const ItemId item = topology.order[record.first + i];
-            write_lane(leaf, i, boxes_[item], layer_masks_[item]);
-            slot_items_[l * kWidth + i] = item;
-            item_slots_[item] = l * kWidth + i;
-        }
-    }
-    for (NodeId n = static_cast<NodeId>(nodes_.size()); n-- > 0;) {
+// The links of a new structure; the leaves are still to be filled.
+void BoxTree::adopt(Structure& structure, const Topology& topology) const {
+    structure.height = topology.height;
+    structure.nodes.resize(topology.nodes.size());
+    structure.ranges.resize(topology.nodes.size());
+    structure.leaves.resize(topology.leaves.size());
+    structure.leaf_counts.assign(topology.leaves.size(), 0);
+    structure.slot_items.assign(topology.leaves.size() * kWidth, kNone);
+    structure.item_slots.assign(boxes_.size(), kNone);
+    for (NodeId n = 0; n < topology.nodes.size(); ++n) {
         const Topology::NodeRecord& record = topology.nodes[n];
-        Node& node = nodes_[n];
+        Node& node = structure.nodes[n];
         clear(node);
-        ranges_[n] = record.leaves;
+        structure.ranges[n] = record.leaves;
         node.count = record.count;
         node.parent = record.parent;
         node.lane_in_parent = record.lane_in_parent;
-        std::array<Aabb, kWidth> bounds;
-        Aabb whole;
-        for (std::uint32_t lane = 0; lane < record.count; ++lane) {
-            bounds[lane] = own_bounds(record.child[lane]);
-            whole.include(bounds[lane]);
-        }
-        place(node.origin, whole);
         node.only_leaves = 1;
         for (std::uint32_t lane = 0; lane < record.count; ++lane) {
-            if (!(record.child[lane] & kLeafBit)) node.only_leaves = 0;
             node.child[lane] = record.child[lane];
-            write_lane(node, lane, bounds[lane]);
-            update_layers(n, lane);
+            if (!(record.child[lane] & kLeafBit)) node.only_leaves = 0;
         }
     }
 }
 
-Aabb BoxTree::own_bounds(std::uint32_t child) const {
-    return child & kLeafBit ? bounds_of(leaves_[child & ~kLeafBit]) : bounds_of(nodes_[child]);
+void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology) const {
+    const Topology::LeafRecord& record = topology.leaves[l];
+    Leaf& leaf = structure.leaves[l];
+    clear(leaf);
+    leaf.parent = record.parent;
+    leaf.lane_in_parent = record.lane_in_parent;
+    for (std::uint32_t i = 0; i < record.count; ++i) {
+        const ItemId item = topology.order[record.first + i];
+        if (&structure != &now_ && now_.item_slots[item] == kNone) continue;  // removed since this was begun
+        const std::uint32_t slot = l * kWidth + leaf.count++;
+        structure.slot_items[slot] = item;
+        structure.item_slots[item] = slot;
+    }
+    structure.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
+    rewrite_leaf(structure, l);
 }
 
-void BoxTree::update_layers(NodeId n, unsigned lane) {
-    Node& node = nodes_[n];
-    const std::uint32_t child = node.child[lane];
-    std::uint32_t any = 0, all = ~std::uint32_t{0};
-    const auto add = [&](const std::uint32_t* some, const std::uint32_t* every, std::uint32_t count) {
-        for (std::uint32_t i = 0; i < count; ++i) any |= some[i], all &= every[i];
-    };
-    if (child & kLeafBit) {
-        const Leaf& leaf = leaves_[child & ~kLeafBit];
-        add(leaf.layers, leaf.layers, leaf.count);
-    } else {
-        add(nodes_[child].layers_any, nodes_[child].layers_all, nodes_[child].count);
+// Writes all lanes anew around a fitting origin.
+void BoxTree::rewrite_leaf(Structure& structure, LeafId l) const {
+    Leaf& leaf = structure.leaves[l];
+    Aabb centers;
+    for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
+        centers.include(boxes_[structure.slot_items[l * kWidth + lane]].center);
+    for (int j = 0; j < 3; ++j) leaf.origin[j] = centers.is_empty() ? 0.0 : centers.center()[j];
+    leaf.reach = 0.0f;
+    for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
+        const ItemId item = structure.slot_items[l * kWidth + lane];
+        write_lane(leaf, lane, boxes_[item], layer_masks_[item]);
     }
-    node.layers_any[lane] = any;
-    node.layers_all[lane] = all;
+}
+
+void BoxTree::finish_nodes(Structure& structure) const {
+    // After a build, parents come before children.
+    for (auto n = static_cast<NodeId>(structure.nodes.size()); n-- > 0;) refresh_node(structure, n);
+}
+
+// Bounds and layers of all lanes from the children, around a fitting origin.
+void BoxTree::refresh_node(Structure& structure, NodeId n) const {
+    Node& node = structure.nodes[n];
+    Aabb bounds[kWidth], whole;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        const std::uint32_t child = node.child[lane];
+        bounds[lane] =
+            child & kLeafBit ? bounds_of(structure.leaves[child & ~kLeafBit]) : bounds_of(structure.nodes[child]);
+        if (!bounds[lane].is_empty()) whole.include(bounds[lane]);
+    }
+    for (int j = 0; j < 3; ++j) node.origin[j] = whole.is_empty() ? 0.0 : whole.center()[j];
+    node.reach = 0.0f;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        write_lane(node, lane, bounds[lane]);
+        const std::uint32_t child = node.child[lane];
+        if (child & kLeafBit) {
+            const Leaf& leaf = structure.leaves[child & ~kLeafBit];
+            write_layers(node, lane, leaf.layers, leaf.layers, leaf.count);
+        } else {
+            const Node& below = structure.nodes[child];
+            write_layers(node, lane, below.layers_any, below.layers_all, below.count);
+        }
+    }
 }
 
 Aabb BoxTree::child_bounds(NodeId node, unsigned lane) const {
-    CROFTON_ASSERT(node < nodes_.size() && lane < nodes_[node].count, "no such child");
-    return bounds_of_lane(nodes_[node], lane);
+    CROFTON_ASSERT(node < nodes().size() && lane < nodes()[node].count, "no such child");
+    return bounds_of_lane(nodes()[node], lane);
+}
+
+Result<void> BoxTree::check_item(ItemId item) const {
+    if (item >= boxes_.size() || now_.item_slots[item] == kNone)
+        return fail(ErrorCode::out_of_range, item, "box tree: no such item, or it has been removed");
+    return {};
 }
 
 }  // namespace crofton::tree

@@ -1,224 +1,228 @@
 #include "builder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace crofton::tree {
 namespace {
 
-constexpr unsigned kBins = 16;
+constexpr std::uint32_t kClusterItems = kWidth * kWidth;
+// Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
+constexpr std::size_t kSmallCrowd = 16384;
+constexpr unsigned kDigitBits = 11;
+constexpr unsigned kPasses = 6;
 
-struct Range {
-    std::uint32_t begin, end;
-    [[nodiscard]] std::uint32_t size() const { return end - begin; }
-};
-
-struct Bounds {
-    float low[3] = {kHuge, kHuge, kHuge};
-    float high[3] = {-kHuge, -kHuge, -kHuge};
-    static constexpr float kHuge = std::numeric_limits<float>::max();
-
-    template <class Box>
-    void include(const Box& other) {
-        for (int j = 0; j < 3; ++j) {
-            low[j] = std::min(low[j], other.low[j]);
-            high[j] = std::max(high[j], other.high[j]);
-        }
-    }
-};
-
-// The criterion's value for a box, without a call per candidate.
-struct Cost {
-    double volume, area, edges;
-    explicit Cost(const measure::Criterion& c)
-        : volume(c.volume_weight), area(2.0 * c.area_weight), edges(std::numbers::pi * c.mean_curvature_weight) {}
-    [[nodiscard]] double operator()(const Bounds& b) const {
-        const double x = double{b.high[0]} - double{b.low[0]}, y = double{b.high[1]} - double{b.low[1]},
-                     z = double{b.high[2]} - double{b.low[2]};
-        return volume * (x * y * z) + area * (x * y + y * z + z * x) + edges * (x + y + z);
-    }
-};
-
-float centroid(const BuildItem& item, int axis) {
-    return 0.5f * item.low[axis] + 0.5f * item.high[axis];
+// Spreads 20 bits to every third.
+std::uint64_t spread(std::uint64_t v) {
+    v = (v | v << 32) & 0x001f00000000ffffu;
+    v = (v | v << 16) & 0x001f0000ff0000ffu;
+    v = (v | v << 8) & 0x100f00f00f00f00fu;
+    v = (v | v << 4) & 0x10c30c30c30c30c3u;
+    return (v | v << 2) & 0x1249249249249249u;
 }
-
-struct Split {
-    int axis = 0;
-    std::uint32_t left = 0;  // how many items
-    double cost = std::numeric_limits<double>::infinity();
-};
-
-class TopologyBuilder {
-  public:
-    TopologyBuilder(Vector<BuildItem> items, const measure::Criterion& criterion)
-        : items_(std::move(items)), cost_(criterion) {}
-
-    Topology run() {
-        struct Task {
-            Range range;
-            NodeId parent;
-            std::uint32_t lane;
-            unsigned depth;
-        };
-        Vector<Task> tasks;
-        tasks.push_back({{0, static_cast<std::uint32_t>(items_.size())}, kNone, 0, 1});
-        while (!tasks.empty()) {
-            const Task task = tasks.back();
-            tasks.pop_back();
-            if (task.parent != kNone && task.range.size() <= kWidth) {
-                const auto leaf = static_cast<LeafId>(result_.leaves.size());
-                result_.leaves.push_back({task.range.begin, task.range.size(), task.parent, task.lane});
-                result_.nodes[task.parent].child[task.lane] = leaf | kLeafBit;
-                continue;
-            }
-            const auto node = static_cast<NodeId>(result_.nodes.size());
-            result_.nodes.emplace_back();
-            result_.height = std::max(result_.height, task.depth);
-            Topology::NodeRecord& record = result_.nodes.back();
-            record.parent = task.parent;
-            record.lane_in_parent = task.lane;
-            if (task.parent != kNone) result_.nodes[task.parent].child[task.lane] = node;
-            std::array<Range, kWidth> children;
-            record.count = divide(task.range, children);
-            // Last in, first out: leaves come out in the order of the lanes.
-            for (std::uint32_t lane = record.count; lane-- > 0;)
-                tasks.push_back({children[lane], node, lane, task.depth + 1});
-        }
-        number_leaves();
-        for (const BuildItem& item : items_) result_.order.push_back(item.id);
-        return std::move(result_);
-    }
-
-  private:
-    // Cuts a range into as few full children as hold it: each but the last of 16^k items, so that all leaves but one
-    // are full.
-    std::uint32_t divide(Range range, std::array<Range, kWidth>& children) {
-        if (range.size() == 0) return 0;
-        std::uint64_t capacity = kWidth;
-        while (capacity * kWidth < range.size()) capacity *= kWidth;
-        children[0] = range;
-        std::uint32_t count = 1;
-        for (;;) {
-            std::uint32_t largest = 0;
-            for (std::uint32_t i = 1; i < count; ++i)
-                if (children[i].size() > children[largest].size()) largest = i;
-            if (children[largest].size() <= capacity) return count;
-            const Range whole = children[largest];
-            const std::uint32_t middle = whole.begin + partition(whole, static_cast<std::uint32_t>(capacity));
-            for (std::uint32_t i = count; i > largest + 1; --i) children[i] = children[i - 1];
-            children[largest] = {whole.begin, middle};
-            children[largest + 1] = {middle, whole.end};
-            ++count;
-        }
-    }
-
-    std::uint32_t partition(Range range, std::uint32_t capacity) {
-        Split split = best_split(range);
-        const std::uint32_t parts = (range.size() + capacity - 1) / capacity;
-        const std::uint32_t left_parts = std::clamp((split.left + capacity / 2) / capacity, 1u, parts - 1);
-        const std::uint32_t left = left_parts * capacity;
-        const auto first = items_.begin() + range.begin;
-        std::nth_element(first, first + left, items_.begin() + range.end,
-                         [axis = split.axis](const BuildItem& a, const BuildItem& b) {
-                             const float x = centroid(a, axis), y = centroid(b, axis);
-                             return x != y ? x < y : a.id < b.id;
-                         });
-        return left;
-    }
-
-    // The cut at a bin's border that minimises Σ criterion(side) · items(side): what a uniformly random query pays
-    // below here.
-    Split best_split(Range range) const {
-        const std::span<const BuildItem> items = std::span<const BuildItem>(items_).subspan(range.begin, range.size());
-        float low[3], high[3];
-        for (int j = 0; j < 3; ++j) low[j] = high[j] = centroid(items[0], j);
-        for (const BuildItem& item : items)
-            for (int j = 0; j < 3; ++j) {
-                low[j] = std::min(low[j], centroid(item, j));
-                high[j] = std::max(high[j], centroid(item, j));
-            }
-        struct Bin {
-            Bounds bounds;
-            std::uint32_t count = 0;
-        };
-        std::array<std::array<Bin, kBins>, 3> bins{};
-        float scale[3];
-        for (int j = 0; j < 3; ++j) {
-            const float extent = high[j] - low[j];
-            scale[j] = extent > 1e-30f ? (kBins - 0.01f) / extent : 0.0f;
-        }
-        for (const BuildItem& item : items)
-            for (int j = 0; j < 3; ++j) {
-                const float position = (centroid(item, j) - low[j]) * scale[j];
-                Bin& bin = bins[static_cast<unsigned>(j)][std::min(kBins - 1, static_cast<unsigned>(position))];
-                bin.bounds.include(item);
-                ++bin.count;
-            }
-        Split best{0, range.size() / 2, std::numeric_limits<double>::infinity()};
-        for (int j = 0; j < 3; ++j) {
-            const auto& axis = bins[static_cast<unsigned>(j)];
-            std::array<double, kBins> right_cost{};
-            Bounds bounds;
-            std::uint32_t count = 0;
-            for (unsigned i = kBins - 1; i > 0; --i) {
-                bounds.include(axis[i].bounds);
-                count += axis[i].count;
-                right_cost[i] = count ? cost_(bounds) * count : 0.0;
-            }
-            bounds = {};
-            count = 0;
-            for (unsigned i = 0; i + 1 < kBins; ++i) {
-                bounds.include(axis[i].bounds);
-                count += axis[i].count;
-                if (count == 0 || count == range.size()) continue;
-                const double cost = cost_(bounds) * count + right_cost[i + 1];
-                if (cost < best.cost) best = {j, count, cost};
-            }
-        }
-        return best;
-    }
-
-    void number_leaves() {
-        for (NodeId n = static_cast<NodeId>(result_.nodes.size()); n-- > 0;) {
-            Topology::NodeRecord& node = result_.nodes[n];
-            if (node.count == 0) continue;
-            const auto first_leaf = [&](std::uint32_t child) {
-                return child & kLeafBit ? LeafRange{child & ~kLeafBit, 1} : result_.nodes[child].leaves;
-            };
-            const LeafRange last = first_leaf(node.child[node.count - 1]);
-            node.leaves.first = first_leaf(node.child[0]).first;
-            node.leaves.count = last.first + last.count - node.leaves.first;
-        }
-    }
-
-    Vector<BuildItem> items_;
-    Cost cost_;
-    Topology result_;
-};
 
 }  // namespace
 
-Topology build_topology(std::span<const Obb> boxes, std::span<const ItemId> items,
-                        const measure::Criterion& criterion) {
-    Aabb scene;
-    for (const ItemId id : items) scene.include(boxes[id].center);
-    const glm::dvec3 middle = items.empty() ? glm::dvec3(0.0) : scene.center();
-    Vector<BuildItem> build_items;
-    build_items.reserve(items.size());
-    for (const ItemId id : items) {
-        const Aabb box = aabb_of(boxes[id]);
-        BuildItem item{{}, {}, id};
-        for (int j = 0; j < 3; ++j) {
-            item.low[j] = static_cast<float>(box.min[j] - middle[j]);
-            item.high[j] = static_cast<float>(box.max[j] - middle[j]);
-        }
-        build_items.push_back(item);
+Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion)
+    : cost_(criterion), middle_(scene.is_empty() ? glm::dvec3(0.0) : scene.center()) {
+    float largest = 0.0f;
+    for (int j = 0; j < 3; ++j) {
+        const double half = scene.is_empty() ? 0.0 : scene.half_extents()[j];
+        low_[j] = static_cast<float>(-half);
+        largest = std::max(largest, static_cast<float>(2.0 * half));
     }
-    return TopologyBuilder(std::move(build_items), criterion).run();
+    // One scale for all axes, so that cells are cubes.
+    for (float& scale : inverse_size_) scale = largest > 1e-30f ? 1.0f / largest : 0.0f;
+    cell_ = largest / static_cast<float>(std::cbrt(static_cast<double>(std::max<std::size_t>(items, 1))));
+    items_.reserve(items);
+}
+
+void Builder::add(ItemId id, const Obb& box) {
+    BuildItem item{};
+    for (int j = 0; j < 3; ++j) {
+        double reach = 0.0;
+        for (int k = 0; k < 3; ++k) reach += std::fabs(double{box.axes[k][j]}) * double{box.half_extents[k]};
+        const double center = box.center[j] - middle_[j];
+        item.extreme[j] = static_cast<float>(reach - center);
+        item.extreme[4 + j] = static_cast<float>(center + reach);
+    }
+    item.set_id(id);
+    items_.push_back(item);
+}
+
+bool Builder::step(std::size_t budget, Executor& executor) {
+    if (phase_ == Phase::keys && next_ == 0 && items_.size() <= kSmallCrowd) start_assembly();
+    while (phase_ != Phase::done) {
+        std::size_t spent = 0;
+        switch (phase_) {
+            case Phase::keys:
+                spent = compute_keys(budget);
+                break;
+            case Phase::sort:
+                spent = sort_pass(budget);
+                break;
+            case Phase::clusters:
+                make_clusters();
+                break;
+            case Phase::split:
+                spent = split_clusters(budget, executor);
+                break;
+            default:
+                spent = assemble(budget);
+                break;
+        }
+        if (spent >= budget) return phase_ == Phase::done;
+        budget -= spent;
+    }
+    return true;
+}
+
+// Large boxes first, by powers of two of their size in cells of the mean spacing: beside small ones they would blow up
+// bounds. Then a Z-order curve through the centres.
+std::size_t Builder::compute_keys(std::size_t budget) {
+    const std::size_t end = std::min(items_.size(), next_ + budget), spent = end - next_;
+    keys_.resize(items_.size());
+    for (; next_ < end; ++next_) {
+        const BuildItem& item = items_[next_];
+        std::uint64_t code = 0;
+        float extent = 0.0f;
+        for (unsigned j = 0; j < 3; ++j) {
+            extent = std::max(extent, item.extreme[4 + j] + item.extreme[j]);
+            const float position = (0.5f * item.twice_center(j) - low_[j]) * inverse_size_[j];
+            code |= spread(static_cast<std::uint64_t>(std::clamp(position, 0.0f, 1.0f) * 1048575.0f)) << j;
+        }
+        int size_class = 0;
+        for (float limit = 8.0f * cell_; extent > limit && size_class < 15; limit *= 2.0f) ++size_class;
+        keys_[next_] = {static_cast<std::uint64_t>(15 - size_class) << 60 | code, static_cast<std::uint32_t>(next_)};
+    }
+    if (next_ == items_.size()) {
+        next_ = 0;
+        keys_next_.resize(keys_.size());
+        phase_ = Phase::sort;
+    }
+    return spent;
+}
+
+// One half of a pass of a least-significant-digit radix sort: counting or moving.
+std::size_t Builder::sort_pass(std::size_t budget) {
+    const unsigned shift = pass_ * kDigitBits;
+    const auto digit = [&](const Key& key) { return key.code >> shift & (histogram_.size() - 1); };
+    const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
+    if (counting_)
+        for (; next_ < end; ++next_) ++histogram_[digit(keys_[next_])];
+    else
+        for (; next_ < end; ++next_) keys_next_[histogram_[digit(keys_[next_])]++] = keys_[next_];
+    if (next_ < keys_.size()) return spent;
+    next_ = 0;
+    if (counting_) {
+        std::uint32_t sum = 0;
+        for (std::uint32_t& count : histogram_) sum += std::exchange(count, sum);
+    } else {
+        histogram_.fill(0);
+        keys_.swap(keys_next_);
+        if (++pass_ == kPasses) phase_ = Phase::clusters;
+    }
+    counting_ = !counting_;
+    return spent;
+}
+
+void Builder::make_clusters() {
+    // Centres too crowded for the curve's cells (a far outlier stretches them): split from the top after all.
+    std::size_t equal = 0;
+    for (std::size_t i = 1; i < keys_.size(); ++i) equal += keys_[i].code == keys_[i - 1].code;
+    if (equal > keys_.size() / 4) return start_assembly();
+    sorted_.resize(items_.size());
+    clusters_.assign((items_.size() + kClusterItems - 1) / kClusterItems, kNothing);
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        sorted_[i] = items_[keys_[i].index];
+        clusters_[i / kClusterItems].include(sorted_[i]);
+    }
+    for (std::uint32_t c = 0; c < clusters_.size(); ++c) clusters_[c].set_id(c);
+    items_.swap(sorted_);
+    cluster_children_.resize(clusters_.size());
+    phase_ = Phase::split;
+}
+
+std::size_t Builder::split_clusters(std::size_t budget, Executor& executor) {
+    const std::size_t first = next_, count = std::min(cluster_children_.size() - first, budget / kClusterItems / 2 + 1);
+    executor.parallel_for(count, 16, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t c = first + begin; c < first + end; ++c) {
+            const std::size_t last = std::min(items_.size(), (c + 1) * kClusterItems);
+            cluster_children_[c] =
+                divide(items_, {static_cast<std::uint32_t>(c * kClusterItems), static_cast<std::uint32_t>(last)},
+                       kWidth, cost_);
+        }
+    });
+    next_ += count;
+    if (next_ == cluster_children_.size()) start_assembly();
+    return count * kClusterItems * 2;
+}
+
+void Builder::start_assembly() {
+    const auto units = static_cast<std::uint32_t>(clusters_.empty() ? items_.size() : clusters_.size());
+    tasks_.push_back({{0, units}, kNone, 0, 1, !clusters_.empty()});
+    phase_ = Phase::assemble;
+}
+
+std::size_t Builder::assemble(std::size_t budget) {
+    std::size_t spent = 0;
+    while (!tasks_.empty() && spent < budget) {
+        Task task = tasks_.back();
+        tasks_.pop_back();
+        std::uint32_t cluster = kNone;
+        if (task.of_clusters && task.range.size() == 1) {
+            cluster = clusters_[task.range.begin].id();
+            task.range = {cluster * kClusterItems, static_cast<std::uint32_t>(std::min(
+                                                       items_.size(), (cluster + std::size_t{1}) * kClusterItems))};
+            task.of_clusters = false;
+        }
+        if (task.parent != kNone && !task.of_clusters && task.range.size() <= kWidth) {
+            add_leaf(task);
+            spent += kWidth;
+            continue;
+        }
+        const auto node = static_cast<NodeId>(result_.nodes.size());
+        result_.nodes.emplace_back();
+        result_.height = std::max(result_.height, task.depth);
+        if (task.parent != kNone) result_.nodes[task.parent].child[task.lane] = node;
+        Topology::NodeRecord& record = result_.nodes.back();
+        record.parent = task.parent;
+        record.lane_in_parent = task.lane;
+        const Children children = cluster != kNone ? cluster_children_[cluster]
+                                                   : divide(task.of_clusters ? std::span(clusters_) : std::span(items_),
+                                                            task.range, task.of_clusters ? 1 : kWidth, cost_);
+        record.count = children.count;
+        spent += cluster != kNone ? kWidth : 4 * std::size_t{task.range.size()};
+        // Last in, first out: leaves come out in the order of the lanes.
+        for (std::uint32_t lane = record.count; lane-- > 0;)
+            tasks_.push_back({children.ranges[lane], node, lane, task.depth + 1, task.of_clusters});
+    }
+    if (tasks_.empty()) {
+        number_leaves();
+        result_.order.reserve(items_.size());
+        for (const BuildItem& item : items_) result_.order.push_back(item.id());
+        phase_ = Phase::done;
+    }
+    return spent;
+}
+
+void Builder::add_leaf(const Task& task) {
+    const auto leaf = static_cast<LeafId>(result_.leaves.size());
+    result_.leaves.push_back({task.range.begin, task.range.size(), task.parent, task.lane});
+    result_.nodes[task.parent].child[task.lane] = leaf | kLeafBit;
+}
+
+void Builder::number_leaves() {
+    for (auto n = static_cast<NodeId>(result_.nodes.size()); n-- > 0;) {
+        Topology::NodeRecord& node = result_.nodes[n];
+        if (node.count == 0) continue;
+        const auto leaves_of = [&](std::uint32_t child) {
+            return child & kLeafBit ? LeafRange{child & ~kLeafBit, 1} : result_.nodes[child].leaves;
+        };
+        const LeafRange last = leaves_of(node.child[node.count - 1]);
+        node.leaves.first = leaves_of(node.child[0]).first;
+        node.leaves.count = last.first + last.count - node.leaves.first;
+    }
 }
 
 }  // namespace crofton::tree

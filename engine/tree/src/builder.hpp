@@ -1,20 +1,16 @@
-// From boxes to the topology of a tree: which items share a leaf, which leaves a node.
+// From boxes to the topology of a tree: which items share a leaf, which leaves a node; in steps, if need be.
 #pragma once
+#include <array>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/tree/layout.hpp>
 #include <span>
 
-namespace crofton::tree {
+#include "partition.hpp"
 
-// An item as the builder sees it: its axis-aligned box, in float around the scene's middle. It only decides who sits
-// beside whom; the bounds themselves are computed from the boxes.
-struct BuildItem {
-    float low[3];
-    float high[3];
-    ItemId id;
-};
+namespace crofton::tree {
 
 struct Topology {
     struct NodeRecord {
@@ -35,7 +31,58 @@ struct Topology {
     unsigned height = 1;
 };
 
-[[nodiscard]] Topology build_topology(std::span<const Obb> boxes, std::span<const ItemId> items,
-                                      const measure::Criterion& criterion);
+// Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
+// clusters of 256, the clusters are split from the top, and each cluster within itself: the same work per item whatever
+// their number.
+class Builder {
+  public:
+    // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
+    Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion);
+
+    void add(ItemId id, const Obb& box);
+
+    // After the last add: works on, about `budget` items' worth; true when result() is ready. Same result for any
+    // budgets.
+    bool step(std::size_t budget, Executor& executor);
+    [[nodiscard]] Topology& result() { return result_; }
+
+  private:
+    enum class Phase : std::uint8_t { keys, sort, clusters, split, assemble, done };
+    struct Task {
+        Range range;  // of clusters or of items
+        NodeId parent;
+        std::uint32_t lane;
+        unsigned depth;
+        bool of_clusters;
+    };
+    struct Key {
+        std::uint64_t code;
+        std::uint32_t index;
+    };
+
+    std::size_t compute_keys(std::size_t budget);
+    std::size_t sort_pass(std::size_t budget);
+    void make_clusters();
+    std::size_t split_clusters(std::size_t budget, Executor& executor);
+    void start_assembly();
+    std::size_t assemble(std::size_t budget);
+    void add_leaf(const Task& task);
+    void number_leaves();
+
+    Cost cost_;
+    glm::dvec3 middle_;
+    float low_[3], inverse_size_[3], cell_;
+    Vector<BuildItem> items_, sorted_;
+    Vector<Key> keys_, keys_next_;
+    std::array<std::uint32_t, 2048> histogram_{};
+    unsigned pass_ = 0;
+    bool counting_ = true;
+    Vector<BuildItem> clusters_;
+    Vector<Children> cluster_children_;
+    Vector<Task> tasks_;
+    std::size_t next_ = 0;
+    Phase phase_ = Phase::keys;
+    Topology result_;
+};
 
 }  // namespace crofton::tree

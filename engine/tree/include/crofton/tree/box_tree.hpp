@@ -5,10 +5,14 @@
 #include <crofton/geometry/obb.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/tree/layout.hpp>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace crofton::tree {
+
+struct Topology;
 
 struct BuildOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
@@ -16,6 +20,7 @@ struct BuildOptions {
 
 // Every node's bound contains (exactly) all boxes of the items below it. Item i's box is boxes()[i].
 // The leaves hold the items in slots: slot = 16 · leaf + lane, items in the lanes below the leaf's count.
+// Const functions may run on any number of threads at once; the others need the tree for themselves.
 class BoxTree {
   public:
     // Item i is visible in the layers layer_masks[i]; an empty span means all layers for every item.
@@ -26,42 +31,93 @@ class BoxTree {
     [[nodiscard]] static Result<BoxTree> build(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                                const BuildOptions& options = {},
                                                Executor& executor = serial_executor());
+    ~BoxTree();
+    BoxTree(BoxTree&&) noexcept;
+    BoxTree& operator=(BoxTree&&) noexcept;
+
+    // Changes. Errors leave the tree as it was: a box that fails validate(Obb), an item that is not in the tree (item =
+    // its id), 2^30 items. After moves and removals the bounds are right again, and tight, after refit(); insert keeps
+    // them right at once.
+    [[nodiscard]] Result<void> move(ItemId item, const Obb& box);
+    [[nodiscard]] Result<void> move(std::span<const ItemId> items, std::span<const Obb> boxes);  // all or none
+    [[nodiscard]] Result<ItemId> insert(const Obb& box, std::uint32_t layer_mask = ~std::uint32_t{0});
+    [[nodiscard]] Result<void> remove(ItemId item);  // its id is given to a later insert
+    [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
+    void refit();
+
+    // Rebuilds in the background, about `budget` items' worth of work a call (a build is worth about 8 per item; the
+    // last step of a rebuild costs as much as refitting everything). Call it once a frame where items move for long.
+    // True when a rebuild has just been completed. Needs refit() before and leaves nothing to refit.
+    bool maintain(std::size_t budget);
+
+    // Checks every invariant: links, counts, slots, bounds. Errors name the node, leaf or item.
+    [[nodiscard]] Result<void> validate() const;
+
+    // A byte string that deserialise() turns into an equal tree, on machines of the same byte order. deserialise trusts
+    // nothing: errors on damage of any kind.
+    [[nodiscard]] Vector<std::byte> serialise() const;
+    [[nodiscard]] static Result<BoxTree> deserialise(std::span<const std::byte> bytes);
 
     // By ItemId. Ids are below boxes().size(), removed ones included.
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
-    [[nodiscard]] std::size_t item_count() const { return item_count_; }
+    [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_; }
+    [[nodiscard]] std::size_t item_count() const { return boxes_.size() - free_items_.size(); }
+    [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return now_.item_slots[item]; }  // kNone once removed
 
     // The structure itself, root = nodes()[0]; there is always a root.
-    [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
-    [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
-    [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_; }      // kNone in empty slots
-    [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return item_slots_[item]; }  // kNone once removed
-    [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const {
-        return leaf_counts_;
-    }                                                                                 // leaves()[i].count, densely
-    [[nodiscard]] std::span<const LeafRange> leaf_ranges() const { return ranges_; }  // by NodeId
-    [[nodiscard]] unsigned height() const { return height_; }  // nodes on the longest path from the root to a leaf
+    [[nodiscard]] std::span<const Node> nodes() const { return now_.nodes; }
+    [[nodiscard]] std::span<const Leaf> leaves() const { return now_.leaves; }
+    [[nodiscard]] std::span<const ItemId> slot_items() const { return now_.slot_items; }  // kNone in empty slots
+    [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const { return now_.leaf_counts; }  // leaves()[i].count
+    [[nodiscard]] std::span<const LeafRange> leaf_ranges() const { return now_.ranges; }          // by NodeId
+    [[nodiscard]] unsigned height() const { return now_.height; }  // nodes on the longest path from the root to a leaf
 
     // The bound of child `lane` of a node, as the exact box that the stored floats stand for, rounded outward.
     [[nodiscard]] Aabb child_bounds(NodeId node, unsigned lane) const;
 
   private:
-    BoxTree() = default;
-    void rebuild(Executor& executor);
-    [[nodiscard]] Aabb own_bounds(std::uint32_t child) const;
-    void update_layers(NodeId node, unsigned lane);
+    friend struct TreeStorage;
+    struct Structure {
+        Vector<Node> nodes;
+        Vector<LeafRange> ranges;
+        Vector<Leaf> leaves;
+        Vector<std::uint8_t> leaf_counts;
+        Vector<ItemId> slot_items;
+        Vector<std::uint32_t> item_slots;
+        unsigned height = 1;
+    };
+    struct Rebuild;
+
+    BoxTree();
+    void adopt(Structure& structure, const Topology& topology) const;
+    void fill_leaf(Structure& structure, LeafId leaf, const Topology& topology) const;
+    void rewrite_leaf(Structure& structure, LeafId leaf) const;
+    void refresh_node(Structure& structure, NodeId node) const;
+    void finish_nodes(Structure& structure) const;
+    void refresh_path(NodeId node);
+    void mark(LeafId leaf);
+    void note_change(ItemId item);
+    void place(ItemId item);
+    void vacate(ItemId item);
+    [[nodiscard]] LeafId best_leaf(const Aabb& bounds) const;
+    LeafId add_leaf();
+    void split_leaf(LeafId leaf);
+    void add_child(NodeId parent, std::uint32_t child);
+    void link(NodeId parent, unsigned lane, std::uint32_t child);
+    NodeId split_node(NodeId node);
+    void take_over();
+    [[nodiscard]] Result<void> validate_leaves() const;
+    [[nodiscard]] Result<void> check_item(ItemId item) const;
 
     measure::Criterion criterion_;
     Vector<Obb> boxes_;
     Vector<std::uint32_t> layer_masks_;
-    Vector<std::uint32_t> item_slots_;
-    Vector<Node> nodes_;
-    Vector<LeafRange> ranges_;
-    Vector<Leaf> leaves_;
-    Vector<std::uint8_t> leaf_counts_;
-    Vector<ItemId> slot_items_;
-    std::size_t item_count_ = 0;
-    unsigned height_ = 1;
+    Vector<ItemId> free_items_;
+    Structure now_;
+    Vector<std::uint64_t> dirty_leaves_;  // one bit a leaf
+    Vector<NodeId> dirty_nodes_, dirty_parents_;
+    Vector<std::uint64_t> dirty_node_bits_;
+    std::unique_ptr<Rebuild> rebuild_;
 };
 
 }  // namespace crofton::tree

@@ -1,0 +1,111 @@
+// Bringing bounds up to date after moves, and whole rebuilds in the background.
+#include <algorithm>
+#include <bit>
+#include <crofton/core/assert.hpp>
+#include <crofton/tree/box_tree.hpp>
+
+#include "bounds.hpp"
+#include "rebuild.hpp"
+
+namespace crofton::tree {
+
+void BoxTree::mark(LeafId leaf) {
+    dirty_leaves_[leaf / 64] |= std::uint64_t{1} << (leaf % 64);
+}
+
+void BoxTree::note_change(ItemId item) {
+    if (!rebuild_) return;
+    if (rebuild_->changed.size() <= item / 64) rebuild_->changed.resize(item / 64 + 1, 0);
+    rebuild_->changed[item / 64] |= std::uint64_t{1} << (item % 64);
+}
+
+void BoxTree::refit() {
+    dirty_nodes_.clear();
+    dirty_node_bits_.resize((now_.nodes.size() + 63) / 64, 0);
+    const auto push = [&](Vector<NodeId>& list, NodeId n) {
+        std::uint64_t& word = dirty_node_bits_[n / 64];
+        const std::uint64_t bit = std::uint64_t{1} << (n % 64);
+        if (word & bit) return;
+        word |= bit;
+        list.push_back(n);
+    };
+    for (std::size_t w = 0; w < dirty_leaves_.size(); ++w)
+        for (std::uint64_t word = std::exchange(dirty_leaves_[w], 0); word; word &= word - 1) {
+            const auto l = static_cast<LeafId>(64 * w + static_cast<unsigned>(std::countr_zero(word)));
+            Leaf& leaf = now_.leaves[l];
+            // Far from its origin a leaf loses digits.
+            const Aabb bounds = bounds_of(leaf);
+            const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
+            if (double{leaf.reach} > 8.0 * (size.x + size.y + size.z)) rewrite_leaf(now_, l);
+            push(dirty_nodes_, leaf.parent);
+        }
+    // Level by level up; a node is done once all its dirty children are, for those above are asked again.
+    while (!dirty_nodes_.empty()) {
+        dirty_parents_.clear();
+        for (const NodeId n : dirty_nodes_) dirty_node_bits_[n / 64] &= ~(std::uint64_t{1} << (n % 64));
+        for (const NodeId n : dirty_nodes_) {
+            refresh_node(now_, n);
+            if (now_.nodes[n].parent != kNone) push(dirty_parents_, now_.nodes[n].parent);
+        }
+        dirty_nodes_.swap(dirty_parents_);
+    }
+}
+
+bool BoxTree::maintain(std::size_t budget) {
+    if (!rebuild_) {
+        if (item_count() == 0) return false;
+        rebuild_ = std::make_unique<Rebuild>();
+        Aabb scene = bounds_of(now_.nodes[0]);
+        rebuild_->builder.emplace(scene, item_count(), criterion_);
+    }
+    Rebuild& work = *rebuild_;
+    if (work.adding) {
+        const std::size_t end = std::min(boxes_.size(), work.next + budget);
+        budget -= end - work.next;
+        for (; work.next < end; ++work.next)
+            if (now_.item_slots[work.next] != kNone)
+                work.builder->add(static_cast<ItemId>(work.next), boxes_[work.next]);
+        if (work.next < boxes_.size() || budget == 0) return false;
+        work.adding = false;
+    }
+    if (!work.filling) {
+        if (!work.builder->step(budget, serial_executor())) return false;
+        adopt(work.structure, work.builder->result());
+        work.filling = true;
+        work.next = 0;
+        return false;
+    }
+    const std::size_t leaves = work.structure.leaves.size();
+    const std::size_t end = std::min(leaves, work.next + budget / kWidth + 1);
+    for (; work.next < end; ++work.next)
+        fill_leaf(work.structure, static_cast<LeafId>(work.next), work.builder->result());
+    if (work.next < leaves) return false;
+    take_over();
+    return true;
+}
+
+// The new structure replaces the old one, after what has changed since it was begun.
+void BoxTree::take_over() {
+    const std::unique_ptr<Rebuild> work = std::move(rebuild_);
+    Structure& fresh = work->structure;
+    fresh.item_slots.resize(boxes_.size(), kNone);
+    const Vector<std::uint32_t> old_slots = std::move(now_.item_slots);
+    now_ = std::move(fresh);
+    dirty_leaves_.assign((now_.leaves.size() + 63) / 64, 0);
+    Vector<ItemId> homeless;
+    for (std::size_t w = 0; w < work->changed.size(); ++w)
+        for (std::uint64_t word = work->changed[w]; word; word &= word - 1) {
+            const auto item = static_cast<ItemId>(64 * w + static_cast<unsigned>(std::countr_zero(word)));
+            const std::uint32_t slot = now_.item_slots[item];
+            const bool present = old_slots[item] != kNone;
+            if (present && slot == kNone) homeless.push_back(item);
+            if (present && slot != kNone)
+                write_lane(now_.leaves[slot / kWidth], slot % kWidth, boxes_[item], layer_masks_[item]);
+            if (!present && slot != kNone) vacate(item);
+        }
+    finish_nodes(now_);
+    std::fill(dirty_leaves_.begin(), dirty_leaves_.end(), 0);
+    for (const ItemId item : homeless) place(item);
+}
+
+}  // namespace crofton::tree

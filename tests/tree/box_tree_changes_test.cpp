@@ -1,0 +1,139 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/tree/box_tree.hpp>
+#include <oracle/random_boxes.hpp>
+#include <oracle/tree_contents.hpp>
+#include <vector>
+
+using namespace crofton;
+using oracle::holds_all;
+using tree::BoxTree;
+using tree::ItemId;
+
+TEST_SUITE("tree/box_tree changes") {
+    TEST_CASE("bad boxes and unknown or removed items are refused, and the tree stays as it was") {
+        BoxTree tree = *BoxTree::build(oracle::random_crowd(50, 0.0, 1).boxes);
+        const Vector<std::byte> before = tree.serialise();
+        Obb bad;
+        bad.center.x = std::nan("");
+        CHECK(tree.move(7, bad).error().item == 7);
+        CHECK(!tree.insert(bad).has_value());
+        CHECK(tree.move(50, Obb{}).error().code == ErrorCode::out_of_range);
+        CHECK(!tree.remove(50).has_value());
+        const std::vector<ItemId> ids{3, 4};
+        const std::vector<Obb> moved{Obb{}, bad};
+        CHECK(tree.move(ids, moved).error().item == 4);
+        CHECK(tree.serialise() == before);
+        CHECK(tree.remove(7).has_value());
+        CHECK(!tree.remove(7).has_value());
+        CHECK(!tree.move(7, Obb{}).has_value());
+        tree.refit();
+        CHECK(tree.validate().has_value());
+    }
+
+    TEST_CASE("a tree grown from nothing by insertion holds all, stays shallow, and shrinks to nothing again") {
+        BoxTree tree = *BoxTree::build(std::span<const Obb>{});
+        const oracle::Crowd crowd = oracle::random_crowd(4000, 1e5, 2);
+        for (std::size_t i = 0; i < crowd.boxes.size(); ++i) CHECK(*tree.insert(crowd.boxes[i], crowd.layers[i]) == i);
+        CHECK(holds_all(tree));
+        REQUIRE(tree.validate().has_value());
+        CHECK(tree.height() <= 5);  // leaves and nodes half full at least: 4000 < 8^5
+        for (ItemId i = 0; i < 4000; ++i) REQUIRE(tree.remove((i * 1237) % 4000).has_value());
+        tree.refit();
+        CHECK(tree.item_count() == 0);
+        CHECK(tree.validate().has_value());
+        CHECK(*tree.insert(Obb{}) < 4000);
+        CHECK(tree.validate().has_value());
+    }
+
+    TEST_CASE("ten thousand identical boxes can be inserted one by one") {
+        BoxTree tree = *BoxTree::build(std::span<const Obb>{});
+        for (int i = 0; i < 10000; ++i) REQUIRE(tree.insert(Obb{}).has_value());
+        CHECK(tree.height() <= 6);
+        CHECK(tree.validate().has_value());
+    }
+
+    TEST_CASE("any sequence of moves, insertions and removals leaves a valid tree, in the background rebuilt or not") {
+        oracle::NearMisses random(5);
+        for (const std::size_t budget : {0u, 40u, 5000u}) {
+            const oracle::Crowd crowd = oracle::random_crowd(1500, 0.0, 3);
+            BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
+            int rebuilt = 0;
+            for (int frame = 0; frame < 300; ++frame) {
+                for (int change = 0; change < 20; ++change) {
+                    const ItemId item = random.index(static_cast<unsigned>(tree.boxes().size()));
+                    const Obb box = oracle::random_box(random, glm::dvec3(frame), 40.0);
+                    switch (random.index(4)) {
+                        case 0:
+                            REQUIRE(tree.insert(box, 1u << random.index(8)).has_value());
+                            break;
+                        case 1: {
+                            const bool present = tree.slot_of(item) != tree::kNone;
+                            CHECK(tree.remove(item).has_value() == present);
+                            break;
+                        }
+                        case 2:
+                            (void)tree.set_layer_mask(item, 1u << random.index(8));
+                            break;
+                        default:
+                            (void)tree.move(item, box);
+                            break;
+                    }
+                }
+                tree.refit();
+                if (budget > 0) rebuilt += tree.maintain(budget);
+                if (frame % 10 == 0) {
+                    const auto valid = tree.validate();
+                    INFO((valid ? std::string() : valid.error().message));
+                    REQUIRE(valid.has_value());
+                    REQUIRE(holds_all(tree));
+                }
+            }
+            CHECK((rebuilt > 0) == (budget > 0));
+        }
+    }
+
+    TEST_CASE("a background rebuild gives the very tree that a build gives, in bounded steps") {
+        oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 4);
+        BoxTree tree = *BoxTree::build(crowd.boxes);
+        oracle::NearMisses random(6);
+        for (ItemId i = 0; i < 20000; ++i) {
+            crowd.boxes[i] = oracle::random_box(random, glm::dvec3(0.0), 40.0);
+            REQUIRE(tree.move(i, crowd.boxes[i]).has_value());
+        }
+        tree.refit();
+        int steps = 1;
+        while (!tree.maintain(2000)) ++steps;
+        CHECK(steps > 60);
+        CHECK(steps < 400);
+        CHECK(tree.validate().has_value());
+        const BoxTree fresh = *BoxTree::build(crowd.boxes);
+        CHECK(tree.leaves().size() == fresh.leaves().size());
+        CHECK(std::ranges::equal(tree.leaf_counts(), fresh.leaf_counts()));
+    }
+
+    TEST_CASE("stored bytes give an equal tree back; damaged ones are refused") {
+        const oracle::Crowd crowd = oracle::random_crowd(700, 1e7, 5);
+        BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
+        REQUIRE(tree.remove(5).has_value());
+        tree.refit();
+        const Vector<std::byte> bytes = tree.serialise();
+        const auto back = BoxTree::deserialise(bytes);
+        REQUIRE(back.has_value());
+        CHECK(back->serialise() == bytes);
+        CHECK(holds_all(*back));
+        for (const std::size_t size : {std::size_t{0}, std::size_t{50}, bytes.size() - 1})
+            CHECK(BoxTree::deserialise(std::span(bytes).first(size)).error().code == ErrorCode::parse);
+        oracle::NearMisses random(9);
+        int accepted = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            Vector<std::byte> damaged = bytes;
+            damaged[random.index(static_cast<unsigned>(bytes.size()))] ^= std::byte(1u << random.index(8));
+            const auto tree_of_damage = BoxTree::deserialise(damaged);
+            if (!tree_of_damage) continue;
+            ++accepted;  // another box in a lane's rounding, another name for a layer that all share, padding
+            CHECK(holds_all(*tree_of_damage));
+        }
+        CHECK(accepted < 1500);
+    }
+}
