@@ -121,7 +121,7 @@ TEST_SUITE("cli/frames") {
             run_cli(kSmallTown + "--frames 10 --camera random --seed 5 --no-draw --ids --json " + recorded).status ==
             0);
         const json expected = ids_of(json::parse(contents_of(recorded)));
-        for (const std::string choice : {std::string("--cull flat --camera random"),
+        for (const std::string& choice : {std::string("--cull flat --camera random"),
                                          std::string("--threads 2 --camera random"), "--camera " + recorded}) {
             CAPTURE(choice);
             const CliRun run = run_cli(kSmallTown + "--frames 10 --seed 5 --no-draw --ids --json - " + choice);

@@ -1,4 +1,4 @@
-// One triangle of a against the eight of a leaf of b, in a's frame; included once per instruction set.
+// One triangle of a against the eight of a leaf of b, in a's frame and in double; included once per instruction set.
 #if defined(CROFTON_COLLIDE_LEAF_KERNELS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_LEAF_KERNELS
 #undef CROFTON_COLLIDE_LEAF_KERNELS
@@ -8,157 +8,239 @@
 
 #include <hwy/highway.h>
 
-#include "mesh_kernels-inl.hpp"
+#include "mesh_pair.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
-// b's triangles in a's frame, each coordinate within `slop` of the exact one.
+// Signs of determinants det(u, v, w) of differences of points are certain beyond kDeterminantError · |u|₁ |v|₁ |w|₁:
+// Shewchuk's bound for orient3d, (7 + 56 u') u' with u' = 2^-53, holds for the sum of all products' magnitudes, which
+// is at most |u|₁ |v|₁ |w|₁ in any of the factorings used here. Fused operations only lower the error. Underflow stays
+// below 1e-280.
+constexpr double kDeterminantError = 0x1.d0p-51;
+constexpr double kUnderflow = 1e-280;
+
+using DD = hn::CappedTag<double, tree::kMeshWidth>;
+using VD = hn::Vec<DD>;
+using MD = hn::Mask<DD>;
+
+// Eight triangles with what the tests need of them, coordinates exactly those of the scalar code.
 struct LeafLanes {
-    alignas(64) float vertex[3][3][tree::kMeshWidth];
-    alignas(64) float low[3][tree::kMeshWidth];
-    alignas(64) float high[3][tree::kMeshWidth];
-    alignas(64) float normal[3][tree::kMeshWidth];
-    alignas(64) float size[tree::kMeshWidth];          // edge sum of the bound
-    alignas(64) float normal_error[tree::kMeshWidth];  // of dot(normal, x − vertex 0) per unit of |x − vertex 0|
-    alignas(64) float offset_error[tree::kMeshWidth];  // and what does not grow with it
+    alignas(64) double vertex[3][3][tree::kMeshWidth];
+    alignas(64) double low[3][tree::kMeshWidth];
+    alignas(64) double high[3][tree::kMeshWidth];
+    alignas(64) double normal[3][tree::kMeshWidth];  // not of unit length
+    alignas(64) double size[tree::kMeshWidth];       // edge sum of the bound
+    alignas(64) double edges[tree::kMeshWidth];      // |u|₁ |v|₁ of the normal's factors
+    double all_low[3], all_high[3];                  // of the whole leaf
+    std::uint32_t leaf = ~std::uint32_t{0};          // whose lanes these are
 };
 
-HWY_INLINE V sum_of_magnitudes(const V* v) {
+HWY_INLINE VD sum_abs(const VD* v) {
     return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
 }
 
-// An edge u of b is off by 2 slop and its own rounding, hence the normal u × v by at most 4 slop (|u| + |v|) + 8 slop²
-// and 1e-6 |u||v| (sums of magnitudes throughout, so constants are generous).
-HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, LeafLanes& out) {
-    const D d;
+HWY_INLINE void cross(const VD* u, const VD* v, VD* out) {
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = hn::NegMulAdd(u[k], v[j], hn::Mul(u[j], v[k]));
+    }
+}
+
+HWY_INLINE VD dot(const VD* u, const VD* v) {
+    return hn::MulAdd(u[0], v[0], hn::MulAdd(u[1], v[1], hn::Mul(u[2], v[2])));
+}
+
+// The same roundings as transform(Pose) in pose.cpp: products and sums one by one, tiny results taken as zero.
+HWY_INLINE void carry_over(DD d, const MeshPair& pair, VD* p) {
+    VD out[3];
+    for (int i = 0; i < 3; ++i) {
+        const VD x = hn::Mul(hn::Set(d, pair.exact_rotation[i][0]), p[0]),
+                 y = hn::Mul(hn::Set(d, pair.exact_rotation[i][1]), p[1]),
+                 z = hn::Mul(hn::Set(d, pair.exact_rotation[i][2]), p[2]);
+        const VD sum = hn::Add(hn::Add(hn::Add(x, y), z), hn::Set(d, pair.exact_translation[i]));
+        out[i] = hn::IfThenZeroElse(hn::Lt(hn::Abs(sum), hn::Set(d, 1e-60)), sum);
+    }
+    for (int i = 0; i < 3; ++i) p[i] = out[i];
+}
+
+HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, bool of_b, LeafLanes& out) {
+    const DD d;
+    const hn::Rebind<float, DD> df;
     for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
-        V w[3][3];
-        for (int v = 0; v < 3; ++v) {
-            const V x = hn::Load(d, leaf.vertex[v][0] + l), y = hn::Load(d, leaf.vertex[v][1] + l),
-                    z = hn::Load(d, leaf.vertex[v][2] + l);
-            for (int i = 0; i < 3; ++i) {
-                w[v][i] = hn::MulAdd(
-                    hn::Set(d, pair.rotation[i][0]), x,
-                    hn::MulAdd(hn::Set(d, pair.rotation[i][1]), y,
-                               hn::MulAdd(hn::Set(d, pair.rotation[i][2]), z, hn::Set(d, pair.translation[i]))));
-                hn::Store(w[v][i], d, out.vertex[v][i] + l);
-            }
+        VD w[3][3], u[3], v[3], n[3];
+        for (int c = 0; c < 3; ++c) {
+            for (int i = 0; i < 3; ++i) w[c][i] = hn::PromoteTo(d, hn::Load(df, leaf.vertex[c][i] + l));
+            if (of_b) carry_over(d, pair, w[c]);
+            for (int i = 0; i < 3; ++i) hn::Store(w[c][i], d, out.vertex[c][i] + l);
         }
-        V size = hn::Zero(d), u[3], v[3], n[3];
+        VD size = hn::Zero(d);
         for (int i = 0; i < 3; ++i) {
-            const V low = hn::Min(w[0][i], hn::Min(w[1][i], w[2][i])),
-                    high = hn::Max(w[0][i], hn::Max(w[1][i], w[2][i]));
+            const VD low = hn::Min(w[0][i], hn::Min(w[1][i], w[2][i])),
+                     high = hn::Max(w[0][i], hn::Max(w[1][i], w[2][i]));
             hn::Store(low, d, out.low[i] + l);
             hn::Store(high, d, out.high[i] + l);
             size = hn::Add(size, hn::Sub(high, low));
             u[i] = hn::Sub(w[1][i], w[0][i]);
             v[i] = hn::Sub(w[2][i], w[0][i]);
         }
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            n[i] = hn::NegMulAdd(u[k], v[j], hn::Mul(u[j], v[k]));
-            hn::Store(n[i], d, out.normal[i] + l);
-        }
+        cross(u, v, n);
+        for (int i = 0; i < 3; ++i) hn::Store(n[i], d, out.normal[i] + l);
         hn::Store(size, d, out.size + l);
-        const V su = sum_of_magnitudes(u), sv = sum_of_magnitudes(v), slop = hn::Set(d, pair.slop);
-        const V edges = hn::Mul(hn::Set(d, 4.0f * pair.slop), hn::Add(hn::Add(su, sv), hn::Add(slop, slop)));
-        hn::Store(hn::MulAdd(hn::Mul(su, sv), hn::Set(d, 2e-6f), edges), d, out.normal_error + l);
-        hn::Store(hn::MulAdd(sum_of_magnitudes(n), hn::Set(d, 2.0f * pair.slop), hn::Set(d, 1e-30f)), d,
-                  out.offset_error + l);
+        hn::Store(hn::Mul(sum_abs(u), sum_abs(v)), d, out.edges + l);
+    }
+    for (int i = 0; i < 3; ++i) {
+        VD low = hn::Load(d, out.low[i]), high = hn::Load(d, out.high[i]);
+        for (std::size_t l = hn::Lanes(d); l < tree::kMeshWidth; l += hn::Lanes(d)) {
+            low = hn::Min(low, hn::Load(d, out.low[i] + l));
+            high = hn::Max(high, hn::Load(d, out.high[i] + l));
+        }
+        out.all_low[i] = hn::GetLane(hn::MinOfLanes(d, low));
+        out.all_high[i] = hn::GetLane(hn::MaxOfLanes(d, high));
     }
 }
 
-struct OneTriangle {
-    float vertex[3][3];
-    float low[3], high[3], normal[3];
-    float size, normal_error, offset_error;
+HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return static_cast<std::uint32_t>(bits[0]) << l;
+}
+
+// Triangles of a whose bounds meet the bound of all of b's.
+HWY_INLINE std::uint32_t candidates(const LeafLanes& in_a, const LeafLanes& in_b) {
+    const DD d;
+    std::uint32_t lanes = 0;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
+        for (int i = 0; i < 3; ++i) {
+            near = hn::And(near, hn::Le(hn::Load(d, in_a.low[i] + l), hn::Set(d, in_b.all_high[i])));
+            near = hn::And(near, hn::Ge(hn::Load(d, in_a.high[i] + l), hn::Set(d, in_b.all_low[i])));
+        }
+        lanes |= bits_of(d, near, l);
+    }
+    return lanes;
+}
+
+struct Sides {
+    MD above[3], below[3];  // certain
 };
 
-HWY_INLINE OneTriangle load_one(const MeshPair& pair, const tree::MeshLeaf& leaf, std::uint32_t lane) {
-    OneTriangle t;
-    float u[3], v[3], su = 0.0f, sv = 0.0f, sn = 0.0f;
-    t.size = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) t.vertex[k][i] = leaf.vertex[k][i][lane];
-        t.low[i] = HWY_MIN(t.vertex[0][i], HWY_MIN(t.vertex[1][i], t.vertex[2][i]));
-        t.high[i] = HWY_MAX(t.vertex[0][i], HWY_MAX(t.vertex[1][i], t.vertex[2][i]));
-        t.size += t.high[i] - t.low[i];
-        u[i] = t.vertex[1][i] - t.vertex[0][i];
-        v[i] = t.vertex[2][i] - t.vertex[0][i];
-        su += u[i] < 0.0f ? -u[i] : u[i];
-        sv += v[i] < 0.0f ? -v[i] : v[i];
+// Sides of the three points `p` of the plane through `origin` with `normal`.
+HWY_INLINE Sides sides_of(const VD* normal, const VD* origin, const VD (&p)[3][3], VD error) {
+    Sides sides;
+    for (int k = 0; k < 3; ++k) {
+        VD w[3];
+        for (int i = 0; i < 3; ++i) w[i] = hn::Sub(p[k][i], origin[i]);
+        const VD value = dot(normal, w);
+        sides.above[k] = hn::Gt(value, error);
+        sides.below[k] = hn::Lt(value, hn::Neg(error));
     }
-    for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        t.normal[i] = u[j] * v[k] - u[k] * v[j];
-        sn += t.normal[i] < 0.0f ? -t.normal[i] : t.normal[i];
-    }
-    t.normal_error = 2e-6f * su * sv;
-    t.offset_error = 2.0f * pair.slop * sn + 1e-30f;
-    return t;
+    return sides;
 }
 
-HWY_INLINE V dot_from(const V* n, const V* point, const V* origin) {
-    return hn::MulAdd(n[0], hn::Sub(point[0], origin[0]),
-                      hn::MulAdd(n[1], hn::Sub(point[1], origin[1]), hn::Mul(n[2], hn::Sub(point[2], origin[2]))));
+HWY_INLINE MD all_on_one_side(const Sides& s) {
+    return hn::Or(hn::And(s.above[0], hn::And(s.above[1], s.above[2])),
+                  hn::And(s.below[0], hn::And(s.below[1], s.below[2])));
 }
 
-// Bit l is set unless triangle l of b surely does not meet t: bounds apart, or one triangle strictly on one side of the
-// other's plane. Distances that matter are at most the sum of both bounds' edges, or the bounds are apart.
-HWY_INLINE std::uint32_t triangle_mask(const MeshPair& pair, const OneTriangle& t, const LeafLanes& b) {
-    const D d;
-    std::uint32_t apart = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
-        const V slop = hn::Set(d, pair.slop), zero = hn::Zero(d);
-        V gap = hn::Neg(slop);
-        V a[3][3], w[3][3], na[3], nb[3];
-        for (int i = 0; i < 3; ++i) {
-            gap = hn::Max(gap, hn::Sub(hn::Load(d, b.low[i] + l), hn::Set(d, t.high[i])));
-            gap = hn::Max(gap, hn::Sub(hn::Set(d, t.low[i]), hn::Load(d, b.high[i] + l)));
+// An edge from corner k to the next, with the signs of its three determinants against the other triangle's edges: it
+// pierces when the ends lie apart and the signs agree; it misses when the ends lie together or the signs differ.
+HWY_INLINE void judge_edge(const Sides& s, int k, const MD* positive, const MD* negative, MD& hit, MD& miss) {
+    const int n = (k + 1) % 3;
+    const MD apart = hn::Or(hn::And(s.above[k], s.below[n]), hn::And(s.below[k], s.above[n]));
+    const MD together = hn::Or(hn::And(s.above[k], s.above[n]), hn::And(s.below[k], s.below[n]));
+    const MD agree = hn::Or(hn::And(positive[0], hn::And(positive[1], positive[2])),
+                            hn::And(negative[0], hn::And(negative[1], negative[2])));
+    const MD differ = hn::And(hn::Or(positive[0], hn::Or(positive[1], positive[2])),
+                              hn::Or(negative[0], hn::Or(negative[1], negative[2])));
+    hit = hn::Or(hit, hn::And(apart, agree));
+    miss = hn::And(miss, hn::Or(together, differ));
+}
+
+// Two triangles meet, unless an end or a plane is touched, iff an edge of one pierces the other. The nine determinants
+// of an edge of each serve both directions.
+HWY_INLINE void judge_edges(DD d, const VD (&a)[3][3], const VD (&b)[3][3], const Sides& of_a, const Sides& of_b,
+                            VD reach, MD& hit, MD& miss) {
+    VD v[3][3], size[3];
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) v[j][i] = hn::Sub(b[(j + 1) % 3][i], b[j][i]);
+        size[j] = hn::Mul(hn::Mul(sum_abs(v[j]), reach), hn::Set(d, kDeterminantError));
+    }
+    MD positive[3][3], negative[3][3];  // [edge of a][edge of b]
+    for (int e = 0; e < 3; ++e) {
+        VD u[3];
+        for (int i = 0; i < 3; ++i) u[i] = hn::Sub(a[(e + 1) % 3][i], a[e][i]);
+        const VD length = sum_abs(u);
+        for (int j = 0; j < 3; ++j) {
+            VD n[3], w[3];
+            cross(u, v[j], n);
+            for (int i = 0; i < 3; ++i) w[i] = hn::Sub(b[j][i], a[e][i]);
+            const VD value = dot(n, w), error = hn::MulAdd(size[j], length, hn::Set(d, kUnderflow));
+            positive[e][j] = hn::Gt(value, error);
+            negative[e][j] = hn::Lt(value, hn::Neg(error));
         }
-        auto separate = hn::Gt(gap, slop);
-        if (!hn::AllTrue(d, separate)) {
-            for (int i = 0; i < 3; ++i) {
-                for (int v = 0; v < 3; ++v) {
-                    a[v][i] = hn::Set(d, t.vertex[v][i]);
-                    w[v][i] = hn::Load(d, b.vertex[v][i] + l);
-                }
-                na[i] = hn::Set(d, t.normal[i]);
-                nb[i] = hn::Load(d, b.normal[i] + l);
+    }
+    for (int k = 0; k < 3; ++k) {
+        judge_edge(of_a, k, positive[k], negative[k], hit, miss);
+        const MD up[3] = {positive[0][k], positive[1][k], positive[2][k]};
+        const MD down[3] = {negative[0][k], negative[1][k], negative[2][k]};
+        judge_edge(of_b, k, up, down, hit, miss);
+    }
+}
+
+// Triangle `one` of a against all of b: lanes that surely meet it, and lanes that need exact arithmetic.
+HWY_INLINE LaneVerdict judge(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b) {
+    const DD d;
+    LaneVerdict verdict;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
+        for (int i = 0; i < 3; ++i) {
+            near = hn::And(near, hn::Le(hn::Load(d, in_b.low[i] + l), hn::Set(d, in_a.high[i][one])));
+            near = hn::And(near, hn::Le(hn::Set(d, in_a.low[i][one]), hn::Load(d, in_b.high[i] + l)));
+        }
+        if (hn::AllFalse(d, near)) continue;
+        VD a[3][3], b[3][3], na[3], nb[3];
+        for (int i = 0; i < 3; ++i) {
+            for (int c = 0; c < 3; ++c) {
+                a[c][i] = hn::Set(d, in_a.vertex[c][i][one]);
+                b[c][i] = hn::Load(d, in_b.vertex[c][i] + l);
             }
-            const V reach = hn::Add(hn::Add(hn::Load(d, b.size + l), hn::Set(d, t.size)), hn::Add(slop, slop));
-            const V a0 = dot_from(na, w[0], a[0]), a1 = dot_from(na, w[1], a[0]), a2 = dot_from(na, w[2], a[0]);
-            const V error_a = hn::MulAdd(reach, hn::Set(d, t.normal_error), hn::Set(d, t.offset_error));
-            const V b0 = dot_from(nb, a[0], w[0]), b1 = dot_from(nb, a[1], w[0]), b2 = dot_from(nb, a[2], w[0]);
-            const V error_b = hn::MulAdd(reach, hn::Load(d, b.normal_error + l), hn::Load(d, b.offset_error + l));
-            const V side_a = hn::Max(hn::Min(a0, hn::Min(a1, a2)), hn::Neg(hn::Max(a0, hn::Max(a1, a2))));
-            const V side_b = hn::Max(hn::Min(b0, hn::Min(b1, b2)), hn::Neg(hn::Max(b0, hn::Max(b1, b2))));
-            const V margin = hn::Max(hn::Sub(side_a, error_a), hn::Sub(side_b, error_b));
-            separate = hn::Or(separate, hn::Gt(margin, zero));
+            na[i] = hn::Set(d, in_a.normal[i][one]);
+            nb[i] = hn::Load(d, in_b.normal[i] + l);
         }
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, separate, bits);
-        apart |= static_cast<std::uint32_t>(bits[0]) << l;
+        // Bounds meet, so no two points are farther apart than both together; rounding of the sizes is far below the
+        // margin.
+        const VD reach =
+            hn::Mul(hn::Add(hn::Load(d, in_b.size + l), hn::Set(d, in_a.size[one])), hn::Set(d, 1.0000001));
+        const VD scale = hn::Mul(reach, hn::Set(d, kDeterminantError)), tiny = hn::Set(d, kUnderflow);
+        const Sides of_b = sides_of(na, a[0], b, hn::MulAdd(scale, hn::Set(d, in_a.edges[one]), tiny));
+        near = hn::AndNot(all_on_one_side(of_b), near);
+        if (hn::AllFalse(d, near)) continue;
+        const Sides of_a = sides_of(nb, b[0], a, hn::MulAdd(scale, hn::Load(d, in_b.edges + l), tiny));
+        near = hn::AndNot(all_on_one_side(of_a), near);
+        if (hn::AllFalse(d, near)) continue;
+        MD hit = hn::Lt(hn::Zero(d), hn::Zero(d)), miss = hn::Eq(hn::Zero(d), hn::Zero(d));
+        judge_edges(d, a, b, of_a, of_b, reach, hit, miss);
+        verdict.hits |= bits_of(d, hn::And(near, hit), l);
+        verdict.open |= bits_of(d, hn::AndNot(hn::Or(hit, miss), near), l);
     }
-    return ~apart;
+    return verdict;
 }
 
-// Bit l is set unless the bounds of t and of triangle l of b are surely at least sqrt(limit) apart.
-HWY_INLINE std::uint32_t near_mask(const MeshPair& pair, const OneTriangle& t, const LeafLanes& b, float limit) {
-    const D d;
+// Bit l is set unless the bounds of the two triangles are at least sqrt(limit) apart.
+HWY_INLINE std::uint32_t near_mask(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b, double limit) {
+    const DD d;
     std::uint32_t apart = 0;
     for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
-        V sum = hn::Zero(d);
+        VD sum = hn::Zero(d);
         for (int i = 0; i < 3; ++i) {
-            V gap = hn::Max(hn::Sub(hn::Load(d, b.low[i] + l), hn::Set(d, t.high[i])),
-                            hn::Sub(hn::Set(d, t.low[i]), hn::Load(d, b.high[i] + l)));
-            gap = hn::Max(hn::Zero(d), hn::Sub(gap, hn::Set(d, pair.slop)));
+            VD gap = hn::Max(hn::Sub(hn::Load(d, in_b.low[i] + l), hn::Set(d, in_a.high[i][one])),
+                             hn::Sub(hn::Set(d, in_a.low[i][one]), hn::Load(d, in_b.high[i] + l)));
+            gap = hn::Max(hn::Zero(d), gap);
             sum = hn::MulAdd(gap, gap, sum);
         }
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Gt(hn::Mul(sum, hn::Set(d, 0.99999f)), hn::Set(d, limit)), bits);
-        apart |= static_cast<std::uint32_t>(bits[0]) << l;
+        apart |= bits_of(d, hn::Gt(hn::Mul(sum, hn::Set(d, 0.999999)), hn::Set(d, limit)), l);
     }
     return ~apart;
 }

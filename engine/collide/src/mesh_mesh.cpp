@@ -37,7 +37,11 @@ MeshPair make_pair(const tree::MeshTree& a, const tree::MeshTree& b, const Pose&
         pair.root[side] = &trees[side]->root_box();
     }
     for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) pair.rotation[i][j] = static_cast<float>(pose.rotation[j][i]);
+        for (int j = 0; j < 3; ++j) {
+            pair.exact_rotation[i][j] = pose.rotation[j][i];
+            pair.rotation[i][j] = static_cast<float>(pose.rotation[j][i]);
+        }
+        pair.exact_translation[i] = pose.translation[i];
         pair.translation[i] = static_cast<float>(pose.translation[i]);
     }
     pair.slop = slop_of(a, b, pose);
@@ -45,19 +49,20 @@ MeshPair make_pair(const tree::MeshTree& a, const tree::MeshTree& b, const Pose&
     return pair;
 }
 
-// Runs the traversal; `test(triangle of a, triangle of b, indices)` decides and returns true to stop.
-template <class Test>
-void for_each_candidate(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& pose, MeshStatistics* statistics,
-                        Test test) {
+// Runs the traversal; `found(leaf and lane of a, of b)` is called for pairs that meet and returns true to stop.
+template <class Found>
+void for_each_hit(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& pose, MeshStatistics* statistics,
+                  Found found) {
     std::uint64_t exact_tests = 0;
-    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, std::uint32_t lanes) {
+    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict verdict) {
         const tree::MeshLeaf &in_a = a.leaves()[leaf_a], &in_b = b.leaves()[leaf_b];
-        const Triangle first = triangle_of(in_a, lane_a);
-        for (; lanes != 0; lanes &= lanes - 1) {
+        for (std::uint32_t lanes = verdict.hits | verdict.open; lanes != 0; lanes &= lanes - 1) {
             const auto lane_b = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            ++exact_tests;
-            const TrianglePair indices{in_a.triangle[lane_a], in_b.triangle[lane_b]};
-            if (test(first, triangle_of(in_b, lane_b, pose), indices)) return true;
+            if (verdict.open >> lane_b & 1u) {
+                ++exact_tests;
+                if (!intersects(triangle_of(in_a, lane_a), triangle_of(in_b, lane_b, pose))) continue;
+            }
+            if (found(in_a, lane_a, in_b, lane_b)) return true;
         }
         return false;
     };
@@ -79,35 +84,35 @@ glm::dvec3 unit_normal(const Triangle& t) {
 
 bool intersects(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, MeshStatistics* statistics) {
     bool hit = false;
-    for_each_candidate(a, b, b_to_a, statistics,
-                       [&](const Triangle& first, const Triangle& second, const TrianglePair&) {
-                           return hit = intersects(first, second);
-                       });
+    for_each_hit(a, b, b_to_a, statistics, [&](auto&&...) { return hit = true; });
     return hit;
 }
 
 void intersecting_triangles(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
                             Vector<TrianglePair>& pairs, MeshStatistics* statistics) {
     pairs.clear();
-    for_each_candidate(a, b, b_to_a, statistics,
-                       [&](const Triangle& first, const Triangle& second, const TrianglePair& indices) {
-                           if (intersects(first, second)) pairs.push_back(indices);
-                           return false;
-                       });
+    for_each_hit(
+        a, b, b_to_a, statistics,
+        [&](const tree::MeshLeaf& in_a, std::uint32_t lane_a, const tree::MeshLeaf& in_b, std::uint32_t lane_b) {
+            pairs.push_back({in_a.triangle[lane_a], in_b.triangle[lane_b]});
+            return false;
+        });
     std::sort(pairs.begin(), pairs.end());
 }
 
 void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, Vector<MeshContact>& found,
               MeshStatistics* statistics) {
     found.clear();
-    for_each_candidate(a, b, b_to_a, statistics,
-                       [&](const Triangle& first, const Triangle& second, const TrianglePair& indices) {
-                           if (!intersects(first, second)) return false;
-                           MeshContact contact{indices, contact_segment(first, second), unit_normal(second)};
-                           if (contact.normal == glm::dvec3(0.0)) contact.normal = unit_normal(first);
-                           found.push_back(contact);
-                           return false;
-                       });
+    for_each_hit(
+        a, b, b_to_a, statistics,
+        [&](const tree::MeshLeaf& in_a, std::uint32_t lane_a, const tree::MeshLeaf& in_b, std::uint32_t lane_b) {
+            const Triangle first = triangle_of(in_a, lane_a), second = triangle_of(in_b, lane_b, b_to_a);
+            const TrianglePair indices{in_a.triangle[lane_a], in_b.triangle[lane_b]};
+            MeshContact contact{indices, contact_segment(first, second), unit_normal(second)};
+            if (contact.normal == glm::dvec3(0.0)) contact.normal = unit_normal(first);
+            found.push_back(contact);
+            return false;
+        });
     std::sort(found.begin(), found.end(),
               [](const MeshContact& x, const MeshContact& y) { return x.triangles < y.triangles; });
 }
@@ -117,10 +122,10 @@ MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Po
     MeshDistance result;
     ClosestPoints best;
     best.squared = limit * limit;
-    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, std::uint32_t lanes) {
+    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict verdict) {
         const tree::MeshLeaf &in_a = a.leaves()[leaf_a], &in_b = b.leaves()[leaf_b];
         const Triangle first = triangle_of(in_a, lane_a);
-        for (; lanes != 0; lanes &= lanes - 1) {
+        for (std::uint32_t lanes = verdict.open; lanes != 0; lanes &= lanes - 1) {
             const auto lane_b = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const Triangle second = triangle_of(in_b, lane_b, b_to_a);
             const TrianglePair indices{in_a.triangle[lane_a], in_b.triangle[lane_b]};
@@ -149,10 +154,10 @@ MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Po
 bool closer_than(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, double tolerance,
                  MeshStatistics* statistics) {
     bool close = false;
-    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, std::uint32_t lanes) {
+    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict verdict) {
         const tree::MeshLeaf &in_a = a.leaves()[leaf_a], &in_b = b.leaves()[leaf_b];
         const Triangle first = triangle_of(in_a, lane_a);
-        for (; lanes != 0 && !close; lanes &= lanes - 1) {
+        for (std::uint32_t lanes = verdict.open; lanes != 0 && !close; lanes &= lanes - 1) {
             const Triangle second = triangle_of(in_b, static_cast<std::uint32_t>(std::countr_zero(lanes)), b_to_a);
             if (statistics != nullptr) ++statistics->exact_tests;
             ClosestPoints best;

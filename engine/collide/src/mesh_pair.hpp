@@ -12,20 +12,26 @@ struct MeshPair {
     const tree::MeshBox* root[2];
     float rotation[3][3];  // [row][column], b to a
     float translation[3];
+    double exact_rotation[3][3], exact_translation[3];
     // Bound of the float rounding of any point or box that is carried from one mesh's frame to the other's.
     float slop;
     float tolerance;  // pairs farther apart than this are left out
 };
 
-// A triangle of one leaf against those of another that are set in `lanes`; true ends the traversal.
+// Of eight pairs of triangles: which surely meet, and which only exact arithmetic can tell; the others surely do not.
+struct LaneVerdict {
+    std::uint32_t hits = 0, open = 0;
+};
+
+// A triangle of a leaf of a against those of a leaf of b that are set in the verdict; true ends the traversal.
 using LeafVisitor =
-    FunctionRef<bool(std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, std::uint32_t lanes)>;
+    FunctionRef<bool(std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict lanes)>;
 
 struct TraversalCounts {
     std::uint64_t box_tests = 0, triangle_tests = 0;
 };
 
-// Calls `visit` for every pair of triangles that may meet, until it returns true.
+// Calls `visit` for every pair of triangles that meets or may meet, until it returns true.
 void visit_overlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts);
 
 // Calls `visit` for pairs that may be nearer than the bound `limit`, nearest boxes first; `limit` is the visitor's to

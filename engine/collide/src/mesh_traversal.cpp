@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "mesh_traversal.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "leaf_kernels-inl.hpp"
@@ -39,17 +40,39 @@ HWY_INLINE std::uint32_t all_lanes(const tree::MeshLeaf& leaf) {
     return (1u << leaf.count) - 1u;
 }
 
-HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafVisitor visit,
-                             TraversalCounts& counts) {
+// One leaf of each mesh, kept while the next pair shares it.
+struct LeafPair {
+    LeafLanes a, b;
+};
+
+HWY_INLINE void load_pair(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves) {
+    if (leaves.a.leaf != a) load_lanes(pair, pair.leaves[0][a], false, leaves.a);
+    if (leaves.b.leaf != b) load_lanes(pair, pair.leaves[1][b], true, leaves.b);
+    leaves.a.leaf = a;
+    leaves.b.leaf = b;
+}
+
+HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves,
+                             LeafVisitor visit, TraversalCounts& counts) {
+    load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
-    LeafLanes lanes;
-    load_lanes(pair, leaf_b, lanes);
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
-    for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        const std::uint32_t mask = triangle_mask(pair, load_one(pair, leaf_a, lane), lanes) & all_lanes(leaf_b);
-        if (mask != 0 && visit(a, lane, b, mask)) return true;
+    const std::uint32_t used = all_lanes(leaf_b);
+    for (std::uint32_t mask = candidates(leaves.a, leaves.b) & all_lanes(leaf_a); mask != 0; mask &= mask - 1) {
+        const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
+        LaneVerdict verdict = judge(leaves.a, lane, leaves.b);
+        verdict.hits &= used;
+        verdict.open &= used;
+        if ((verdict.hits | verdict.open) != 0 && visit(a, lane, b, verdict)) return true;
     }
     return false;
+}
+
+HWY_INLINE void prefetch_child(const MeshPair& pair, int side, std::uint32_t child) {
+    const char* address = child & tree::kMeshLeaf
+                              ? reinterpret_cast<const char*>(pair.leaves[side] + (child & ~tree::kMeshLeaf))
+                              : reinterpret_cast<const char*>(pair.nodes[side] + child);
+    for (int line = 0; line < 6; ++line) hwy::Prefetch(address + 64 * line);
 }
 
 // Descends the larger box: the other's box is carried into its frame and tested against eight children at once.
@@ -63,11 +86,12 @@ void VisitOverlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& cou
     std::uint32_t height = 0;
     stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
     const float slop = pair.slop + pair.tolerance;
+    LeafPair leaves;
     while (height > 0) {
         const Step step = stack[--height];
         const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
         if (a & b & tree::kMeshLeaf) {
-            if (visit_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, visit, counts)) return;
+            if (visit_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, visit, counts)) return;
             continue;
         }
         const bool into_a = descends_a(pair, step, a, b);
@@ -77,20 +101,19 @@ void VisitOverlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& cou
         for (std::uint32_t mask = overlap_mask(node, box, slop); mask != 0; mask &= mask - 1) {
             const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
             stack[height++] = into_a ? Step{{a, lane}, step.b, 0.0f} : Step{step.a, {b, lane}, 0.0f};
+            prefetch_child(pair, into_a ? 0 : 1, node.child[lane]);
         }
     }
 }
 
-bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, const double& limit, LeafVisitor visit,
-                       TraversalCounts& counts) {
+bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves, const double& limit,
+                       LeafVisitor visit, TraversalCounts& counts) {
+    load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
-    LeafLanes lanes;
-    load_lanes(pair, leaf_b, lanes);
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
     for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        const OneTriangle t = load_one(pair, leaf_a, lane);
-        const std::uint32_t mask = near_mask(pair, t, lanes, static_cast<float>(limit)) & all_lanes(leaf_b);
-        if (mask != 0 && visit(a, lane, b, mask)) return true;
+        const std::uint32_t mask = near_mask(leaves.a, lane, leaves.b, limit) & all_lanes(leaf_b);
+        if (mask != 0 && visit(a, lane, b, {0, mask})) return true;
     }
     return false;
 }
@@ -98,13 +121,15 @@ bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, c
 void VisitNearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts) {
     Step stack[kMeshStackSize];
     std::uint32_t height = 0;
+    LeafPair leaves;
     stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
     while (height > 0) {
         const Step step = stack[--height];
         if (static_cast<double>(step.bound) > limit) continue;
         const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
         if (a & b & tree::kMeshLeaf) {
-            if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, limit, visit, counts)) return;
+            if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, limit, visit, counts))
+                return;
             continue;
         }
         const bool into_a = descends_a(pair, step, a, b);

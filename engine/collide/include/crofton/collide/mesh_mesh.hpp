@@ -16,8 +16,8 @@ namespace crofton::collide {
 
 struct MeshStatistics {
     std::uint64_t box_tests = 0;       // boxes tested against a box
-    std::uint64_t triangle_tests = 0;  // pairs of triangles that went through the eight-wide filter
-    std::uint64_t exact_tests = 0;     // of those, pairs that came to the exact test
+    std::uint64_t triangle_tests = 0;  // pairs of triangles that went through the eight-wide test
+    std::uint64_t exact_tests = 0;  // of those, pairs that needed exact arithmetic (in distance queries: the distance)
 };
 
 // Indices of triangles in mesh a (first) and mesh b (second).

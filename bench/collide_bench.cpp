@@ -1,0 +1,152 @@
+// collide beside FCL, Bullet, Embree and ODE, on the same inputs in one run.
+#include <benchmark/benchmark.h>
+
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/collide/obb_batch.hpp>
+#include <crofton/collide/obb_obb.hpp>
+
+#include "collide_inputs.hpp"
+
+namespace crofton::bench {
+namespace {
+
+void box_pairs_streaming(benchmark::State& state) {
+    const BoxPairs pairs = random_pairs(1'000'000);
+    std::vector<std::uint8_t> hits(pairs.a.size());
+    collide::BatchStatistics statistics;
+    for (auto _ : state) statistics = collide::intersects(pairs.a, pairs.b, hits);
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.size()));
+    state.counters["hits"] = static_cast<double>(statistics.hits) / static_cast<double>(hits.size());
+    state.counters["refined"] = static_cast<double>(statistics.refined);
+}
+
+void packed_pairs(benchmark::State& state, std::size_t count) {
+    const BoxPairs pairs = random_pairs(count);
+    collide::PackedBoxes a, b;
+    a.pack(pairs.a, {});
+    b.pack(pairs.b, {});
+    std::vector<std::uint8_t> hits(pairs.a.size());
+    for (auto _ : state) benchmark::DoNotOptimize(collide::intersects(a, b, hits));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.size()));
+}
+
+void single_pairs(benchmark::State& state) {
+    const BoxPairs pairs = random_pairs(4096);
+    for (auto _ : state) {
+        int hits = 0;
+        for (std::size_t i = 0; i < pairs.a.size(); ++i) hits += collide::intersects(pairs.a[i], pairs.b[i]);
+        benchmark::DoNotOptimize(hits);
+    }
+    state.SetItemsProcessed(state.iterations() * 4096);
+}
+
+void all_pairs(benchmark::State& state, bool exact) {
+    std::vector<Obb> boxes = crowd(static_cast<std::size_t>(state.range(0)));
+    collide::Broadphase broadphase({.exact_boxes = exact});
+    int frame = 0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        move(boxes, frame++);
+        state.ResumeTiming();
+        const auto result = broadphase.update(boxes);
+        if (!result) state.SkipWithError(result.error().message.c_str());
+    }
+    state.counters["pairs/box"] = static_cast<double>(broadphase.pairs().size()) / static_cast<double>(boxes.size());
+}
+
+struct MeshCase {
+    TriangleMesh mesh;
+    tree::MeshTree tree;
+    std::vector<collide::Pose> poses;
+};
+
+MeshCase* mesh_case(const std::string& name, benchmark::State& state) {
+    static std::vector<std::pair<std::string, MeshCase>> cases;
+    for (auto& [key, value] : cases)
+        if (key == name) return &value;
+    MeshCase made;
+    made.mesh = shared_mesh(name);
+    auto tree = tree::MeshTree::build(made.mesh);
+    if (!tree) {
+        state.SkipWithError("shared data is absent");
+        return nullptr;
+    }
+    made.tree = std::move(*tree);
+    made.poses = close_poses(made.tree, 1000);
+    cases.emplace_back(name, std::move(made));
+    return &cases.back().second;
+}
+
+void mesh_any(benchmark::State& state, const char* name) {
+    const MeshCase* input = mesh_case(name, state);
+    if (input == nullptr) return;
+    int hits = 0;
+    collide::MeshStatistics statistics;
+    for (auto _ : state) {
+        hits = 0;
+        for (const collide::Pose& pose : input->poses) hits += collide::intersects(input->tree, input->tree, pose);
+    }
+    for (const collide::Pose& pose : input->poses)
+        (void)collide::intersects(input->tree, input->tree, pose, &statistics);
+    state.SetItemsProcessed(state.iterations() * 1000);
+    state.counters["hits"] = hits;
+    state.counters["boxes"] = static_cast<double>(statistics.box_tests) / 1000.0;
+    state.counters["triangles"] = static_cast<double>(statistics.triangle_tests) / 1000.0;
+    state.counters["exact"] = static_cast<double>(statistics.exact_tests) / 1000.0;
+}
+
+void mesh_all(benchmark::State& state, const char* name) {
+    const MeshCase* input = mesh_case(name, state);
+    if (input == nullptr) return;
+    Vector<collide::TrianglePair> pairs;
+    std::size_t found = 0;
+    collide::MeshStatistics statistics;
+    for (auto _ : state) {
+        found = 0;
+        for (const collide::Pose& pose : input->poses) {
+            collide::intersecting_triangles(input->tree, input->tree, pose, pairs);
+            found += pairs.size();
+        }
+    }
+    for (const collide::Pose& pose : input->poses)
+        collide::intersecting_triangles(input->tree, input->tree, pose, pairs, &statistics);
+    state.SetItemsProcessed(state.iterations() * 1000);
+    state.counters["pairs"] = static_cast<double>(found) / 1000.0;
+    state.counters["boxes"] = static_cast<double>(statistics.box_tests) / 1000.0;
+    state.counters["triangles"] = static_cast<double>(statistics.triangle_tests) / 1000.0;
+    state.counters["exact"] = static_cast<double>(statistics.exact_tests) / 1000.0;
+}
+
+void mesh_build(benchmark::State& state, const char* name) {
+    const MeshCase* input = mesh_case(name, state);
+    if (input == nullptr) return;
+    for (auto _ : state) benchmark::DoNotOptimize(tree::MeshTree::build(input->mesh));
+}
+
+BENCHMARK(box_pairs_streaming)->Name("sat/1M pairs from boxes/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(packed_pairs, streaming, 1'000'000)
+    ->Name("sat/1M pairs packed/crofton")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(packed_pairs, cached, 4096)->Name("sat/4096 pairs packed/crofton")->Unit(benchmark::kMicrosecond);
+BENCHMARK(single_pairs)->Name("sat/4096 pairs one by one/crofton")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(all_pairs, bounds, false)
+    ->Name("broadphase/bounds/crofton")
+    ->Arg(1000)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(all_pairs, boxes, true)
+    ->Name("broadphase/boxes/crofton")
+    ->Arg(1000)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(mesh_any, bunny, "bunny")->Name("mesh/bunny any/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_all, bunny, "bunny")->Name("mesh/bunny all/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_build, bunny, "bunny")->Name("mesh/bunny build/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_any, cow, "cow")->Name("mesh/cow any/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_all, cow, "cow")->Name("mesh/cow all/crofton")->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace crofton::bench

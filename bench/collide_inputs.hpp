@@ -1,0 +1,30 @@
+// What Crofton and the peers are measured on: the same boxes, meshes and poses for all.
+#pragma once
+#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/triangle_mesh.hpp>
+#include <string>
+#include <vector>
+
+namespace crofton::bench {
+
+struct BoxPairs {
+    std::vector<Obb> a, b;
+};
+// Random frames and sizes; the spread of the centres makes about 30 % of the pairs meet.
+[[nodiscard]] BoxPairs random_pairs(std::size_t count);
+
+// Boxes of random frames in a cube so large that a box meets, by its axis-aligned bound, about 1.2 pairs' worth of
+// others.
+[[nodiscard]] std::vector<Obb> crowd(std::size_t count);
+// Every box moves by a few per cent of its size and turns a little; `frame` picks the direction.
+void move(std::vector<Obb>& boxes, int frame);
+
+// A mesh of the shared data, or nothing where that is absent. Polygons are cut into fans.
+[[nodiscard]] TriangleMesh shared_mesh(const std::string& name);
+
+// Poses of a mesh relative to a copy of itself: random rotation and direction, moved from first contact by −5 to +2 %
+// of the mesh's size.
+[[nodiscard]] std::vector<collide::Pose> close_poses(const tree::MeshTree& tree, std::size_t count);
+
+}  // namespace crofton::bench

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <crofton/collide/obb_batch.hpp>
+#include <crofton/collide/obb_obb.hpp>
+#include <crofton/core/assert.hpp>
+
+#include "block_filter.hpp"
+
+namespace crofton::collide {
+namespace {
+
+constexpr std::uint32_t kAllLanes = (1u << kBoxBlock) - 1u;
+
+void put_shape(const Obb& box, std::size_t lane, BoxBlock& block) {
+    for (int k = 0; k < 3; ++k) {
+        block.half[k][lane] = box.half_extents[k];
+        for (int i = 0; i < 3; ++i) block.axes[k][i][lane] = box.axes[k][i];
+    }
+}
+
+void put_center(const glm::dvec3& center, std::size_t lane, BoxBlock& block) {
+    for (int i = 0; i < 3; ++i) block.center[i][lane] = static_cast<float>(center[i]);
+}
+
+// Writes the answers of up to sixteen pairs; `box(side, lane)` gives the boxes of those that are still open.
+template <class Boxes>
+void finish(const BlockVerdict& verdict, std::size_t count, Boxes box, std::uint8_t* hits,
+            BatchStatistics& statistics) {
+    const std::uint32_t lanes = count == kBoxBlock ? kAllLanes : (1u << count) - 1u;
+    const std::uint32_t decided = verdict.face_a | verdict.face_b | verdict.edges | verdict.hit;
+    const auto counted = [&](std::uint32_t bits) { return static_cast<std::uint64_t>(std::popcount(bits & lanes)); };
+    statistics.separated_by_face_a += counted(verdict.face_a);
+    statistics.separated_by_face_b += counted(verdict.face_b);
+    statistics.separated_by_edges += counted(verdict.edges);
+    statistics.hits += counted(verdict.hit);
+    for (std::size_t lane = 0; lane < count; ++lane) hits[lane] = static_cast<std::uint8_t>(verdict.hit >> lane & 1u);
+    for (std::uint32_t open = ~decided & lanes; open != 0; open &= open - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(open));
+        const int axis = separating_axis(box(0, lane), box(1, lane));
+        ++statistics.refined;
+        hits[lane] = axis == kNotSeparated;
+        ++(axis == kNotSeparated ? statistics.hits
+           : axis < 3            ? statistics.separated_by_face_a
+           : axis < 6            ? statistics.separated_by_face_b
+                                 : statistics.separated_by_edges);
+    }
+}
+
+// Any two boxes by index: blocks of offsets are made on the way.
+template <class Boxes>
+BatchStatistics intersect_all(std::size_t count, Boxes box, std::span<std::uint8_t> hits) {
+    BatchStatistics statistics;
+    BoxBlock a, b;
+    for (std::size_t begin = 0; begin < count; begin += kBoxBlock) {
+        const std::size_t size = std::min(kBoxBlock, count - begin);
+        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+            const std::size_t i = begin + std::min(lane, size - 1);
+            const Obb &first = box(0, i), &second = box(1, i);
+            put_center(second.center - first.center, lane, b);
+            put_shape(first, lane, a);
+            put_shape(second, lane, b);
+        }
+        measure_deviation(a);
+        measure_deviation(b);
+        BlockVerdict verdict;
+        filter_blocks(&a, &b, 1, true, &verdict);
+        finish(
+            verdict, size, [&](int side, std::size_t lane) -> const Obb& { return box(side, begin + lane); },
+            hits.data() + begin, statistics);
+    }
+    return statistics;
+}
+
+}  // namespace
+
+BatchStatistics& BatchStatistics::operator+=(const BatchStatistics& other) {
+    separated_by_face_a += other.separated_by_face_a;
+    separated_by_face_b += other.separated_by_face_b;
+    separated_by_edges += other.separated_by_edges;
+    hits += other.hits;
+    refined += other.refined;
+    return *this;
+}
+
+void PackedBoxes::pack(std::span<const Obb> boxes, const glm::dvec3& origin) {
+    boxes_ = boxes;
+    origin_ = origin;
+    blocks_.resize((boxes.size() + kBoxBlock - 1) / kBoxBlock);
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
+            const Obb& box = boxes[std::min(block * kBoxBlock + lane, boxes.size() - 1)];
+            put_center(box.center - origin, lane, blocks_[block]);
+            put_shape(box, lane, blocks_[block]);
+        }
+        measure_deviation(blocks_[block]);
+    }
+}
+
+BatchStatistics intersects(const PackedBoxes& a, const PackedBoxes& b, std::span<std::uint8_t> hits) {
+    CROFTON_ASSERT(a.boxes().size() == b.boxes().size() && hits.size() == a.boxes().size(), "one answer a pair");
+    CROFTON_ASSERT(a.origin() == b.origin(), "packed around the same origin");
+    constexpr std::size_t kAtOnce = 64;
+    BlockVerdict verdicts[kAtOnce];
+    BatchStatistics statistics;
+    const std::size_t blocks = a.blocks().size();
+    for (std::size_t first = 0; first < blocks; first += kAtOnce) {
+        const std::size_t count = std::min(kAtOnce, blocks - first);
+        filter_blocks(a.blocks().data() + first, b.blocks().data() + first, count, false, verdicts);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t begin = (first + i) * kBoxBlock;
+            finish(
+                verdicts[i], std::min(kBoxBlock, hits.size() - begin),
+                [&](int side, std::size_t lane) -> const Obb& { return (side == 0 ? a : b).boxes()[begin + lane]; },
+                hits.data() + begin, statistics);
+        }
+    }
+    return statistics;
+}
+
+BatchStatistics intersects(std::span<const Obb> a, std::span<const Obb> b, std::span<std::uint8_t> hits) {
+    CROFTON_ASSERT(a.size() == b.size() && hits.size() == a.size(), "one answer a pair");
+    return intersect_all(
+        a.size(), [&](int side, std::size_t i) -> const Obb& { return side == 0 ? a[i] : b[i]; }, hits);
+}
+
+BatchStatistics intersects(std::span<const Obb> boxes, std::span<const Pair> pairs, std::span<std::uint8_t> hits) {
+    CROFTON_ASSERT(hits.size() == pairs.size(), "one answer a pair");
+    return intersect_all(
+        pairs.size(),
+        [&](int side, std::size_t i) -> const Obb& { return boxes[side == 0 ? pairs[i].first : pairs[i].second]; },
+        hits);
+}
+
+}  // namespace crofton::collide

@@ -1,0 +1,105 @@
+#include <doctest/doctest.h>
+#include <crofton/collide/obb_batch.hpp>
+#include <crofton/collide/obb_obb.hpp>
+#include <limits>
+#include <vector>
+
+#include "random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+std::uint64_t total(const BatchStatistics& s) {
+    return s.separated_by_face_a + s.separated_by_face_b + s.separated_by_edges + s.hits;
+}
+
+// All three forms against the single test.
+void check(const std::vector<Obb>& a, const std::vector<Obb>& b, const glm::dvec3& origin) {
+    std::vector<std::uint8_t> expected, hits(a.size(), 7), packed(a.size(), 7), indexed(a.size(), 7);
+    std::vector<Obb> both;
+    std::vector<Pair> pairs;
+    for (std::uint32_t i = 0; i < a.size(); ++i) {
+        expected.push_back(intersects(a[i], b[i]));
+        both.push_back(a[i]);
+        both.push_back(b[i]);
+        pairs.push_back({2 * i, 2 * i + 1});
+    }
+    const BatchStatistics statistics = intersects(a, b, hits);
+    CHECK(hits == expected);
+    CHECK(total(statistics) == a.size());
+    PackedBoxes packed_a, packed_b;
+    packed_a.pack(a, origin);
+    packed_b.pack(b, origin);
+    CHECK(total(intersects(packed_a, packed_b, packed)) == a.size());
+    CHECK(packed == expected);
+    CHECK(total(intersects(both, pairs, indexed)) == a.size());
+    CHECK(indexed == expected);
+}
+
+}  // namespace
+
+TEST_SUITE("collide/obb_batch") {
+    TEST_CASE("no pairs are no work, and boxes that are not finite meet nothing and spoil no neighbour") {
+        check({}, {}, {});
+        std::mt19937_64 random(1);
+        std::vector<Obb> a, b;
+        for (int i = 0; i < 37; ++i) {
+            a.push_back(random_box(random));
+            b.push_back(random_box(random));
+        }
+        a[3].center.x = std::numeric_limits<double>::quiet_NaN();
+        b[4].half_extents.y = std::numeric_limits<float>::quiet_NaN();
+        a[20].axes[1].z = std::numeric_limits<float>::quiet_NaN();
+        b[21].axes[0].x = std::numeric_limits<float>::infinity();
+        a[36].half_extents.x = std::numeric_limits<float>::infinity();
+        check(a, b, {});
+    }
+
+    TEST_CASE("boxes from 1e-38 to 1e30, needles, plates and points are answered as one by one") {
+        std::mt19937_64 random(2);
+        std::vector<Obb> a, b;
+        for (int i = 0; i < 3000; ++i) {
+            const float size = std::pow(10.0f, float(int(random() % 69) - 38));
+            auto [first, second] = nearly_touching(random, {.parallel = i % 2 == 0, .no_gap = i % 3 == 0});
+            for (Obb* box : {&first, &second}) {
+                box->center *= double(size);
+                box->half_extents *= size;
+            }
+            if (i % 5 == 0) first.half_extents[i % 3] *= 1e-6f;
+            if (i % 7 == 0) second.half_extents = glm::vec3(0.0f);
+            a.push_back(first);
+            b.push_back(second);
+        }
+        check(a, b, {});
+    }
+
+    TEST_CASE("40,000 pairs that nearly touch, at the origin, far from it and with a far origin") {
+        std::mt19937_64 random(3);
+        for (int kind = 0; kind < 4; ++kind) {
+            std::vector<Obb> a, b;
+            const glm::dvec3 place = kind == 1 ? glm::dvec3(1e6, -3e6, 2e5) : glm::dvec3(0.0);
+            for (int i = 0; i < 10000; ++i) {
+                auto [first, second] = nearly_touching(random, {.parallel = kind == 2, .float_centers = kind == 3});
+                first.center += place;
+                second.center += place;
+                a.push_back(first);
+                b.push_back(second);
+            }
+            check(a, b, kind == 3 ? glm::dvec3(1e9) : place);
+        }
+    }
+
+    TEST_CASE("float decides nearly all random pairs") {
+        std::mt19937_64 random(4);
+        std::vector<Obb> a, b;
+        for (int i = 0; i < 20000; ++i) {
+            a.push_back(random_box(random));
+            b.push_back(random_box(random, 2.0));
+        }
+        std::vector<std::uint8_t> hits(a.size());
+        CHECK(intersects(a, b, hits).refined < a.size() / 500);
+    }
+}
