@@ -101,6 +101,60 @@ void project(const Boxes& boxes, std::size_t count, const double direction[3], d
     run(one, whole, count);
 }
 
+template <class T>
+Extents<T> extents(const T* points, std::size_t count, const T* directions, const T* origin) {
+    const hn::CappedTag<T, 16> d;
+    const std::size_t lanes = hn::Lanes(d);
+    constexpr T kInfinity = std::numeric_limits<T>::infinity();
+    Extents<T> result = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    std::size_t i = 0;
+    if (count >= lanes) {
+        const auto ax = hn::Set(d, directions[0]), ay = hn::Set(d, directions[1]), az = hn::Set(d, directions[2]);
+        const auto bx = hn::Set(d, directions[3]), by = hn::Set(d, directions[4]), bz = hn::Set(d, directions[5]);
+        const auto cx = hn::Set(d, directions[6]), cy = hn::Set(d, directions[7]), cz = hn::Set(d, directions[8]);
+        const auto ox = hn::Set(d, origin[0]), oy = hn::Set(d, origin[1]), oz = hn::Set(d, origin[2]);
+        auto low_a = hn::Set(d, kInfinity), low_b = low_a, low_c = low_a;
+        auto high_a = hn::Set(d, -kInfinity), high_b = high_a, high_c = high_a;
+        for (; i + lanes <= count; i += lanes) {
+            auto x = hn::Undefined(d), y = x, z = x;
+            hn::LoadInterleaved3(d, points + 3 * i, x, y, z);
+            x = hn::Sub(x, ox);
+            y = hn::Sub(y, oy);
+            z = hn::Sub(z, oz);
+            const auto a = hn::Add(hn::Add(hn::Mul(ax, x), hn::Mul(ay, y)), hn::Mul(az, z));
+            const auto b = hn::Add(hn::Add(hn::Mul(bx, x), hn::Mul(by, y)), hn::Mul(bz, z));
+            const auto c = hn::Add(hn::Add(hn::Mul(cx, x), hn::Mul(cy, y)), hn::Mul(cz, z));
+            low_a = hn::Min(low_a, a);
+            low_b = hn::Min(low_b, b);
+            low_c = hn::Min(low_c, c);
+            high_a = hn::Max(high_a, a);
+            high_b = hn::Max(high_b, b);
+            high_c = hn::Max(high_c, c);
+        }
+        const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+        const auto greatest = [&](auto v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+        result = {{least(low_a), least(low_b), least(low_c)}, {greatest(high_a), greatest(high_b), greatest(high_c)}};
+    }
+    for (; i < count; ++i) {
+        const T* p = points + 3 * i;
+        const T x = p[0] - origin[0], y = p[1] - origin[1], z = p[2] - origin[2];
+        for (int k = 0; k < 3; ++k) {
+            const T t = directions[3 * k] * x + directions[3 * k + 1] * y + directions[3 * k + 2] * z;
+            result.low[k] = t < result.low[k] ? t : result.low[k];
+            result.high[k] = t > result.high[k] ? t : result.high[k];
+        }
+    }
+    return result;
+}
+
+Extents<float> extents_float(const float* points, std::size_t count, const float* directions, const float* origin) {
+    return extents(points, count, directions, origin);
+}
+Extents<double> extents_double(const double* points, std::size_t count, const double* directions,
+                               const double* origin) {
+    return extents(points, count, directions, origin);
+}
+
 }  // namespace crofton::fit::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -110,6 +164,8 @@ namespace crofton::fit::kernels {
 HWY_EXPORT(bounds_float);
 HWY_EXPORT(bounds_double);
 HWY_EXPORT(project);
+HWY_EXPORT(extents_float);
+HWY_EXPORT(extents_double);
 
 bool chunk_bounds(const float* points, std::size_t count, float limit, const ChunkBounds<float>& out) {
     return HWY_DYNAMIC_DISPATCH(bounds_float)(points, count, limit, out);
@@ -119,6 +175,13 @@ bool chunk_bounds(const double* points, std::size_t count, double limit, const C
 }
 void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach) {
     HWY_DYNAMIC_DISPATCH(project)(boxes, count, direction, middle, reach);
+}
+
+Extents<float> extents_along(const float* points, std::size_t count, const float* directions, const float* origin) {
+    return HWY_DYNAMIC_DISPATCH(extents_float)(points, count, directions, origin);
+}
+Extents<double> extents_along(const double* points, std::size_t count, const double* directions, const double* origin) {
+    return HWY_DYNAMIC_DISPATCH(extents_double)(points, count, directions, origin);
 }
 
 }  // namespace crofton::fit::kernels

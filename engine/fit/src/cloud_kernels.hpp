@@ -28,4 +28,17 @@ struct Boxes {
 // direction.
 void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach);
 
+template <class T>
+struct Extents {
+    T low[3], high[3];
+};
+
+// Least and greatest dot(direction, p − origin) over `count` ≥ 1 points for three directions (nine numbers, one
+// direction after the other), in rounded arithmetic of T: each value is off by less than 4.1 unit roundoffs of
+// Σ|direction_i (p_i − origin_i)|.
+[[nodiscard]] Extents<float> extents_along(const float* points, std::size_t count, const float* directions,
+                                           const float* origin);
+[[nodiscard]] Extents<double> extents_along(const double* points, std::size_t count, const double* directions,
+                                            const double* origin);
+
 }  // namespace crofton::fit::kernels

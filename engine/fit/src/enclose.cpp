@@ -43,32 +43,35 @@ Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
     Obb box;
     box.axes = axes;
     glm::dvec3 middle, half, length;
+    glm::dmat3 directions;
     for (int k = 0; k < 3; ++k) {
         length[k] = glm::length(slabs.normals[k]);
-        const glm::dvec3 direction = slabs.normals[k] / length[k];
-        const auto [top, bottom] = cloud.extreme_pair(direction);
-        const double high = glm::dot(slabs.normals[k], top), low = glm::dot(slabs.normals[k], bottom);
+        directions[k] = slabs.normals[k] / length[k];
+    }
+    const Supports supports = cloud.supports(directions);
+    for (int k = 0; k < 3; ++k) {
+        const double high = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k)]);
+        const double low = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k + 1)]);
         middle[k] = (low + (high - low) * 0.5) / slabs.determinant * cloud.unit();
         half[k] = std::max(0.0, (high - low) * 0.5) / slabs.determinant * cloud.unit();
     }
     box.center = cloud.origin() + glm::dmat3(axes) * middle;
+    // From just below the least float that can do, grow by single steps as exact tests demand.
+    glm::dvec3 limit;
     for (int k = 0; k < 3; ++k) {
-        // From just below the least float that can do, grow by single steps as exact tests demand.
-        float& reach = box.half_extents[k];
-        reach = float_below(half[k] * (1.0 - 1e-12));
-        const glm::dvec3 normal = slabs.normals[k];
-        const auto visit = [&](const glm::dvec3& p) {
-            const glm::dvec3 d = p - box.center;
-            if (surely_inside(normal, d, static_cast<double>(reach), slabs.determinant)) return;
-            if (contains_along(box, p, k)) return;
-            // The centre's own rounding may ask for more than a few steps.
-            const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
-            reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
-            while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
-        };
-        cloud.visit_beyond(normal / length[k], box.center, static_cast<double>(reach) * slabs.determinant / length[k],
-                           visit);
+        box.half_extents[k] = float_below(half[k] * (1.0 - 1e-12));
+        limit[k] = static_cast<double>(box.half_extents[k]) * slabs.determinant / length[k];
     }
+    cloud.visit_beyond(directions, box.center, limit, [&](int k, const glm::dvec3& p) {
+        float& reach = box.half_extents[k];
+        const glm::dvec3 normal = slabs.normals[k], d = p - box.center;
+        if (surely_inside(normal, d, static_cast<double>(reach), slabs.determinant)) return;
+        if (contains_along(box, p, k)) return;
+        // The centre's own rounding may ask for more than a few steps.
+        const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
+        reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
+        while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
+    });
     return box;
 }
 

@@ -11,9 +11,12 @@
 namespace crofton::fit {
 namespace {
 
-// Half of the directions to the faces, edges and corners of a cube: the 26-DOP.
-constexpr glm::dvec3 kDirections[] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1},  {1, 0, -1},
-                                      {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+// Half of the directions of a 30-DOP, three by three: faces, edges and corners of a cube, and two more.
+const glm::dmat3 kDirections[] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                  {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}},
+                                  {{1, -1, -1}, {1, 1, 0}, {1, 0, 1}},
+                                  {{0, 1, 1}, {1, -1, 0}, {1, 0, -1}},
+                                  {{0, 1, -1}, {1, 0.5, 0}, {0, 0.5, -1}}};
 
 // Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
 constexpr double kFlat = 1e-13;
@@ -35,9 +38,9 @@ class Deadline {
 
 void Fitter::gather(const Weights& weights, std::size_t frames) {
     subset_.clear();
-    for (const glm::dvec3& direction : kDirections) {
-        const auto pair = cloud_.extreme_pair(direction);
-        subset_.insert(subset_.end(), pair.begin(), pair.end());
+    for (const glm::dmat3& directions : kDirections) {
+        const Supports supports = cloud_.supports(directions);
+        subset_.insert(subset_.end(), supports.begin(), supports.end());
     }
     make_canonical(subset_);
     frames_.assign(1, glm::dmat3(1.0));

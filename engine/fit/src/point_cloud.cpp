@@ -8,8 +8,6 @@
 #include <string>
 #include <type_traits>
 
-#include "cloud_kernels.hpp"
-
 namespace crofton::fit {
 namespace {
 
@@ -83,6 +81,10 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
     std::frexp(std::max({half.x, half.y, half.z}), &exponent);
     unit_ = std::ldexp(1.0, exponent);
     scale_ = std::ldexp(1.0, -exponent);
+    // quick_range: |direction_i| ≤ 1, |p_i − origin_i| ≤ unit; a direction rounded to float, an origin rounded to float
+    // (what that shifts is added back), 4.1 roundoffs of the kernel: less than 6 · 3 roundoffs, and a few least floats.
+    float_origin_ = glm::vec3(origin_);
+    scan_slack_ = floats_ ? 18.0 * 0x1p-24 + 1e-44 * scale_ : kSlack;
     boxes_.resize(6 * chunks_);
     for (std::size_t k = 0; k < 3; ++k) {
         const double origin = origin_[static_cast<int>(k)];
@@ -93,75 +95,109 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
             boxes_[(3 + k) * chunks_ + i] = 0.5 * (high - low);
         }
     }
-    middle_.resize(chunks_);
-    reach_.resize(chunks_);
+    middle_.resize(3 * chunks_);
+    reach_.resize(3 * chunks_);
     return {};
 }
 
-std::array<glm::dvec3, 2> PointCloud::extreme_pair(const glm::dvec3& direction) {
+void PointCloud::project(const glm::dmat3& directions) {
     kernels::Boxes boxes;
     for (std::size_t k = 0; k < 3; ++k) {
         boxes.center[k] = boxes_.data() + k * chunks_;
         boxes.half[k] = boxes_.data() + (3 + k) * chunks_;
     }
-    kernels::project_boxes(boxes, chunks_, &direction.x, middle_.data(), reach_.data());
-    // The most promising chunks first, so that the others can be skipped.
-    std::size_t top = 0, bottom = 0;
-    for (std::size_t i = 1; i < chunks_; ++i) {
-        if (middle_[i] + reach_[i] > middle_[top] + reach_[top]) top = i;
-        if (middle_[i] - reach_[i] < middle_[bottom] - reach_[bottom]) bottom = i;
+    for (std::size_t k = 0; k < 3; ++k)
+        kernels::project_boxes(boxes, chunks_, &directions[static_cast<int>(k)].x, middle_.data() + k * chunks_,
+                               reach_.data() + k * chunks_);
+}
+
+PointCloud::Range PointCloud::quick_range(std::size_t chunk, const glm::dmat3& directions) const {
+    const std::size_t begin = chunk * kernels::kChunk, count = std::min(count_ - begin, kernels::kChunk);
+    Range range;
+    if (floats_) {
+        const glm::mat3 rounded(directions);
+        const auto extents = kernels::extents_along(floats_ + 3 * begin, count, &rounded[0].x, &float_origin_.x);
+        const glm::dvec3 shift = (glm::dvec3(float_origin_) - origin_) * scale_ * directions;
+        for (int k = 0; k < 3; ++k) {
+            range.low[k] = static_cast<double>(extents.low[k]) * scale_ + shift[k];
+            range.high[k] = static_cast<double>(extents.high[k]) * scale_ + shift[k];
+        }
+    } else {
+        const auto extents = kernels::extents_along(doubles_ + 3 * begin, count, &directions[0].x, &origin_.x);
+        for (int k = 0; k < 3; ++k) {
+            range.low[k] = extents.low[k] * scale_;
+            range.high[k] = extents.high[k] * scale_;
+        }
     }
-    std::array<glm::dvec3, 2> best{};
-    double high = -std::numeric_limits<double>::infinity(), low = -high;
-    const auto scan = [&](std::size_t chunk) {
+    return range;
+}
+
+Supports PointCloud::supports(const glm::dmat3& directions) {
+    project(directions);
+    Supports best{};
+    glm::dvec3 high(-std::numeric_limits<double>::infinity()), low = -high;
+    const auto scan = [&](std::size_t chunk, int k) {
         const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
+        glm::dvec3 &top = best[static_cast<std::size_t>(2 * k)], &bottom = best[static_cast<std::size_t>(2 * k + 1)];
         for (std::size_t i = chunk * kernels::kChunk; i < end; ++i) {
             const glm::dvec3 p = normalised(i);
-            const double t = glm::dot(p, direction);
-            if (t >= high && (t > high || lexicographic(p, best[0]))) {
-                high = t;
-                best[0] = p;
+            const double t = glm::dot(p, directions[k]);
+            if (t >= high[k] && (t > high[k] || lexicographic(p, top))) {
+                high[k] = t;
+                top = p;
             }
-            if (t <= low && (t < low || lexicographic(p, best[1]))) {
-                low = t;
-                best[1] = p;
+            if (t <= low[k] && (t < low[k] || lexicographic(p, bottom))) {
+                low[k] = t;
+                bottom = p;
             }
         }
     };
-    scan(top);
-    if (bottom != top) scan(bottom);
-    for (std::size_t i = 0; i < chunks_; ++i)
-        if (i != top && i != bottom &&
-            (middle_[i] + reach_[i] >= high - kSlack || middle_[i] - reach_[i] <= low + kSlack))
-            scan(i);
+    // The most promising chunks first, so that the others can be skipped.
+    for (int k = 0; k < 3; ++k) {
+        const double* middle = middle_.data() + static_cast<std::size_t>(k) * chunks_;
+        const double* reach = reach_.data() + static_cast<std::size_t>(k) * chunks_;
+        std::size_t top = 0, bottom = 0;
+        for (std::size_t i = 1; i < chunks_; ++i) {
+            if (middle[i] + reach[i] > middle[top] + reach[top]) top = i;
+            if (middle[i] - reach[i] < middle[bottom] - reach[bottom]) bottom = i;
+        }
+        scan(top, k);
+        if (bottom != top) scan(bottom, k);
+    }
+    for (std::size_t i = 0; i < chunks_; ++i) {
+        bool skip = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double middle = middle_[k * chunks_ + i], reach = reach_[k * chunks_ + i] + kSlack;
+            skip = skip && middle + reach < high[static_cast<int>(k)] && middle - reach > low[static_cast<int>(k)];
+        }
+        if (skip) continue;
+        const Range quick = quick_range(i, directions);
+        for (int k = 0; k < 3; ++k)
+            if (quick.high[k] >= high[k] - scan_slack_ || quick.low[k] <= low[k] + scan_slack_) scan(i, k);
+    }
     return best;
 }
 
-Supports PointCloud::supports(const glm::dmat3& axes) {
-    Supports result;
-    for (int k = 0; k < 3; ++k) {
-        const auto pair = extreme_pair(axes[k]);
-        result[static_cast<std::size_t>(2 * k)] = pair[0];
-        result[static_cast<std::size_t>(2 * k + 1)] = pair[1];
-    }
-    return result;
-}
-
-void PointCloud::visit_beyond(const glm::dvec3& direction, const glm::dvec3& center, double reach,
-                              FunctionRef<void(const glm::dvec3&)> visit) {
-    kernels::Boxes boxes;
-    for (std::size_t k = 0; k < 3; ++k) {
-        boxes.center[k] = boxes_.data() + k * chunks_;
-        boxes.half[k] = boxes_.data() + (3 + k) * chunks_;
-    }
-    kernels::project_boxes(boxes, chunks_, &direction.x, middle_.data(), reach_.data());
-    const double middle = glm::dot((center - origin_) * scale_, direction);
-    const double limit = reach * scale_ - kSlack;
+void PointCloud::visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& reach,
+                              FunctionRef<void(int k, const glm::dvec3& p)> visit) {
+    project(directions);
+    const glm::dvec3 middle = (center - origin_) * scale_ * directions;
+    const glm::dvec3 limit = reach * scale_ - kSlack;
     for (std::size_t chunk = 0; chunk < chunks_; ++chunk) {
-        if (std::abs(middle_[chunk] - middle) + reach_[chunk] < limit) continue;
+        bool skip = true;
+        for (std::size_t k = 0; k < 3; ++k)
+            skip = skip &&
+                   std::abs(middle_[k * chunks_ + chunk] - middle[static_cast<int>(k)]) + reach_[k * chunks_ + chunk] <
+                       limit[static_cast<int>(k)];
+        if (skip) continue;
+        const Range quick = quick_range(chunk, directions);
         const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
-        for (std::size_t i = chunk * kernels::kChunk; i < end; ++i)
-            if (std::abs(glm::dot(normalised(i), direction) - middle) >= limit) visit(world(i));
+        for (int k = 0; k < 3; ++k) {
+            if (quick.high[k] - middle[k] < limit[k] - scan_slack_ && middle[k] - quick.low[k] < limit[k] - scan_slack_)
+                continue;
+            for (std::size_t i = chunk * kernels::kChunk; i < end; ++i)
+                if (std::abs(glm::dot(normalised(i), directions[k]) - middle[k]) >= limit[k]) visit(k, world(i));
+        }
     }
 }
 

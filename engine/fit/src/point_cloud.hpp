@@ -9,6 +9,8 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "cloud_kernels.hpp"
+
 namespace crofton::fit {
 
 // The extreme points along each axis: index 2k the farthest along +axes[k], 2k + 1 along −axes[k].
@@ -34,17 +36,23 @@ class PointCloud {
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     [[nodiscard]] double unit() const { return unit_; }
 
-    [[nodiscard]] Supports supports(const glm::dmat3& axes);
-    // The extreme points along +direction and −direction.
-    [[nodiscard]] std::array<glm::dvec3, 2> extreme_pair(const glm::dvec3& direction);
-    // Calls `visit` with the input coordinates of every point p with |dot(direction, p − center)| ≥ reach, and of some
-    // others. `center` and `reach` are in input coordinates.
-    void visit_beyond(const glm::dvec3& direction, const glm::dvec3& center, double reach,
-                      FunctionRef<void(const glm::dvec3&)> visit);
+    // The columns are any three directions with |components| ≤ 1.
+    [[nodiscard]] Supports supports(const glm::dmat3& directions);
+    // Calls `visit` with k and the input coordinates of every point p with |dot(directions[k], p − center)| ≥ reach[k],
+    // and of some others. `center` and `reach` are in input coordinates.
+    void visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& reach,
+                      FunctionRef<void(int k, const glm::dvec3& p)> visit);
 
   private:
     template <class T>
     Result<void> assign_points(const T* points, std::size_t count);
+    // The extents of one chunk in normalised units, off by no more than scan_slack_.
+    struct Range {
+        glm::dvec3 low, high;
+    };
+    [[nodiscard]] Range quick_range(std::size_t chunk, const glm::dmat3& directions) const;
+    // Of the chunks' boxes, into middle_ and reach_: one array per direction.
+    void project(const glm::dmat3& directions);
     [[nodiscard]] glm::dvec3 world(std::size_t i) const {
         return floats_ ? glm::dvec3(glm::vec3(floats_[3 * i], floats_[3 * i + 1], floats_[3 * i + 2]))
                        : glm::dvec3(doubles_[3 * i], doubles_[3 * i + 1], doubles_[3 * i + 2]);
@@ -58,7 +66,8 @@ class PointCloud {
     Vector<double> double_bounds_, boxes_, middle_, reach_;
     Aabb bounds_;
     glm::dvec3 origin_{0.0};
-    double unit_ = 1.0, scale_ = 1.0;
+    glm::vec3 float_origin_{0.0f};
+    double unit_ = 1.0, scale_ = 1.0, scan_slack_ = 0.0;
 };
 
 [[nodiscard]] inline bool lexicographic(const glm::dvec3& a, const glm::dvec3& b) {
