@@ -102,20 +102,24 @@ void project(const Boxes& boxes, std::size_t count, const double direction[3], d
 }
 
 template <class T>
-Extents<T> extents(const T* points, std::size_t count, const T* directions, const T* origin) {
+void extents(const T* points, std::size_t begin, std::size_t end, const T* directions, const T* origin, T low[3],
+             T high[3]) {
     const hn::CappedTag<T, 16> d;
     const std::size_t lanes = hn::Lanes(d);
     constexpr T kInfinity = std::numeric_limits<T>::infinity();
-    Extents<T> result = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    std::size_t i = 0;
-    if (count >= lanes) {
+    for (int k = 0; k < 3; ++k) {
+        low[k] = kInfinity;
+        high[k] = -kInfinity;
+    }
+    std::size_t i = begin;
+    if (end - begin >= lanes) {
         const auto ax = hn::Set(d, directions[0]), ay = hn::Set(d, directions[1]), az = hn::Set(d, directions[2]);
         const auto bx = hn::Set(d, directions[3]), by = hn::Set(d, directions[4]), bz = hn::Set(d, directions[5]);
         const auto cx = hn::Set(d, directions[6]), cy = hn::Set(d, directions[7]), cz = hn::Set(d, directions[8]);
         const auto ox = hn::Set(d, origin[0]), oy = hn::Set(d, origin[1]), oz = hn::Set(d, origin[2]);
         auto low_a = hn::Set(d, kInfinity), low_b = low_a, low_c = low_a;
         auto high_a = hn::Set(d, -kInfinity), high_b = high_a, high_c = high_a;
-        for (; i + lanes <= count; i += lanes) {
+        for (; i + lanes <= end; i += lanes) {
             auto x = hn::Undefined(d), y = x, z = x;
             hn::LoadInterleaved3(d, points + 3 * i, x, y, z);
             x = hn::Sub(x, ox);
@@ -131,28 +135,46 @@ Extents<T> extents(const T* points, std::size_t count, const T* directions, cons
             high_b = hn::Max(high_b, b);
             high_c = hn::Max(high_c, c);
         }
-        const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
-        const auto greatest = [&](auto v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
-        result = {{least(low_a), least(low_b), least(low_c)}, {greatest(high_a), greatest(high_b), greatest(high_c)}};
+        const auto reduce = [&](auto least, auto greatest, int k) {
+            low[k] = hn::GetLane(hn::MinOfLanes(d, least));
+            high[k] = hn::GetLane(hn::MaxOfLanes(d, greatest));
+        };
+        reduce(low_a, high_a, 0);
+        reduce(low_b, high_b, 1);
+        reduce(low_c, high_c, 2);
     }
-    for (; i < count; ++i) {
+    for (; i < end; ++i) {
         const T* p = points + 3 * i;
         const T x = p[0] - origin[0], y = p[1] - origin[1], z = p[2] - origin[2];
         for (int k = 0; k < 3; ++k) {
             const T t = directions[3 * k] * x + directions[3 * k + 1] * y + directions[3 * k + 2] * z;
-            result.low[k] = t < result.low[k] ? t : result.low[k];
-            result.high[k] = t > result.high[k] ? t : result.high[k];
+            low[k] = t < low[k] ? t : low[k];
+            high[k] = t > high[k] ? t : high[k];
         }
     }
-    return result;
 }
 
-Extents<float> extents_float(const float* points, std::size_t count, const float* directions, const float* origin) {
-    return extents(points, count, directions, origin);
+template <class T>
+void extents_of_chunks(const T* points, std::size_t count, const unsigned char* wanted, const T* directions,
+                       const T* origin, const ChunkBounds<T>& out) {
+    for (std::size_t begin = 0, chunk = 0; begin < count; begin += kChunk, ++chunk) {
+        if (wanted[chunk] == 0) continue;
+        T low[3], high[3];
+        extents(points, begin, begin + kChunk < count ? begin + kChunk : count, directions, origin, low, high);
+        for (int k = 0; k < 3; ++k) {
+            out.low[k][chunk] = low[k];
+            out.high[k][chunk] = high[k];
+        }
+    }
 }
-Extents<double> extents_double(const double* points, std::size_t count, const double* directions,
-                               const double* origin) {
-    return extents(points, count, directions, origin);
+
+void extents_float(const float* points, std::size_t count, const unsigned char* wanted, const float* directions,
+                   const float* origin, const ChunkBounds<float>& out) {
+    extents_of_chunks(points, count, wanted, directions, origin, out);
+}
+void extents_double(const double* points, std::size_t count, const unsigned char* wanted, const double* directions,
+                    const double* origin, const ChunkBounds<double>& out) {
+    extents_of_chunks(points, count, wanted, directions, origin, out);
 }
 
 }  // namespace crofton::fit::kernels::HWY_NAMESPACE
@@ -177,11 +199,13 @@ void project_boxes(const Boxes& boxes, std::size_t count, const double direction
     HWY_DYNAMIC_DISPATCH(project)(boxes, count, direction, middle, reach);
 }
 
-Extents<float> extents_along(const float* points, std::size_t count, const float* directions, const float* origin) {
-    return HWY_DYNAMIC_DISPATCH(extents_float)(points, count, directions, origin);
+void chunk_extents(const float* points, std::size_t count, const unsigned char* wanted, const float* directions,
+                   const float* origin, const ChunkBounds<float>& out) {
+    HWY_DYNAMIC_DISPATCH(extents_float)(points, count, wanted, directions, origin, out);
 }
-Extents<double> extents_along(const double* points, std::size_t count, const double* directions, const double* origin) {
-    return HWY_DYNAMIC_DISPATCH(extents_double)(points, count, directions, origin);
+void chunk_extents(const double* points, std::size_t count, const unsigned char* wanted, const double* directions,
+                   const double* origin, const ChunkBounds<double>& out) {
+    HWY_DYNAMIC_DISPATCH(extents_double)(points, count, wanted, directions, origin, out);
 }
 
 }  // namespace crofton::fit::kernels

@@ -4,7 +4,7 @@
 
 namespace crofton::fit::kernels {
 
-inline constexpr std::size_t kChunk = 64;  // points summarised by one box
+inline constexpr std::size_t kChunk = 128;  // points summarised by one box
 
 // Per chunk of kChunk points (x, y, z interleaved): minima and maxima of each coordinate, in arrays of one entry a
 // chunk.
@@ -28,17 +28,12 @@ struct Boxes {
 // direction.
 void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach);
 
-template <class T>
-struct Extents {
-    T low[3], high[3];
-};
-
-// Least and greatest dot(direction, p − origin) over `count` ≥ 1 points for three directions (nine numbers, one
-// direction after the other), in rounded arithmetic of T: each value is off by less than 4.1 unit roundoffs of
-// Σ|direction_i (p_i − origin_i)|.
-[[nodiscard]] Extents<float> extents_along(const float* points, std::size_t count, const float* directions,
-                                           const float* origin);
-[[nodiscard]] Extents<double> extents_along(const double* points, std::size_t count, const double* directions,
-                                            const double* origin);
+// Where wanted[i] ≠ 0: the least and greatest dot(direction, p − origin) over chunk i, for three directions (nine
+// numbers, one direction after the other), in rounded arithmetic of T: each value is off by less than 4.1 unit
+// roundoffs of Σ|direction_j (p_j − origin_j)|. out.low[k] and out.high[k] belong to direction k.
+void chunk_extents(const float* points, std::size_t count, const unsigned char* wanted, const float* directions,
+                   const float* origin, const ChunkBounds<float>& out);
+void chunk_extents(const double* points, std::size_t count, const unsigned char* wanted, const double* directions,
+                   const double* origin, const ChunkBounds<double>& out);
 
 }  // namespace crofton::fit::kernels

@@ -21,6 +21,8 @@ const glm::dmat3 kDirections[] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
 // Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
 constexpr double kFlat = 1e-13;
 
+constexpr Effort kFast{3, 3, 4, false}, kTight{5, 4, 40, true};
+
 class Deadline {
   public:
     explicit Deadline(double seconds) : seconds_(seconds) {}
@@ -36,10 +38,10 @@ class Deadline {
 
 }  // namespace
 
-void Fitter::gather(const Weights& weights, std::size_t frames) {
+void Fitter::gather(const Weights& weights, std::size_t frames, std::size_t directions) {
     subset_.clear();
-    for (const glm::dmat3& directions : kDirections) {
-        const Supports supports = cloud_.supports(directions);
+    for (const glm::dmat3& triple : std::span(kDirections).first(directions)) {
+        const Supports supports = cloud_.supports(triple);
         subset_.insert(subset_.end(), supports.begin(), supports.end());
     }
     make_canonical(subset_);
@@ -59,22 +61,37 @@ Weights Fitter::effective(const Weights& weights) {
     return candidates_[0].value <= kFlat ? area : weights;
 }
 
-// Local optima on a growing subset: fit the subset, add what the box leaves outside, go on until it leaves nothing.
-Candidate Fitter::local(const Weights& weights, std::size_t starts, int rounds, bool slide) {
-    gather(weights, starts);
+// Local optima on a growing subset. A candidate's value on the subset is at most its value on the cloud, so the cloud
+// is asked only about the candidate that looks best; its support points join the subset, until the best is what it
+// looks.
+Candidate Fitter::local(const Weights& weights, const Effort& effort) {
+    gather(weights, effort.starts, effort.directions);
     Candidate best;
     best.value = std::numeric_limits<double>::infinity();
-    for (Candidate& candidate : candidates_)
-        for (int round = 0; round < rounds; ++round) {
+    // How many points the subset had when each candidate was last searched from.
+    fresh_.assign(candidates_.size(), 0);
+    for (Candidate& candidate : candidates_) candidate.value = 0.0;
+    for (int queries = 0; queries < effort.queries;) {
+        std::size_t i = 0;
+        for (std::size_t j = 1; j < candidates_.size(); ++j)
+            if (candidates_[j].value < candidates_[i].value) i = j;
+        Candidate& candidate = candidates_[i];
+        if (candidate.value >= best.value * (1.0 - 1e-12)) break;
+        if (fresh_[i] != subset_.size()) {
+            fresh_[i] = subset_.size();
             descend(weights, subset_, candidate, buffers_);
-            if (slide) polish(weights, subset_, candidate, buffers_);
-            const Supports supports = cloud_.supports(candidate.axes);
-            const double value = value_of(weights, supports, candidate.axes);
-            if (value < best.value) best = {candidate.axes, value};
-            if (value <= candidate.value * (1.0 + 1e-12)) break;
-            subset_.insert(subset_.end(), supports.begin(), supports.end());
-            make_canonical(subset_);
+            if (effort.slide) polish(weights, subset_, candidate, buffers_);
+            continue;
         }
+        ++queries;
+        const Supports supports = cloud_.supports(candidate.axes);
+        const double value = value_of(weights, supports, candidate.axes);
+        if (value < best.value) best = {candidate.axes, value};
+        const std::size_t before = subset_.size();
+        subset_.insert(subset_.end(), supports.begin(), supports.end());
+        make_canonical(subset_);
+        if (subset_.size() == before) break;
+    }
     return best;
 }
 
@@ -93,8 +110,8 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights weights = effective(normalised_weights(options.criterion, cloud_.unit()).weights);
-    const bool fast = options.quality == Quality::fast;
-    return enclose(cloud_, rounded(local(weights, fast ? 1 : 4, fast ? 2 : 8, !fast).axes));
+    const Effort& effort = options.quality == Quality::fast ? kFast : kTight;
+    return enclose(cloud_, rounded(local(weights, effort).axes));
 }
 
 template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const Options&);

@@ -9,6 +9,14 @@
 
 namespace crofton::fit {
 
+// How much a local search may cost.
+struct Effort {
+    std::size_t directions;  // triples of directions whose extreme points it begins with, at most 5
+    std::size_t starts;      // frames it descends from
+    int queries;             // times it may ask the whole cloud for the support points of a frame
+    bool slide;              // whether it polishes
+};
+
 class Fitter {
   public:
     template <class Point>
@@ -17,9 +25,9 @@ class Fitter {
     [[nodiscard]] Result<ExactFit> exact(std::span<const Point> points, const ExactOptions& options);
 
   private:
-    // Extreme points along the directions of a 26-DOP, and frames built from them, best first.
-    void gather(const Weights& weights, std::size_t frames);
-    [[nodiscard]] Candidate local(const Weights& weights, std::size_t starts, int rounds, bool slide);
+    // Extreme points along the directions of a k-DOP, and frames built from them, best first.
+    void gather(const Weights& weights, std::size_t frames, std::size_t directions = 5);
+    [[nodiscard]] Candidate local(const Weights& weights, const Effort& effort);
     [[nodiscard]] SearchResult global(const Weights& weights, const SearchLimits& limits);
     [[nodiscard]] Weights effective(const Weights& weights);
 
@@ -28,6 +36,7 @@ class Fitter {
     Vector<glm::dvec3> subset_;
     Vector<glm::dmat3> frames_;
     Vector<Candidate> candidates_;
+    Vector<std::size_t> fresh_;
 };
 
 }  // namespace crofton::fit

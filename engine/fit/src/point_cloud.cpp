@@ -13,6 +13,7 @@ namespace {
 
 // Rounding of normalised coordinates and of their projections stays far below this.
 constexpr double kSlack = 1e-13;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class T>
 tl::unexpected<Error> first_bad(const T* points, std::size_t count) {
@@ -97,6 +98,7 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
     }
     middle_.resize(3 * chunks_);
     reach_.resize(3 * chunks_);
+    wanted_.resize(chunks_);
     return {};
 }
 
@@ -111,31 +113,41 @@ void PointCloud::project(const glm::dmat3& directions) {
                                reach_.data() + k * chunks_);
 }
 
-PointCloud::Range PointCloud::quick_range(std::size_t chunk, const glm::dmat3& directions) const {
-    const std::size_t begin = chunk * kernels::kChunk, count = std::min(count_ - begin, kernels::kChunk);
-    Range range;
-    if (floats_) {
-        const glm::mat3 rounded(directions);
-        const auto extents = kernels::extents_along(floats_ + 3 * begin, count, &rounded[0].x, &float_origin_.x);
-        const glm::dvec3 shift = (glm::dvec3(float_origin_) - origin_) * scale_ * directions;
-        for (int k = 0; k < 3; ++k) {
-            range.low[k] = static_cast<double>(extents.low[k]) * scale_ + shift[k];
-            range.high[k] = static_cast<double>(extents.high[k]) * scale_ + shift[k];
-        }
-    } else {
-        const auto extents = kernels::extents_along(doubles_ + 3 * begin, count, &directions[0].x, &origin_.x);
-        for (int k = 0; k < 3; ++k) {
-            range.low[k] = extents.low[k] * scale_;
-            range.high[k] = extents.high[k] * scale_;
+template <class T>
+void PointCloud::quick_extents_of(const T* points, Vector<T>& storage, const T* directions, const T* origin,
+                                  const glm::dvec3& shift) {
+    kernels::ChunkBounds<T> chunk;
+    for (std::size_t k = 0; k < 3; ++k) {
+        chunk.low[k] = storage.data() + k * chunks_;
+        chunk.high[k] = storage.data() + (3 + k) * chunks_;
+    }
+    kernels::chunk_extents(points, count_, wanted_.data(), directions, origin, chunk);
+    for (std::size_t k = 0; k < 3; ++k) {
+        double* low = middle_.data() + k * chunks_;
+        double* high = reach_.data() + k * chunks_;
+        const double moved = shift[static_cast<int>(k)];
+        for (std::size_t i = 0; i < chunks_; ++i) {
+            const bool wanted = wanted_[i] != 0;
+            low[i] = wanted ? static_cast<double>(chunk.low[k][i]) * scale_ + moved : kInfinity;
+            high[i] = wanted ? static_cast<double>(chunk.high[k][i]) * scale_ + moved : -kInfinity;
         }
     }
-    return range;
+}
+
+void PointCloud::quick_extents(const glm::dmat3& directions) {
+    if (floats_) {
+        const glm::mat3 rounded(directions);
+        const glm::dvec3 shift = (glm::dvec3(float_origin_) - origin_) * scale_ * directions;
+        quick_extents_of(floats_, float_bounds_, &rounded[0].x, &float_origin_.x, shift);
+    } else {
+        quick_extents_of(doubles_, double_bounds_, &directions[0].x, &origin_.x, glm::dvec3(0.0));
+    }
 }
 
 Supports PointCloud::supports(const glm::dmat3& directions) {
     project(directions);
     Supports best{};
-    glm::dvec3 high(-std::numeric_limits<double>::infinity()), low = -high;
+    glm::dvec3 high(-kInfinity), low(kInfinity);
     const auto scan = [&](std::size_t chunk, int k) {
         const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
         glm::dvec3 &top = best[static_cast<std::size_t>(2 * k)], &bottom = best[static_cast<std::size_t>(2 * k + 1)];
@@ -170,10 +182,18 @@ Supports PointCloud::supports(const glm::dmat3& directions) {
             const double middle = middle_[k * chunks_ + i], reach = reach_[k * chunks_ + i] + kSlack;
             skip = skip && middle + reach < high[static_cast<int>(k)] && middle - reach > low[static_cast<int>(k)];
         }
-        if (skip) continue;
-        const Range quick = quick_range(i, directions);
-        for (int k = 0; k < 3; ++k)
-            if (quick.high[k] >= high[k] - scan_slack_ || quick.low[k] <= low[k] + scan_slack_) scan(i, k);
+        wanted_[i] = !skip;
+    }
+    quick_extents(directions);
+    // What the rounded extents promise at least, then exactly where they leave a doubt.
+    for (int k = 0; k < 3; ++k) {
+        const double* lows = middle_.data() + static_cast<std::size_t>(k) * chunks_;
+        const double* highs = reach_.data() + static_cast<std::size_t>(k) * chunks_;
+        const double least = std::min(low[k], *std::min_element(lows, lows + chunks_) + scan_slack_) + scan_slack_;
+        const double greatest =
+            std::max(high[k], *std::max_element(highs, highs + chunks_) - scan_slack_) - scan_slack_;
+        for (std::size_t i = 0; i < chunks_; ++i)
+            if (highs[i] >= greatest || lows[i] <= least) scan(i, k);
     }
     return best;
 }
@@ -183,22 +203,23 @@ void PointCloud::visit_beyond(const glm::dmat3& directions, const glm::dvec3& ce
     project(directions);
     const glm::dvec3 middle = (center - origin_) * scale_ * directions;
     const glm::dvec3 limit = reach * scale_ - kSlack;
-    for (std::size_t chunk = 0; chunk < chunks_; ++chunk) {
+    for (std::size_t i = 0; i < chunks_; ++i) {
         bool skip = true;
         for (std::size_t k = 0; k < 3; ++k)
-            skip = skip &&
-                   std::abs(middle_[k * chunks_ + chunk] - middle[static_cast<int>(k)]) + reach_[k * chunks_ + chunk] <
-                       limit[static_cast<int>(k)];
-        if (skip) continue;
-        const Range quick = quick_range(chunk, directions);
-        const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
-        for (int k = 0; k < 3; ++k) {
-            if (quick.high[k] - middle[k] < limit[k] - scan_slack_ && middle[k] - quick.low[k] < limit[k] - scan_slack_)
-                continue;
+            skip = skip && std::abs(middle_[k * chunks_ + i] - middle[static_cast<int>(k)]) + reach_[k * chunks_ + i] <
+                               limit[static_cast<int>(k)];
+        wanted_[i] = !skip;
+    }
+    quick_extents(directions);
+    for (int k = 0; k < 3; ++k)
+        for (std::size_t chunk = 0; chunk < chunks_; ++chunk) {
+            const double low = middle_[static_cast<std::size_t>(k) * chunks_ + chunk];
+            const double high = reach_[static_cast<std::size_t>(k) * chunks_ + chunk];
+            if (high - middle[k] < limit[k] - scan_slack_ && middle[k] - low < limit[k] - scan_slack_) continue;
+            const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
             for (std::size_t i = chunk * kernels::kChunk; i < end; ++i)
                 if (std::abs(glm::dot(normalised(i), directions[k]) - middle[k]) >= limit[k]) visit(k, world(i));
         }
-    }
 }
 
 }  // namespace crofton::fit

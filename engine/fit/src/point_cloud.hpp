@@ -16,7 +16,7 @@ namespace crofton::fit {
 // The extreme points along each axis: index 2k the farthest along +axes[k], 2k + 1 along −axes[k].
 using Supports = std::array<glm::dvec3, 6>;
 
-// A view of the caller's points with one small box per 64 of them: neighbours in the input are mostly neighbours in
+// A view of the caller's points with one small box per 128 of them: neighbours in the input are mostly neighbours in
 // space, so a support query reads few points. Normalised coordinates are (p − origin) / unit with `unit` a power of
 // two: all within [−1, 1]. Every answer depends on the set of points alone, never on their order: ties go to the
 // lexicographically least point. Queries use scratch memory of the object: one thread at a time.
@@ -46,12 +46,13 @@ class PointCloud {
   private:
     template <class T>
     Result<void> assign_points(const T* points, std::size_t count);
-    // The extents of one chunk in normalised units, off by no more than scan_slack_.
-    struct Range {
-        glm::dvec3 low, high;
-    };
-    [[nodiscard]] Range quick_range(std::size_t chunk, const glm::dmat3& directions) const;
-    // Of the chunks' boxes, into middle_ and reach_: one array per direction.
+    // The extents of the wanted chunks by rounded arithmetic, in normalised units, into middle_ (low) and reach_
+    // (high): off by no more than scan_slack_. Of the chunks not wanted: nothing.
+    void quick_extents(const glm::dmat3& directions);
+    template <class T>
+    void quick_extents_of(const T* points, Vector<T>& storage, const T* directions, const T* origin,
+                          const glm::dvec3& shift);
+    // The extents of the chunks' boxes as middle_ ± reach_: one array per direction.
     void project(const glm::dmat3& directions);
     [[nodiscard]] glm::dvec3 world(std::size_t i) const {
         return floats_ ? glm::dvec3(glm::vec3(floats_[3 * i], floats_[3 * i + 1], floats_[3 * i + 2]))
@@ -62,6 +63,7 @@ class PointCloud {
     const float* floats_ = nullptr;
     const double* doubles_ = nullptr;
     std::size_t count_ = 0, chunks_ = 0;
+    Vector<unsigned char> wanted_;
     Vector<float> float_bounds_;
     Vector<double> double_bounds_, boxes_, middle_, reach_;
     Aabb bounds_;
