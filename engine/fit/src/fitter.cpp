@@ -21,7 +21,8 @@ const glm::dmat3 kDirections[] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
 // Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
 constexpr double kFlat = 1e-13;
 
-constexpr Effort kFast{3, 3, 4, false}, kTight{5, 4, 40, true};
+constexpr Effort kFast{3, 3, 4, false}, kTight{5, 4, 40, true}, kTightFew{5, 2, 40, true};
+constexpr std::size_t kFew = 512;  // points of a cluster; more may have more local optima
 
 class Deadline {
   public:
@@ -110,7 +111,7 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights weights = effective(normalised_weights(options.criterion, cloud_.unit()).weights);
-    const Effort& effort = options.quality == Quality::fast ? kFast : kTight;
+    const Effort& effort = options.quality == Quality::fast ? kFast : points.size() <= kFew ? kTightFew : kTight;
     return enclose(cloud_, rounded(local(weights, effort).axes));
 }
 
