@@ -1,7 +1,7 @@
+#include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/convex_hull.hpp>
-#include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
@@ -12,7 +12,9 @@ using namespace crofton;
 
 namespace {
 
-std::span<const glm::dvec3> view(const std::vector<glm::dvec3>& points) { return points; }
+std::span<const glm::dvec3> view(const std::vector<glm::dvec3>& points) {
+    return points;
+}
 
 // Every point lies on the inner side of every face, and the faces close up: each directed edge has its opposite once.
 void check_solid(const std::vector<glm::dvec3>& points, const ConvexHull& hull, double tolerance) {
@@ -22,7 +24,8 @@ void check_solid(const std::vector<glm::dvec3>& points, const ConvexHull& hull, 
     for (std::size_t t = 0; t < hull.triangles.size(); t += 3) {
         const std::uint32_t i = hull.triangles[t], j = hull.triangles[t + 1], k = hull.triangles[t + 2];
         const glm::dvec3 normal = glm::cross(points[j] - points[i], points[k] - points[i]);
-        for (const glm::dvec3& p : points) CHECK(glm::dot(p - points[i], normal) <= tolerance * std::max(glm::length(normal), 1e-3));
+        for (const glm::dvec3& p : points)
+            CHECK(glm::dot(p - points[i], normal) <= tolerance * std::max(glm::length(normal), 1e-3));
         for (const auto& edge : {std::pair(i, j), std::pair(j, k), std::pair(k, i)}) CHECK(edges.insert(edge).second);
         corners.insert({i, j, k});
     }
@@ -58,10 +61,12 @@ TEST_SUITE("geometry/convex_hull") {
         CHECK(hull.vertices == Vector<std::uint32_t>{4, 5});
         std::vector<glm::dvec3> plane;
         for (int x = 0; x <= 4; ++x)
-            for (int y = 0; y <= 3; ++y) plane.push_back(glm::dvec3(1.0, 2.0, 0.0) * double(x) + glm::dvec3(0.0, 1.0, 3.0) * double(y));
+            for (int y = 0; y <= 3; ++y)
+                plane.push_back(glm::dvec3(1.0, 2.0, 0.0) * double(x) + glm::dvec3(0.0, 1.0, 3.0) * double(y));
         hull = convex_hull(view(plane)).value();
         CHECK(hull.rank == 2);
-        CHECK(std::set<std::uint32_t>(hull.vertices.begin(), hull.vertices.end()) == std::set<std::uint32_t>{0, 3, 16, 19});
+        CHECK(std::set<std::uint32_t>(hull.vertices.begin(), hull.vertices.end()) ==
+              std::set<std::uint32_t>{0, 3, 16, 19});
         CHECK(hull.triangles.empty());
     }
 
@@ -82,9 +87,13 @@ TEST_SUITE("geometry/convex_hull") {
             for (const double offset : {0.0, 1e4}) {
                 std::vector<glm::dvec3> points;
                 for (int i = 0; i < 200; ++i)
-                    points.push_back((glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))) + glm::dvec3(offset)) * scale);
+                    points.push_back((glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))) +
+                                      glm::dvec3(offset)) *
+                                     scale);
                 for (int i = 0; i < 3000; ++i)
-                    points.push_back((0.9 * glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))) + glm::dvec3(offset)) * scale);
+                    points.push_back((0.9 * glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))) +
+                                      glm::dvec3(offset)) *
+                                     scale);
                 const ConvexHull hull = convex_hull(view(points)).value();
                 CHECK(hull.vertices.size() == 200);
                 CHECK(hull.vertices.back() == 199);
@@ -97,7 +106,8 @@ TEST_SUITE("geometry/convex_hull") {
         std::normal_distribution<double> normal;
         for (double thickness = 1e-3; thickness > 1e-18; thickness *= 0.1) {
             std::vector<glm::dvec3> points;
-            for (int i = 0; i < 50; ++i) points.emplace_back(normal(random), normal(random), thickness * normal(random));
+            for (int i = 0; i < 50; ++i)
+                points.emplace_back(normal(random), normal(random), thickness * normal(random));
             const ConvexHull hull = convex_hull(view(points)).value();
             CHECK(hull.rank >= 2);
             CHECK(hull.vertices.size() >= 3);

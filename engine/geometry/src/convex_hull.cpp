@@ -17,6 +17,7 @@ namespace crofton {
 namespace {
 
 constexpr double kFlat = 1e-12;
+constexpr double kStraight = 1e-15;  // distance from a line that rounding of the projection may feign
 
 struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -45,8 +46,8 @@ class Qhull {
 
     [[nodiscard]] bool build(std::span<glm::dvec3> points) {
         char options[] = "qhull Qt Pp";
-        return errors_ != nullptr && qh_new_qhull(&state_, 3, static_cast<int>(points.size()), &points[0].x, False, options, nullptr,
-                                                  errors_.get()) == 0;
+        return errors_ != nullptr && qh_new_qhull(&state_, 3, static_cast<int>(points.size()), &points[0].x, False,
+                                                  options, nullptr, errors_.get()) == 0;
     }
     [[nodiscard]] qhT* state() { return &state_; }
 
@@ -64,13 +65,17 @@ struct Prepared {
 template <class Point>
 Result<Prepared> prepare(std::span<const Point> points) {
     if (points.empty()) return fail(ErrorCode::empty, kNoItem, "convex_hull: no points");
-    if (points.size() > (std::size_t{1} << 31)) return fail(ErrorCode::out_of_range, kNoItem, "convex_hull: more than 2^31 points");
+    if (points.size() > (std::size_t{1} << 31))
+        return fail(ErrorCode::out_of_range, kNoItem, "convex_hull: more than 2^31 points");
     Aabb bounds;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::dvec3 p(points[i]);
         for (int k = 0; k < 3; ++k) {
-            if (!std::isfinite(p[k])) return fail(ErrorCode::non_finite, i, "convex_hull: point " + std::to_string(i) + " is NaN or infinite");
-            if (std::abs(p[k]) > kMaxCoordinate) return fail(ErrorCode::out_of_range, i, "convex_hull: point " + std::to_string(i) + " exceeds 1e30");
+            if (!std::isfinite(p[k]))
+                return fail(ErrorCode::non_finite, i,
+                            "convex_hull: point " + std::to_string(i) + " is NaN or infinite");
+            if (std::abs(p[k]) > kMaxCoordinate)
+                return fail(ErrorCode::out_of_range, i, "convex_hull: point " + std::to_string(i) + " exceeds 1e30");
         }
         bounds.include(p);
     }
@@ -121,7 +126,7 @@ void planar_hull(const Vector<glm::dvec3>& points, const glm::dvec3& x, const gl
         if (size > floor && chain[size - 1].at == p.at) return;
         while (size >= floor + 2) {
             const glm::dvec2 a = chain[size - 1].at - chain[size - 2].at, b = p.at - chain[size - 1].at;
-            if (a.x * b.y - a.y * b.x > 0.0) break;
+            if (a.x * b.y - a.y * b.x > kStraight * (glm::length(a) + glm::length(b))) break;
             --size;
         }
         chain[size++] = p;
@@ -135,8 +140,9 @@ void planar_hull(const Vector<glm::dvec3>& points, const glm::dvec3& x, const gl
 
 // Drops points well inside the polytope of the extreme points along 13 directions.
 void drop_inner(Prepared& prepared) {
-    constexpr glm::dvec3 kDirections[] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1}, {1, 0, -1},
-                                          {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+    constexpr glm::dvec3 kDirections[] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {1, -1, 0},
+                                          {1, 0, 1},  {1, 0, -1}, {0, 1, 1},  {0, 1, -1}, {1, 1, 1},
+                                          {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
     Vector<std::uint32_t> extreme;
     for (const glm::dvec3& direction : kDirections) {
         extreme.push_back(argmax(prepared.points, [&](const glm::dvec3& p) { return glm::dot(p, direction); }));
@@ -184,7 +190,8 @@ bool solid_hull(Prepared& prepared, ConvexHull& hull) {
     FORALLfacets {
         std::uint32_t corner[3] = {0, 0, 0};
         int count = 0;
-        FOREACHvertex_(facet->vertices) if (count < 3) corner[count++] = static_cast<std::uint32_t>(qh_pointid(qh, vertex->point));
+        FOREACHvertex_(facet->vertices) if (count < 3) corner[count++] =
+            static_cast<std::uint32_t>(qh_pointid(qh, vertex->point));
         // Qhull keeps the corners of a simplicial facet in the order of their ids; its normal tells which way is out.
         const glm::dvec3 a = prepared.points[corner[0]], b = prepared.points[corner[1]], c = prepared.points[corner[2]];
         if (glm::dot(glm::cross(b - a, c - a), glm::dvec3(facet->normal[0], facet->normal[1], facet->normal[2])) < 0.0)
@@ -235,7 +242,11 @@ Result<ConvexHull> hull_of(std::span<const Point> points) {
 
 }  // namespace
 
-Result<ConvexHull> convex_hull(std::span<const glm::vec3> points) { return hull_of(points); }
-Result<ConvexHull> convex_hull(std::span<const glm::dvec3> points) { return hull_of(points); }
+Result<ConvexHull> convex_hull(std::span<const glm::vec3> points) {
+    return hull_of(points);
+}
+Result<ConvexHull> convex_hull(std::span<const glm::dvec3> points) {
+    return hull_of(points);
+}
 
 }  // namespace crofton
