@@ -1,0 +1,89 @@
+// A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
+#pragma once
+#include <crofton/bake/container.hpp>
+#include <crofton/bake/mapped_file.hpp>
+#include <crofton/scene/scene.hpp>
+#include <crofton/tree/box_tree.hpp>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace crofton::bake {
+
+// What the sections hold; `first` and `count` are ranges of the sections positions, colors, indices, names, points
+// (of polygons) and rings.
+struct MeshRecord {
+    Obb box;  // in the mesh's own frame
+    std::uint64_t first_position = 0, first_color = 0, first_index = 0;
+    std::uint32_t position_count = 0, color_count = 0, index_count = 0;
+    std::uint32_t first_name = 0, name_size = 0;
+    std::uint32_t polygon = scene::kNone;  // its PolygonRecord, if it is a triangulated polygon
+};
+struct InstanceRecord {
+    scene::MeshId mesh = scene::kNone;
+    scene::NodeId node = scene::kNone;
+};
+struct NodeRecord {
+    scene::Transform world;
+    scene::NodeId parent = scene::kNone;
+    std::uint32_t reserved = 0;
+};
+struct PolygonRecord {
+    glm::dvec3 origin{0.0}, u{0.0}, v{0.0};  // as in scene::PlanarPolygon
+    std::uint64_t first_point = 0, first_ring = 0;
+    std::uint32_t point_count = 0, ring_count = 0;
+};
+static_assert(sizeof(MeshRecord) == 120 && sizeof(NodeRecord) == 104 && sizeof(PolygonRecord) == 96);
+
+// The scene as of its last update(). Deterministic. Errors: what BoxTree::build refuses; more than 2^32 − 1 name bytes.
+[[nodiscard]] Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor = serial_executor());
+
+struct MeshView {
+    std::string_view name;
+    Obb box;
+    std::span<const glm::vec3> positions, colors;
+    std::span<const std::uint32_t> indices;
+};
+// The rings around a mesh whose triangles are a triangulation: triangle corners are indices into `points`.
+struct PolygonView {
+    std::span<const glm::dvec2> points;
+    std::span<const std::uint32_t> ring_ends;
+    glm::dvec3 origin, u, v;
+};
+
+// Spans point into the file and live as long as this. Const calls from any thread.
+class BakedScene {
+  public:
+    // Maps the file and checks it whole. Errors name the path and what is damaged, of another version or byte order.
+    [[nodiscard]] static Result<BakedScene> open(const std::string& path, Executor& executor = serial_executor());
+    // From memory that starts at a multiple of 64 and outlives this.
+    [[nodiscard]] static Result<BakedScene> from_memory(std::span<const std::byte> file,
+                                                        Executor& executor = serial_executor());
+
+    [[nodiscard]] std::size_t mesh_count() const { return meshes_.size(); }
+    [[nodiscard]] MeshView mesh(scene::MeshId mesh) const;
+    [[nodiscard]] std::optional<PolygonView> polygon(scene::MeshId mesh) const;
+    [[nodiscard]] std::span<const InstanceRecord> instances() const { return instances_; }
+    [[nodiscard]] std::span<const NodeRecord> nodes() const { return nodes_; }
+    // Over the instances: item i is instance i; its boxes() and layer masks are theirs. Yours to change.
+    [[nodiscard]] tree::BoxTree& tree() { return *tree_; }
+    [[nodiscard]] const tree::BoxTree& tree() const { return *tree_; }
+
+  private:
+    [[nodiscard]] Result<void> check_meshes() const;
+    [[nodiscard]] Result<void> check_instances() const;
+    std::optional<MappedFile> file_;
+    std::span<const MeshRecord> meshes_;
+    std::span<const InstanceRecord> instances_;
+    std::span<const NodeRecord> nodes_;
+    std::span<const PolygonRecord> polygons_;
+    std::span<const glm::vec3> positions_, colors_;
+    std::span<const std::uint32_t> indices_, rings_;
+    std::span<const glm::dvec2> points_;
+    std::span<const char> names_;
+    std::optional<tree::BoxTree> tree_;
+};
+
+}  // namespace crofton::bake

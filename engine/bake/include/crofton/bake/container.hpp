@@ -1,0 +1,78 @@
+// The outside of a .crofton file: named sections of plain arrays, each with its checksum, to be read where they lie.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+
+namespace crofton::bake {
+
+// All numbers little-endian; a machine of another byte order refuses the file. Bytes that are not described are 0.
+//   0  Header
+//  64  Section × section_count
+//      the sections, in the table's order, each at the next multiple of 64
+struct Header {
+    char magic[8] = {'C', 'R', 'O', 'F', 'T', 'O', 'N', '\x1a'};
+    std::uint32_t byte_order = 0x01020304;
+    std::uint32_t version = 1;
+    std::uint64_t file_size = 0;
+    std::uint64_t table_checksum = 0;  // of two: the header's, with 0 here, and the table's
+    std::uint32_t section_count = 0;
+    std::uint32_t reserved[7] = {};
+};
+struct Section {
+    char name[8] = {};  // padded with 0
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;  // bytes, a multiple of element_size
+    std::uint64_t checksum = 0;
+    std::uint32_t element_size = 1;
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(Header) == 64 && sizeof(Section) == 40);
+
+inline constexpr std::uint32_t kVersion = 1;  // of the container and of what is in it
+inline constexpr std::size_t kAlignment = 64;
+inline constexpr std::uint32_t kMaxSections = 64;
+
+class Writer {
+  public:
+    // The elements are copied. Requires a new name of at most 8 characters; fewer than kMaxSections sections.
+    template <class T>
+    void add(std::string_view name, std::span<const T> elements) {
+        add_bytes(name, std::as_bytes(elements), sizeof(T));
+    }
+    // The whole file.
+    [[nodiscard]] Vector<std::byte> finish();
+
+  private:
+    void add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size);
+    Vector<Section> sections_;
+    Vector<Vector<std::byte>> contents_;
+};
+
+class Reader {
+  public:
+    // Checks everything but what the sections mean: magic, byte order, version, sizes, places, checksums, padding.
+    // Borrows the bytes, which start at a multiple of 64. Errors say what is wrong, and for sections which one.
+    [[nodiscard]] static Result<Reader> open(std::span<const std::byte> file, Executor& executor = serial_executor());
+
+    // Errors: no such section (parse); elements of another size. T is plain data aligned to 64 bytes at most.
+    template <class T>
+    [[nodiscard]] Result<std::span<const T>> section(std::string_view name) const {
+        const auto bytes = find(name, sizeof(T));
+        if (!bytes) return tl::unexpected(bytes.error());
+        return std::span(reinterpret_cast<const T*>(bytes->data()), bytes->size() / sizeof(T));
+    }
+    [[nodiscard]] std::span<const Section> sections() const { return sections_; }
+
+  private:
+    [[nodiscard]] Result<std::span<const std::byte>> find(std::string_view name, std::size_t element_size) const;
+    std::span<const std::byte> file_;
+    std::span<const Section> sections_;
+};
+
+}  // namespace crofton::bake
