@@ -37,9 +37,9 @@ Rasterizer::State::~State() {
 
 Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
     if (auto made = pipelines.create(options.cull_back_faces); !made) return made;
-    auto new_target = std::make_unique<Target>(context);
-    if (auto made = new_target->create(pipelines.render_pass, {options.width, options.height}); !made) return made;
-    target = std::move(new_target);
+    auto target = std::make_unique<Target>(context);
+    if (auto made = target->create(pipelines.render_pass, {options.width, options.height}); !made) return made;
+    targets.push_back(std::move(target));
     auto made_commands = Commands::create(context);
     if (!made_commands) return tl::unexpected(std::move(made_commands.error()));
     commands = std::move(*made_commands);
@@ -190,47 +190,55 @@ Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::spa
     return {};
 }
 
-Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height) {
-    if (width == state_->target->extent.width && height == state_->target->extent.height) return {};
+Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture) {
+    auto& targets = state_->targets;
+    CROFTON_ASSERT(picture <= targets.size(), "pictures are made one after another");
+    if (picture < targets.size() && width == targets[picture]->extent.width &&
+        height == targets[picture]->extent.height)
+        return {};
     auto target = std::make_unique<Target>(state_->context);
     if (auto made = target->create(state_->pipelines.render_pass, {width, height}); !made) return made;
-    state_->target = std::move(target);
-    state_->drawn = false;
+    if (picture == targets.size()) targets.emplace_back();
+    targets[picture] = std::move(target);
     return {};
 }
 
-Result<GpuCounters> Rasterizer::draw(const Frame& frame) {
+Result<GpuCounters> Rasterizer::draw(const Frame& frame, std::uint32_t picture) {
+    CROFTON_ASSERT(picture < state_->targets.size(), "there is no such picture");
+    Target& target = *state_->targets[picture];
     if (auto prepared = state_->prepare(frame); !prepared) return tl::unexpected(std::move(prepared.error()));
     if (auto begun = state_->commands.begin(); !begun) return tl::unexpected(std::move(begun.error()));
-    state_->record(frame);
+    state_->record(frame, target);
     if (auto done = state_->commands.submit_and_wait(); !done) return tl::unexpected(std::move(done.error()));
-    state_->drawn = true;
+    target.drawn = true;
     return state_->read_counters();
 }
 
-Result<void> Rasterizer::read_pixels(Image& image) {
-    if (!state_->drawn) return fail(ErrorCode::empty, kNoItem, "no frame has been drawn at this size yet");
+Result<void> Rasterizer::read_pixels(Image& image, std::uint32_t picture) {
+    CROFTON_ASSERT(picture < state_->targets.size(), "there is no such picture");
+    Target& target = *state_->targets[picture];
+    if (!target.drawn) return fail(ErrorCode::empty, kNoItem, "no frame has been drawn at this size yet");
     if (auto begun = state_->commands.begin(); !begun) return begun;
-    state_->target->record_readback(state_->commands.handle);
+    target.record_readback(state_->commands.handle);
     if (auto done = state_->commands.submit_and_wait(); !done) return done;
-    image.width = state_->target->extent.width;
-    image.height = state_->target->extent.height;
-    image.rgba.resize(state_->target->readback.size);
-    std::memcpy(image.rgba.data(), state_->target->readback.mapped, image.rgba.size());
+    image.width = target.extent.width;
+    image.height = target.extent.height;
+    image.rgba.resize(target.readback.size);
+    std::memcpy(image.rgba.data(), target.readback.mapped, image.rgba.size());
     return {};
 }
 
 std::uint32_t Rasterizer::draw_count() const {
     return static_cast<std::uint32_t>(state_->counted_draws);
 }
-std::uint32_t Rasterizer::width() const {
-    return state_->target->extent.width;
+std::uint32_t Rasterizer::width(std::uint32_t picture) const {
+    return state_->targets[picture]->extent.width;
 }
-std::uint32_t Rasterizer::height() const {
-    return state_->target->extent.height;
+std::uint32_t Rasterizer::height(std::uint32_t picture) const {
+    return state_->targets[picture]->extent.height;
 }
-void* Rasterizer::native_color_view() const {
-    return state_->target->color.view;
+const ImageResource* Rasterizer::native_image(std::uint32_t picture) const {
+    return picture < state_->targets.size() ? &state_->targets[picture]->color : nullptr;
 }
 
 }  // namespace crofton::render

@@ -2,10 +2,11 @@
 #pragma once
 #include <crofton/render/rasterizer.hpp>
 #include <memory>
+#include <vector>
 
+#include <crofton/render/resources.hpp>
 #include "draw_list.hpp"
 #include "pipelines.hpp"
-#include "resources.hpp"
 #include "target.hpp"
 
 namespace crofton::render {
@@ -18,7 +19,7 @@ struct Rasterizer::State {
 
     const VulkanContext& context;
     Pipelines pipelines;
-    std::unique_ptr<Target> target;
+    std::vector<std::unique_ptr<Target>> targets;  // by picture
     Buffer vertices, indices;
     std::uint32_t index_count = 0;
 
@@ -33,7 +34,6 @@ struct Rasterizer::State {
     VkQueryPool statistics = VK_NULL_HANDLE;  // null where the device has none
     VkQueryPool occlusion = VK_NULL_HANDLE;
     Commands commands;
-    bool drawn = false;
 
     [[nodiscard]] Result<void> create(const RasterizerOptions& options);
     [[nodiscard]] Result<void> create_queries();
@@ -42,7 +42,7 @@ struct Rasterizer::State {
     [[nodiscard]] Result<bool> reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const;
     // Fills draws, transforms, indirect and lines.
     [[nodiscard]] Result<void> prepare(const Frame& frame);
-    void record(const Frame& frame);
+    void record(const Frame& frame, const Target& target);
     void record_draws(std::size_t begin, std::size_t end);
     [[nodiscard]] Result<GpuCounters> read_counters() const;
 };

@@ -79,7 +79,7 @@ void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     }
 }
 
-void Rasterizer::State::record(const Frame& frame) {
+void Rasterizer::State::record(const Frame& frame, const Target& target) {
     const auto& vk = context.vk;
     const VkCommandBuffer cmd = commands.handle;
     if (statistics != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, statistics, 0, 1);
@@ -91,15 +91,15 @@ void Rasterizer::State::record(const Frame& frame) {
     clear[1].depthStencil = {0.0f, 0};
     VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
     pass.renderPass = pipelines.render_pass;
-    pass.framebuffer = target->framebuffer;
-    pass.renderArea.extent = target->extent;
+    pass.framebuffer = target.framebuffer;
+    pass.renderArea.extent = target.extent;
     pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
     pass.pClearValues = clear.data();
     vk.vkCmdBeginRenderPass(cmd, &pass, VK_SUBPASS_CONTENTS_INLINE);
     // Negative height: clip space's y points up.
-    const auto width = static_cast<float>(target->extent.width), height = static_cast<float>(target->extent.height);
+    const auto width = static_cast<float>(target.extent.width), height = static_cast<float>(target.extent.height);
     const VkViewport viewport{0.0f, height, width, -height, 0.0f, 1.0f};
-    const VkRect2D scissor{{0, 0}, target->extent};
+    const VkRect2D scissor{{0, 0}, target.extent};
     vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
     vk.vkCmdSetScissor(cmd, 0, 1, &scissor);
     const VkPipelineLayout layout = pipelines.layout;

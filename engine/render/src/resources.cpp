@@ -1,4 +1,4 @@
-#include "resources.hpp"
+#include <crofton/render/resources.hpp>
 
 #include <cstring>
 

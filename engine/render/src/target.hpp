@@ -1,6 +1,6 @@
 // What is drawn into: RGBA8 + D32, with a way back to the host.
 #pragma once
-#include "resources.hpp"
+#include <crofton/render/resources.hpp>
 
 namespace crofton::render {
 
@@ -20,6 +20,7 @@ class Target {
     VkFramebuffer framebuffer = VK_NULL_HANDLE;
     ImageResource color, depth;
     Buffer readback;
+    bool drawn = false;
 
   private:
     const VulkanContext* context_;

@@ -81,6 +81,8 @@ struct Image {
     Vector<std::uint8_t> rgba;
 };
 
+class ImageResource;  // native handles: see resources.hpp
+
 struct RasterizerOptions {
     std::uint32_t width = 1280;
     std::uint32_t height = 720;
@@ -100,23 +102,27 @@ class Rasterizer {
     // Replaces the static vertex and index buffer. Errors: an index out of range or a count not a multiple of 3 (item =
     // index).
     [[nodiscard]] Result<void> set_geometry(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices);
-    [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height);
+
+    // Pictures are numbered; 0 is made by create(), others by their first resize(), one after another. They share the
+    // geometry, so that one scene can be seen from several sides.
+    [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture = 0);
 
     // Draws and waits. Neighbouring ranges that continue each other with the same transform become one draw. Memory
     // grows on first need only. Errors: a range beyond the indices or transforms, not whole triangles (item = range);
     // Vulkan's.
-    [[nodiscard]] Result<GpuCounters> draw(const Frame& frame);
+    [[nodiscard]] Result<GpuCounters> draw(const Frame& frame, std::uint32_t picture = 0);
 
-    // The last frame's pixels. Errors: nothing drawn yet; Vulkan's.
-    [[nodiscard]] Result<void> read_pixels(Image& image);
+    // The picture's pixels as they are now. Errors: nothing drawn since its last change of size; Vulkan's.
+    [[nodiscard]] Result<void> read_pixels(Image& image, std::uint32_t picture = 0);
 
     // How many draws the last frame needed after merging.
     [[nodiscard]] std::uint32_t draw_count() const;
-    [[nodiscard]] std::uint32_t width() const;
-    [[nodiscard]] std::uint32_t height() const;
+    [[nodiscard]] std::uint32_t width(std::uint32_t picture = 0) const;
+    [[nodiscard]] std::uint32_t height(std::uint32_t picture = 0) const;
 
-    // The picture as a sampled VkImageView in layout SHADER_READ_ONLY_OPTIMAL, for a window; see vulkan_context.hpp.
-    [[nodiscard]] void* native_color_view() const;
+    // For a window: the picture between draws, in SHADER_READ_ONLY_OPTIMAL, usable as colour attachment, transfer
+    // source and sampled image. Must be left in that layout, idle. Null where there is no such picture.
+    [[nodiscard]] const ImageResource* native_image(std::uint32_t picture = 0) const;
 
   private:
     struct State;

@@ -1,4 +1,4 @@
-// Memory on the device: buffers and images that free themselves.
+// Native resources that free themselves, for those who draw beside the rasterizer: buffers, images, commands.
 #pragma once
 #include <crofton/render/vulkan_context.hpp>
 #include <cstddef>
