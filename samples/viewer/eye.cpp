@@ -1,0 +1,106 @@
+#include "eye.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace crofton::viewer {
+namespace {
+
+constexpr double kRadiansPerPixel = 0.004;
+constexpr glm::dvec3 kUp{0.0, 1.0, 0.0};
+
+glm::dvec3 direction(double yaw, double pitch) {
+    return {std::cos(pitch) * std::sin(yaw), std::sin(pitch), -std::cos(pitch) * std::cos(yaw)};
+}
+
+}  // namespace
+
+void Eye::look(const Camera& view) {
+    const double aspect = camera.aspect;
+    camera = view;
+    camera.aspect = aspect;
+    target_ = camera.position + glm::normalize(camera.forward) * distance_;
+}
+
+void Eye::frame_all(const Aabb& bounds) {
+    if (bounds.is_empty()) return;
+    const double radius = std::max(glm::length(bounds.half_extents()), 1e-3);
+    target_ = bounds.center();
+    distance_ = radius / std::sin(0.5 * camera.fov_y);
+    camera.forward = glm::normalize(glm::dvec3(-0.6, -0.55, -0.6));
+    camera.up = kUp;
+    camera.position = target_ - camera.forward * distance_;
+    camera.near = std::max(radius * 1e-4, 0.02);
+    camera.far = 6.0 * radius;
+    speed = radius / 6.0;
+}
+
+bool Eye::recall_bookmark(int slot) {
+    const auto& stored = bookmarks_[static_cast<std::size_t>(slot)];
+    if (stored) look(*stored);
+    return stored.has_value();
+}
+
+bool Eye::held(const char* key) const { return std::find(keys_.begin(), keys_.end(), key) != keys_.end(); }
+
+void Eye::turn(double yaw_change, double pitch_change) {
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const double yaw = std::atan2(forward.x, -forward.z) + yaw_change;
+    const double limit = 0.5 * std::numbers::pi - 0.01;
+    const double pitch = std::clamp(std::asin(std::clamp(forward.y, -1.0, 1.0)) + pitch_change, -limit, limit);
+    camera.forward = direction(yaw, pitch);
+    camera.up = kUp;
+    if (mode == EyeMode::orbit) camera.position = target_ - camera.forward * distance_;
+}
+
+void Eye::handle(const Event& event) {
+    switch (event.kind) {
+        case Event::Kind::key_down:
+            if (!held(event.text.c_str())) keys_.push_back(event.text);
+            break;
+        case Event::Kind::key_up:
+            keys_.erase(std::remove(keys_.begin(), keys_.end(), event.text), keys_.end());
+            break;
+        case Event::Kind::button_down:
+        case Event::Kind::button_up:
+            if (event.button == 1) turning_ = event.kind == Event::Kind::button_down;
+            cursor_ = event.at;
+            break;
+        case Event::Kind::cursor: {
+            const glm::dvec2 change = event.at - cursor_;
+            cursor_ = event.at;
+            const double sign = mode == EyeMode::orbit ? -1.0 : 1.0;
+            if (turning_) turn(sign * change.x * kRadiansPerPixel, -change.y * kRadiansPerPixel);
+            break;
+        }
+        case Event::Kind::scroll:
+            if (mode == EyeMode::fly) {
+                speed = std::clamp(speed * std::pow(1.25, event.at.y), 1e-3, 1e6);
+            } else {
+                distance_ = std::clamp(distance_ * std::pow(0.87, event.at.y), 1e-3, 1e9);
+                camera.position = target_ - glm::normalize(camera.forward) * distance_;
+            }
+            break;
+        case Event::Kind::drop:
+            break;
+    }
+}
+
+void Eye::advance(double seconds) {
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+    glm::dvec3 step(0.0);
+    if (held("W")) step += forward;
+    if (held("S")) step -= forward;
+    if (held("D")) step += right;
+    if (held("A")) step -= right;
+    if (held("E")) step += kUp;
+    if (held("Q")) step -= kUp;
+    step *= speed * (held("Shift") ? 4.0 : 1.0) * seconds;
+    camera.position += step;
+    target_ += step;
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,94 @@
+#include "settings.hpp"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace crofton::viewer {
+namespace {
+
+constexpr std::array<std::pair<const char*, bool Settings::*>, 10> kFlags{{{"compare", &Settings::compare},
+                                                                           {"exact", &Settings::exact},
+                                                                           {"collisions", &Settings::collisions},
+                                                                           {"freeze", &Settings::freeze},
+                                                                           {"inset", &Settings::inset},
+                                                                           {"outside", &Settings::outside},
+                                                                           {"bounds", &Settings::bounds},
+                                                                           {"wireframe", &Settings::wireframe},
+                                                                           {"panels", &Settings::panels},
+                                                                           {"paused", &Settings::paused}}};
+
+tl::unexpected<Error> bad_value(const std::string& name, const char* wanted) {
+    return fail(ErrorCode::invalid_argument, kNoItem, "switch '" + name + "' takes " + wanted);
+}
+
+Result<void> set_method(Method& method, const std::string& name, bool bounds, const nlohmann::json& value) {
+    if (!value.is_string()) return bad_value(name, "a name");
+    if (bounds) {
+        const auto kind = pipeline::bounds_kind_from(value.get<std::string>());
+        if (!kind) return tl::unexpected(kind.error());
+        method.bounds = *kind;
+    } else {
+        const auto mode = pipeline::cull_mode_from(value.get<std::string>());
+        if (!mode) return tl::unexpected(mode.error());
+        method.cull = *mode;
+    }
+    return {};
+}
+
+Result<void> set_whole(int& target, const std::string& name, const nlohmann::json& value, int low, int high) {
+    if (!value.is_number_integer() || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high)
+        return fail(ErrorCode::out_of_range, kNoItem,
+                    "switch '" + name + "' takes a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    target = value.get<int>();
+    return {};
+}
+
+}  // namespace
+
+Result<void> set_switch(Settings& settings, const std::string& name, const nlohmann::json& value) {
+    for (const auto& [known, flag] : kFlags) {
+        if (name != known) continue;
+        if (!value.is_boolean()) return bad_value(name, "true or false");
+        settings.*flag = value.get<bool>();
+        return {};
+    }
+    if (name == "bounds_kind") return set_method(settings.method, name, true, value);
+    if (name == "cull") return set_method(settings.method, name, false, value);
+    if (name == "other_bounds_kind") return set_method(settings.other, name, true, value);
+    if (name == "other_cull") return set_method(settings.other, name, false, value);
+    if (name == "tree_level") return set_whole(settings.tree_level, name, value, -1, 64);
+    if (name == "cascades") return set_whole(settings.cascades, name, value, 1, 8);
+    if (name == "time_scale") {
+        if (!value.is_number() || !(value.get<double>() >= 0.0 && value.get<double>() <= 100.0))
+            return bad_value(name, "a number from 0 to 100");
+        settings.time_scale = value.get<double>();
+        return {};
+    }
+    if (name == "coloring") {
+        if (!value.is_string()) return bad_value(name, "a name");
+        for (std::size_t i = 0; i < std::size(kColoringNames); ++i) {
+            if (value.get<std::string>() != kColoringNames[i]) continue;
+            settings.coloring = static_cast<Coloring>(i);
+            return {};
+        }
+        return bad_value(name, "one of lit, verdict, improper, collision, depth, shape");
+    }
+    return fail(ErrorCode::invalid_argument, kNoItem, "there is no switch '" + name + "'");
+}
+
+nlohmann::json to_json(const Settings& settings) {
+    nlohmann::json result{{"coloring", kColoringNames[static_cast<std::size_t>(settings.coloring)]},
+                          {"bounds_kind", pipeline::to_string(settings.method.bounds)},
+                          {"cull", pipeline::to_string(settings.method.cull)},
+                          {"other_bounds_kind", pipeline::to_string(settings.other.bounds)},
+                          {"other_cull", pipeline::to_string(settings.other.cull)},
+                          {"tree_level", settings.tree_level},
+                          {"cascades", settings.cascades},
+                          {"time_scale", settings.time_scale}};
+    for (const auto& [name, flag] : kFlags)
+        result[name] = settings.*flag;
+    return result;
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,47 @@
+// Everything that can be switched while the viewer runs, by panel, key or script.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/cull/classify.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "pipeline/bounds.hpp"
+#include "pipeline/pipeline.hpp"
+
+namespace crofton::viewer {
+
+enum class Coloring : std::uint8_t { lit, verdict, improper, collision, depth, shape };
+inline constexpr const char* kColoringNames[] = {"lit", "verdict", "improper", "collision", "depth", "shape"};
+
+// What culling decides by; two of these can be compared side by side.
+struct Method {
+    pipeline::BoundsKind bounds = pipeline::BoundsKind::obb_perimeter;
+    pipeline::CullMode cull = pipeline::CullMode::tree;
+    bool operator==(const Method&) const = default;
+};
+
+struct Settings {
+    Method method;
+    Method other;            // B of the comparison
+    bool compare = false;
+    Coloring coloring = Coloring::lit;
+    bool exact = true;       // exact second stage; false: planes only
+    bool collisions = true;
+    bool freeze = false;     // culling keeps its camera
+    bool inset = false;      // a second view, from outside
+    bool outside = false;    // what is culled, as wire boxes
+    bool bounds = false;     // the visible instances' bounds
+    int tree_level = -1;     // bounds of the tree's nodes at this depth; −1: none
+    bool wireframe = false;
+    int cascades = 1;        // views: the camera's depth range split into so many
+    bool panels = true;
+    bool paused = false;
+    double time_scale = 1.0;
+};
+
+// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "other_bounds_kind", "other_cull",
+// "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or range; nothing is changed then.
+[[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const nlohmann::json& value);
+[[nodiscard]] nlohmann::json to_json(const Settings& settings);
+
+}  // namespace crofton::viewer

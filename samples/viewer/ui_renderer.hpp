@@ -1,0 +1,51 @@
+// Draws Dear ImGui's lists over a picture, through the rasterizer's own device. (ImGui's Vulkan backend as packaged calls
+// the loader's functions by name; ours are loaded at run time and share those names.)
+#pragma once
+#include <imgui.h>
+
+#include <crofton/render/resources.hpp>
+#include <memory>
+
+namespace crofton::viewer {
+
+class UiRenderer {
+  public:
+    // Uploads ImGui's font atlas: an ImGui context with its fonts is current.
+    [[nodiscard]] static Result<std::unique_ptr<UiRenderer>> create(const render::VulkanContext& context);
+    ~UiRenderer();
+    UiRenderer(const UiRenderer&) = delete;
+    UiRenderer& operator=(const UiRenderer&) = delete;
+
+    // The picture to draw over; again after each change of its size.
+    [[nodiscard]] Result<void> set_target(VkImageView picture, VkExtent2D extent);
+
+    // What an ImGui::Image shows: one picture beside the font, replaced by the next call.
+    [[nodiscard]] ImTextureID show(VkImageView picture);
+
+    // Records the pass; the target is in SHADER_READ_ONLY_OPTIMAL before and after. Errors: Vulkan's.
+    [[nodiscard]] Result<void> record(VkCommandBuffer commands, const ImDrawData& data);
+
+  private:
+    explicit UiRenderer(const render::VulkanContext& context) : context_(context) {}
+    [[nodiscard]] Result<void> create_layouts();
+    [[nodiscard]] Result<void> create_render_pass();
+    [[nodiscard]] Result<void> create_pipeline();
+    [[nodiscard]] Result<void> upload_font();
+    [[nodiscard]] Result<void> upload_lists(const ImDrawData& data);
+    void point_at(VkDescriptorSet set, VkImageView view) const;
+
+    const render::VulkanContext& context_;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet font_set_ = VK_NULL_HANDLE, shown_set_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkRenderPass pass_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+    VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
+    VkExtent2D extent_{};
+    render::ImageResource font_;
+    render::Buffer vertices_, indices_;
+};
+
+}  // namespace crofton::viewer

@@ -1,0 +1,68 @@
+// A window, its events, and the way a finished picture gets onto it.
+#pragma once
+#include <crofton/render/resources.hpp>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace crofton::viewer {
+
+// What the user did, whether by hand or by script. Keys by name: "A", "1", "F5", "Space", "Ctrl+S" as a modifier prefix.
+struct Event {
+    enum class Kind { key_down, key_up, button_down, button_up, cursor, scroll, drop } kind = Kind::key_down;
+    std::string text;         // the key's name, or a dropped file
+    int button = 0;           // 0 left, 1 right, 2 middle
+    glm::dvec2 at{0.0};       // cursor in pixels of the picture, or the wheel's steps
+};
+
+class Window {
+  public:
+    // Starts the window system. Errors: unavailable – there is no display; says how to run without one.
+    [[nodiscard]] static Result<std::unique_ptr<Window>> create(const std::string& title, int width, int height);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    // What the device must be created with so that attach() works.
+    [[nodiscard]] static std::vector<std::string> instance_extensions();
+    [[nodiscard]] static std::vector<std::string> device_extensions();
+    // Makes surface and swapchain. Errors: the device cannot present here; Vulkan's. The context must outlive the window.
+    [[nodiscard]] Result<void> attach(const render::VulkanContext& context);
+
+    // Processes what the window system has to say; events gather until taken.
+    void poll();
+    [[nodiscard]] std::vector<Event> take_events();
+    [[nodiscard]] bool should_close() const;
+    [[nodiscard]] VkExtent2D framebuffer_size() const;  // 0 × 0 while minimised
+    void wait_while_minimised() const;
+    void set_title(const std::string& title) const;
+    void set_size(int width, int height) const;
+    [[nodiscard]] GLFWwindow* handle() const { return window_; }
+
+    // Shows a picture that is in SHADER_READ_ONLY_OPTIMAL, scaled to the window; remakes the swapchain where it no longer
+    // fits. Errors: unavailable when the device or the surface is lost.
+    [[nodiscard]] Result<void> present(VkImage picture, VkExtent2D size);
+
+  private:
+    Window() = default;
+    friend struct WindowCallbacks;
+    [[nodiscard]] Result<void> create_swapchain();
+    [[nodiscard]] VkResult try_present(VkImage picture, VkExtent2D size);
+    void record_copy(VkCommandBuffer commands, VkImage picture, VkExtent2D size, VkImage onto) const;
+
+    GLFWwindow* window_ = nullptr;
+    std::vector<Event> events_;
+    const render::VulkanContext* context_ = nullptr;
+    VkSurfaceKHR surface_ = VK_NULL_HANDLE;
+    VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
+    std::vector<VkImage> images_;
+    VkExtent2D extent_{};
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkSemaphore acquired_ = VK_NULL_HANDLE, copied_ = VK_NULL_HANDLE;
+    VkFence done_ = VK_NULL_HANDLE;
+};
+
+}  // namespace crofton::viewer
