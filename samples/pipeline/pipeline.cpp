@@ -94,9 +94,10 @@ struct Pipeline::State {
     void list_visible(const Frustum& frustum) {
         const cull::View view{frustum};
         if (options.cull == CullMode::tree)
-            cull::cull(*tree, view, visible, {}, executor);
+            cull::cull(*tree, view, visible, {.mode = options.mode, .order = cull::Order::ascending}, executor);
         else
-            cull::cull(bounds.boxes(), scene.layer_masks(), view, visible, {}, executor);
+            cull::cull(bounds.boxes(), scene.layer_masks(), view, visible,
+                       {.mode = options.mode, .order = cull::Order::ascending}, executor);
         visible_ids.clear();
         for (std::size_t k = 0; k < visible.size(); ++k) {
             const scene::InstanceId instance = visible.ids()[k];
@@ -153,7 +154,8 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
     frame.cull_us = microseconds_since(cull_start);
 
     const auto collide_start = Clock::now();
-    if (auto found = s.find_pairs(frame); !found) return tl::unexpected(found.error());
+    if (s.options.collide)
+        if (auto found = s.find_pairs(frame); !found) return tl::unexpected(found.error());
     frame.collide_us = microseconds_since(collide_start);
 
     for (scene::InstanceId i = 0; i < s.scene.instance_count(); ++i) frame.instances += !s.scene.is_removed(i);
@@ -179,6 +181,10 @@ const Bounds& Pipeline::bounds() const {
 }
 std::span<const scene::InstanceId> Pipeline::movers() const {
     return state_->movers;
+}
+
+const tree::BoxTree& Pipeline::tree() const {
+    return *state_->tree;
 }
 
 std::vector<scene::InstanceId> Pipeline::spatial_order() const {

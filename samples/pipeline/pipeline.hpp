@@ -4,6 +4,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/scene/scene.hpp>
+#include <crofton/tree/box_tree.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -23,6 +24,8 @@ struct PipelineOptions {
     BoundsKind bounds = BoundsKind::obb_perimeter;
     CullMode cull = CullMode::tree;
     bool count_triangles = true;  // triangles_passed and improper, which cost more than the culling itself
+    cull::Mode mode = cull::Mode::exact;
+    bool collide = true;
 };
 
 // Holds what lasts from frame to frame: bounds, tree, pairs. The scene is the caller's; between its update() and run()
@@ -45,6 +48,7 @@ class Pipeline {
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
     [[nodiscard]] const Bounds& bounds() const;
     [[nodiscard]] std::span<const scene::InstanceId> movers() const;
+    [[nodiscard]] const tree::BoxTree& tree() const;  // over bounds().boxes(), items are instances
     // Instances in the order in which the tree holds them: neighbours in space are neighbours here.
     [[nodiscard]] std::vector<scene::InstanceId> spatial_order() const;
 

@@ -43,7 +43,9 @@ bool Eye::recall_bookmark(int slot) {
     return stored.has_value();
 }
 
-bool Eye::held(const char* key) const { return std::find(keys_.begin(), keys_.end(), key) != keys_.end(); }
+bool Eye::held(const char* key) const {
+    return std::find(keys_.begin(), keys_.end(), key) != keys_.end();
+}
 
 void Eye::turn(double yaw_change, double pitch_change) {
     const glm::dvec3 forward = glm::normalize(camera.forward);

@@ -14,7 +14,8 @@ enum class EyeMode : std::uint8_t { fly, orbit };
 
 class Eye {
   public:
-    // Looks at `bounds` from a corner above; keeps them as the frame-all target and takes speed and far plane from them.
+    // Looks at `bounds` from a corner above; keeps them as the frame-all target and takes speed and far plane from
+    // them.
     void frame_all(const Aabb& bounds);
     void look(const Camera& camera);
 

@@ -38,8 +38,9 @@ Result<void> set_method(Method& method, const std::string& name, bool bounds, co
 
 Result<void> set_whole(int& target, const std::string& name, const nlohmann::json& value, int low, int high) {
     if (!value.is_number_integer() || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high)
-        return fail(ErrorCode::out_of_range, kNoItem,
-                    "switch '" + name + "' takes a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+        return fail(
+            ErrorCode::out_of_range, kNoItem,
+            "switch '" + name + "' takes a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     target = value.get<int>();
     return {};
 }
@@ -86,8 +87,7 @@ nlohmann::json to_json(const Settings& settings) {
                           {"tree_level", settings.tree_level},
                           {"cascades", settings.cascades},
                           {"time_scale", settings.time_scale}};
-    for (const auto& [name, flag] : kFlags)
-        result[name] = settings.*flag;
+    for (const auto& [name, flag] : kFlags) result[name] = settings.*flag;
     return result;
 }
 

@@ -22,18 +22,18 @@ struct Method {
 
 struct Settings {
     Method method;
-    Method other;            // B of the comparison
+    Method other;  // B of the comparison
     bool compare = false;
     Coloring coloring = Coloring::lit;
-    bool exact = true;       // exact second stage; false: planes only
+    bool exact = true;  // exact second stage; false: planes only
     bool collisions = true;
-    bool freeze = false;     // culling keeps its camera
-    bool inset = false;      // a second view, from outside
-    bool outside = false;    // what is culled, as wire boxes
-    bool bounds = false;     // the visible instances' bounds
-    int tree_level = -1;     // bounds of the tree's nodes at this depth; −1: none
+    bool freeze = false;   // culling keeps its camera
+    bool inset = false;    // a second view, from outside
+    bool outside = false;  // what is culled, as wire boxes
+    bool bounds = false;   // the visible instances' bounds
+    int tree_level = -1;   // bounds of the tree's nodes at this depth; −1: none
     bool wireframe = false;
-    int cascades = 1;        // views: the camera's depth range split into so many
+    int cascades = 1;  // views: the camera's depth range split into so many
     bool panels = true;
     bool paused = false;
     double time_scale = 1.0;

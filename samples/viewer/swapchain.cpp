@@ -60,7 +60,8 @@ Window::~Window() {
         vk.vkDestroyFence(context_->device, done_, nullptr);
         vk.vkDestroySemaphore(context_->device, acquired_, nullptr);
         vk.vkDestroySemaphore(context_->device, copied_, nullptr);
-        if (commands_ != VK_NULL_HANDLE) vk.vkFreeCommandBuffers(context_->device, context_->command_pool, 1, &commands_);
+        if (commands_ != VK_NULL_HANDLE)
+            vk.vkFreeCommandBuffers(context_->device, context_->command_pool, 1, &commands_);
         if (swapchain_ != VK_NULL_HANDLE) vk.vkDestroySwapchainKHR(context_->device, swapchain_, nullptr);
         if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(context_->instance, surface_, nullptr);
     }
@@ -119,31 +120,34 @@ Result<void> Window::create_swapchain() {
 void Window::record_copy(VkCommandBuffer commands, VkImage picture, VkExtent2D size, VkImage onto) const {
     const auto& vk = context_->vk;
     constexpr VkPipelineStageFlags kTransfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    const std::array before{barrier_of(picture, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                                       VK_ACCESS_TRANSFER_READ_BIT),
-                            barrier_of(onto, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
-                                       VK_ACCESS_TRANSFER_WRITE_BIT)};
-    vk.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kTransfer, kTransfer, 0, 0, nullptr, 0,
-                            nullptr, static_cast<std::uint32_t>(before.size()), before.data());
+    const std::array before{
+        barrier_of(picture, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT),
+        barrier_of(onto, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
+                   VK_ACCESS_TRANSFER_WRITE_BIT)};
+    vk.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kTransfer, kTransfer, 0, 0,
+                            nullptr, 0, nullptr, static_cast<std::uint32_t>(before.size()), before.data());
     VkImageBlit region{};
     region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.srcOffsets[1] = {static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height), 1};
     region.dstOffsets[1] = {static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height), 1};
-    vk.vkCmdBlitImage(commands, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, onto, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                      &region, VK_FILTER_NEAREST);
-    const std::array after{barrier_of(picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                      VK_ACCESS_TRANSFER_READ_BIT, VK_ACCESS_SHADER_READ_BIT),
-                           barrier_of(onto, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
-                                      VK_ACCESS_TRANSFER_WRITE_BIT, 0)};
-    vk.vkCmdPipelineBarrier(commands, kTransfer, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
-                            0, 0, nullptr, 0, nullptr, static_cast<std::uint32_t>(after.size()), after.data());
+    vk.vkCmdBlitImage(commands, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, onto,
+                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
+    const std::array after{
+        barrier_of(picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                   VK_ACCESS_TRANSFER_READ_BIT, VK_ACCESS_SHADER_READ_BIT),
+        barrier_of(onto, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
+                   VK_ACCESS_TRANSFER_WRITE_BIT, 0)};
+    vk.vkCmdPipelineBarrier(commands, kTransfer,
+                            VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, nullptr,
+                            0, nullptr, static_cast<std::uint32_t>(after.size()), after.data());
 }
 
 VkResult Window::try_present(VkImage picture, VkExtent2D size) {
     const auto& vk = context_->vk;
     std::uint32_t index = 0;
-    VkResult result = vk.vkAcquireNextImageKHR(context_->device, swapchain_, ~std::uint64_t{0}, acquired_, VK_NULL_HANDLE, &index);
+    VkResult result =
+        vk.vkAcquireNextImageKHR(context_->device, swapchain_, ~std::uint64_t{0}, acquired_, VK_NULL_HANDLE, &index);
     if (result != VK_SUCCESS && result != VK_SUBOPTIMAL_KHR) return result;
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;

@@ -15,7 +15,8 @@ VkShaderModule create_shader(const render::VulkanContext& context, std::span<con
     info.codeSize = code.size_bytes();
     info.pCode = code.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    return context.vk.vkCreateShaderModule(context.device, &info, nullptr, &module) == VK_SUCCESS ? module : VK_NULL_HANDLE;
+    return context.vk.vkCreateShaderModule(context.device, &info, nullptr, &module) == VK_SUCCESS ? module
+                                                                                                  : VK_NULL_HANDLE;
 }
 
 VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage, VkShaderModule module) {
@@ -58,8 +59,8 @@ Result<void> UiRenderer::create_pipeline() {
     blended.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
     blended.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     blended.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-    blended.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                             VK_COLOR_COMPONENT_A_BIT;
+    blended.colorWriteMask =
+        VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     blend.attachmentCount = 1;
     blend.pAttachments = &blended;

@@ -22,8 +22,8 @@ Result<void> reserve(const render::VulkanContext& context, render::Buffer& buffe
     return {};
 }
 
-void record_layout_change(const render::VulkanContext& context, VkCommandBuffer commands, VkImage image, VkImageLayout from,
-                          VkImageLayout to) {
+void record_layout_change(const render::VulkanContext& context, VkCommandBuffer commands, VkImage image,
+                          VkImageLayout from, VkImageLayout to) {
     VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
     barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
     barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
@@ -33,8 +33,8 @@ void record_layout_change(const render::VulkanContext& context, VkCommandBuffer 
     barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image;
     barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    context.vk.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                                    nullptr, 0, nullptr, 1, &barrier);
+    context.vk.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
+                                    0, nullptr, 0, nullptr, 1, &barrier);
 }
 
 }  // namespace
@@ -69,8 +69,8 @@ Result<void> UiRenderer::create_layouts() {
     VkResult result = vk.vkCreateSampler(context_.device, &sampler, nullptr, &sampler_);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateSampler");
 
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
-                                               nullptr};
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                               VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
     VkDescriptorSetLayoutCreateInfo set_layout{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_layout.bindingCount = 1;
     set_layout.pBindings = &binding;
@@ -190,8 +190,8 @@ Result<void> UiRenderer::upload_font() {
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {extent.width, extent.height, 1};
-    context_.vk.vkCmdCopyBufferToImage(commands->handle, staging->handle, font_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                       1, &region);
+    context_.vk.vkCmdCopyBufferToImage(commands->handle, staging->handle, font_.handle,
+                                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     record_layout_change(context_, commands->handle, font_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     if (auto done = commands->submit_and_wait(); !done) return done;
@@ -204,7 +204,8 @@ Result<void> UiRenderer::upload_font() {
 Result<void> UiRenderer::upload_lists(const ImDrawData& data) {
     const auto vertex_bytes = static_cast<VkDeviceSize>(data.TotalVtxCount) * sizeof(ImDrawVert);
     const auto index_bytes = static_cast<VkDeviceSize>(data.TotalIdxCount) * sizeof(ImDrawIdx);
-    if (auto grown = reserve(context_, vertices_, vertex_bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !grown) return grown;
+    if (auto grown = reserve(context_, vertices_, vertex_bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !grown)
+        return grown;
     if (auto grown = reserve(context_, indices_, index_bytes, VK_BUFFER_USAGE_INDEX_BUFFER_BIT); !grown) return grown;
     std::byte* vertex = vertices_.mapped;
     std::byte* index = indices_.mapped;
@@ -232,10 +233,12 @@ Result<void> UiRenderer::record(VkCommandBuffer commands, const ImDrawData& data
     vk.vkCmdBindVertexBuffers(commands, 0, 1, &vertices_.handle, &zero);
     vk.vkCmdBindIndexBuffer(commands, indices_.handle, 0,
                             sizeof(ImDrawIdx) == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
-    const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent_.width), static_cast<float>(extent_.height), 0.0f, 1.0f};
+    const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
+                              0.0f, 1.0f};
     vk.vkCmdSetViewport(commands, 0, 1, &viewport);
     const float scale_x = 2.0f / data.DisplaySize.x, scale_y = 2.0f / data.DisplaySize.y;
-    const std::array constants{scale_x, scale_y, -1.0f - data.DisplayPos.x * scale_x, -1.0f - data.DisplayPos.y * scale_y};
+    const std::array constants{scale_x, scale_y, -1.0f - data.DisplayPos.x * scale_x,
+                               -1.0f - data.DisplayPos.y * scale_y};
     vk.vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof constants, constants.data());
 
     const auto clamped = [](float value, std::uint32_t limit) {
@@ -253,7 +256,8 @@ Result<void> UiRenderer::record(VkCommandBuffer commands, const ImDrawData& data
             const std::int32_t x1 = clamped((command.ClipRect.z - data.DisplayPos.x) * k.x, extent_.width);
             const std::int32_t y1 = clamped((command.ClipRect.w - data.DisplayPos.y) * k.y, extent_.height);
             if (x1 <= x0 || y1 <= y0 || command.ElemCount == 0) continue;
-            const VkRect2D scissor{{x0, y0}, {static_cast<std::uint32_t>(x1 - x0), static_cast<std::uint32_t>(y1 - y0)}};
+            const VkRect2D scissor{{x0, y0},
+                                   {static_cast<std::uint32_t>(x1 - x0), static_cast<std::uint32_t>(y1 - y0)}};
             vk.vkCmdSetScissor(commands, 0, 1, &scissor);
             const auto set = reinterpret_cast<VkDescriptorSet>(command.GetTexID());
             vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set, 0, nullptr);

@@ -78,10 +78,11 @@ struct WindowCallbacks {
 Result<std::unique_ptr<Window>> Window::create(const std::string& title, int width, int height) {
     glfwInitHint(GLFW_JOYSTICK_HAT_BUTTONS, GLFW_FALSE);
     if (glfwInit() != GLFW_TRUE)
-        return fail(ErrorCode::unavailable, kNoItem,
-                    "no window can be opened (" + glfw_reason() +
-                        "). Without a display: 'crofton view --no-window --screenshot FILE', 'xvfb-run -a crofton view', or "
-                        "'crofton frames --png DIR'");
+        return fail(
+            ErrorCode::unavailable, kNoItem,
+            "no window can be opened (" + glfw_reason() +
+                "). Without a display: 'crofton view --no-window --screenshot FILE', 'xvfb-run -a crofton view', or "
+                "'crofton frames --png DIR'");
     std::unique_ptr<Window> window(new Window());
     if (glfwVulkanSupported() != GLFW_TRUE)
         return fail(ErrorCode::unavailable, kNoItem,
@@ -104,11 +105,19 @@ std::vector<std::string> Window::instance_extensions() {
     const char** names = glfwGetRequiredInstanceExtensions(&count);
     return names != nullptr ? std::vector<std::string>(names, names + count) : std::vector<std::string>();
 }
-std::vector<std::string> Window::device_extensions() { return {VK_KHR_SWAPCHAIN_EXTENSION_NAME}; }
+std::vector<std::string> Window::device_extensions() {
+    return {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+}
 
-void Window::poll() { glfwPollEvents(); }
-std::vector<Event> Window::take_events() { return std::exchange(events_, {}); }
-bool Window::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+void Window::poll() {
+    glfwPollEvents();
+}
+std::vector<Event> Window::take_events() {
+    return std::exchange(events_, {});
+}
+bool Window::should_close() const {
+    return glfwWindowShouldClose(window_) == GLFW_TRUE;
+}
 VkExtent2D Window::framebuffer_size() const {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
@@ -118,7 +127,16 @@ VkExtent2D Window::framebuffer_size() const {
 void Window::wait_while_minimised() const {
     while (framebuffer_size().width == 0 && !should_close()) glfwWaitEventsTimeout(0.1);
 }
-void Window::set_title(const std::string& title) const { glfwSetWindowTitle(window_, title.c_str()); }
-void Window::set_size(int width, int height) const { glfwSetWindowSize(window_, width, height); }
+float Window::content_scale() const {
+    float x = 1.0f, y = 1.0f;
+    glfwGetWindowContentScale(window_, &x, &y);
+    return x > 0.0f ? x : 1.0f;
+}
+void Window::set_title(const std::string& title) const {
+    glfwSetWindowTitle(window_, title.c_str());
+}
+void Window::set_size(int width, int height) const {
+    glfwSetWindowSize(window_, width, height);
+}
 
 }  // namespace crofton::viewer

@@ -10,12 +10,13 @@ struct GLFWwindow;
 
 namespace crofton::viewer {
 
-// What the user did, whether by hand or by script. Keys by name: "A", "1", "F5", "Space", "Ctrl+S" as a modifier prefix.
+// What the user did, whether by hand or by script. Keys by name: "A", "1", "F5", "Space", "Ctrl+S" as a modifier
+// prefix.
 struct Event {
     enum class Kind { key_down, key_up, button_down, button_up, cursor, scroll, drop } kind = Kind::key_down;
-    std::string text;         // the key's name, or a dropped file
-    int button = 0;           // 0 left, 1 right, 2 middle
-    glm::dvec2 at{0.0};       // cursor in pixels of the picture, or the wheel's steps
+    std::string text;    // the key's name, or a dropped file
+    int button = 0;      // 0 left, 1 right, 2 middle
+    glm::dvec2 at{0.0};  // cursor in pixels of the picture, or the wheel's steps
 };
 
 class Window {
@@ -29,7 +30,8 @@ class Window {
     // What the device must be created with so that attach() works.
     [[nodiscard]] static std::vector<std::string> instance_extensions();
     [[nodiscard]] static std::vector<std::string> device_extensions();
-    // Makes surface and swapchain. Errors: the device cannot present here; Vulkan's. The context must outlive the window.
+    // Makes surface and swapchain. Errors: the device cannot present here; Vulkan's. The context must outlive the
+    // window.
     [[nodiscard]] Result<void> attach(const render::VulkanContext& context);
 
     // Processes what the window system has to say; events gather until taken.
@@ -38,12 +40,13 @@ class Window {
     [[nodiscard]] bool should_close() const;
     [[nodiscard]] VkExtent2D framebuffer_size() const;  // 0 × 0 while minimised
     void wait_while_minimised() const;
+    [[nodiscard]] float content_scale() const;  // how much larger texts should be (HiDPI)
     void set_title(const std::string& title) const;
     void set_size(int width, int height) const;
     [[nodiscard]] GLFWwindow* handle() const { return window_; }
 
-    // Shows a picture that is in SHADER_READ_ONLY_OPTIMAL, scaled to the window; remakes the swapchain where it no longer
-    // fits. Errors: unavailable when the device or the surface is lost.
+    // Shows a picture that is in SHADER_READ_ONLY_OPTIMAL, scaled to the window; remakes the swapchain where it no
+    // longer fits. Errors: unavailable when the device or the surface is lost.
     [[nodiscard]] Result<void> present(VkImage picture, VkExtent2D size);
 
   private:

@@ -1,0 +1,91 @@
+// `crofton view`: see what is culled, why, and what it costs.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "commands.hpp"
+#include "frames_output.hpp"
+#include "pipeline/bounds.hpp"
+#include "pipeline/pipeline.hpp"
+#include "report.hpp"
+#include "viewer/viewer.hpp"
+
+namespace crofton::cli {
+namespace {
+
+struct ViewArguments {
+    viewer::ViewerOptions options;
+    std::string size = "1280x720", bounds = "obb-perimeter", cull = "tree";
+    bool no_window = false;
+};
+
+Result<void> run(ViewArguments arguments) {
+    const auto size = image_size_from(arguments.size);
+    if (!size) return tl::unexpected(size.error());
+    const auto bounds = pipeline::bounds_kind_from(arguments.bounds);
+    if (!bounds) return tl::unexpected(bounds.error());
+    const auto mode = pipeline::cull_mode_from(arguments.cull);
+    if (!mode) return tl::unexpected(mode.error());
+    viewer::ViewerOptions& options = arguments.options;
+    options.width = size->width;
+    options.height = size->height;
+    options.settings.method = {*bounds, *mode};
+    options.window = !arguments.no_window;
+    if (!options.window && options.frames == 0 && options.script.empty())
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "--no-window needs --after or --script, or it would never end");
+    if (!options.screenshot.empty() && options.frames == 0)
+        return fail(ErrorCode::invalid_argument, kNoItem, "--screenshot needs --after FRAMES");
+    return viewer::run_viewer(options);
+}
+
+constexpr const char* kHelp =
+    "Keys: W A S D Q E fly, right mouse turns, wheel changes speed, Tab orbits, Home frames all, 1-9 go to a "
+    "bookmark,\n"
+    "Ctrl+1-9 set it; F freeze culling, I inset from outside, C next colouring, B bounds, O boxes of what is culled,\n"
+    "T tree level, X wireframe, V number of views, N bounds kind, M culling mode, L exact or planes only, K "
+    "collisions,\n"
+    "G compare two methods, P pause, . step, + - time scale, R record the camera path, F2 screenshot, F5 export, H "
+    "panels,\n"
+    "left mouse picks, a file dropped on the window is opened, Escape quits.\n\n"
+    "Examples:\n"
+    "  crofton view                                        the town\n"
+    "  crofton view level.wad --map MAP07\n"
+    "  crofton view scene.glb --camera street --bounds aabb\n"
+    "  crofton view --no-window --after 10 --screenshot town.png --json -\n"
+    "  xvfb-run -a crofton view --script tour.json         no display: a virtual one\n";
+
+}  // namespace
+
+void add_view_command(CLI::App& app, Outcome& outcome) {
+    auto arguments = std::make_shared<ViewArguments>();
+    viewer::ViewerOptions& options = arguments->options;
+    CLI::App* command =
+        app.add_subcommand("view", "Fly through a scene and see what is culled, why, and what it costs");
+    command->footer(kHelp);
+    command->add_option("SCENE", options.scene.source, "town, or a .glb, .gltf, .obj or .wad file")
+        ->capture_default_str();
+    command->add_option("--map", options.scene.map, "which level of a WAD");
+    command->add_option("--seed", options.scene.seed, "of the town")->capture_default_str();
+    command->add_option("--instances", options.scene.instances, "of the town, roughly");
+    command->add_option("--size", arguments->size, "of the window, as 1280x720")->capture_default_str();
+    command
+        ->add_option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+        ->capture_default_str();
+    command->add_option("--cull", arguments->cull, "none, flat or tree")->capture_default_str();
+    command->add_option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
+    command->add_option("--after", options.frames, "quit after so many frames");
+    command->add_option("--screenshot", options.screenshot, "the last frame as PNG");
+    command->add_option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
+    command->add_option("--json", options.json, "statistics of all frames into this file, - for stdout");
+    command->add_option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
+        ->capture_default_str();
+    command->add_option("--device", options.device, "part of the Vulkan device's name, or cpu");
+    command->add_flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
+    command->add_flag("--no-window", arguments->no_window, "draw without any display");
+    command->callback([arguments, &outcome] {
+        const auto done = run(*arguments);
+        outcome.status = done ? kSuccess : report_error("", done.error());
+    });
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,56 @@
+// The session's panels, built and drawn over the picture.
+#include <imgui.h>
+#include <imgui/backends/imgui_impl_glfw.h>
+
+#include "picture.hpp"
+#include "session.hpp"
+
+namespace crofton::viewer {
+
+Result<void> Session::draw_interface() {
+    ui_us_ = 0.0;
+    if (!settings_.panels) return {};
+    const auto start = Clock::now();
+    ImGuiIO& io = ImGui::GetIO();
+    if (imgui_window_) {
+        ImGui_ImplGlfw_NewFrame();
+    } else {
+        io.DisplaySize = ImVec2(static_cast<float>(rasterizer_->width()), static_cast<float>(rasterizer_->height()));
+        io.DeltaTime = 1.0f / 60.0f;
+    }
+    ImGui::NewFrame();
+    const render::ImageResource* inset = settings_.inset ? rasterizer_->native_image(1) : nullptr;
+    const ImTextureID shown = inset != nullptr ? ui_->show(inset->view) : nullptr;
+    const ImVec2 inset_size =
+        inset != nullptr ? ImVec2(static_cast<float>(rasterizer_->width(1)), static_cast<float>(rasterizer_->height(1)))
+                         : ImVec2(0.0f, 0.0f);
+    const PanelWish wish = draw_panels({settings_, eye_, *stage_, nodes_, frame_, other_ ? &other_frame_ : nullptr,
+                                        journal_, painter_, overlay_, cascades_, pick_, selected_, shown, inset_size,
+                                        device_->name(), is_recording_, replaying_});
+    ImGui::Render();
+    if (auto begun = ui_commands_.begin(); !begun) return begun;
+    if (auto recorded = ui_->record(ui_commands_.handle, *ImGui::GetDrawData()); !recorded) return recorded;
+    ui_us_ = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    if (auto done = ui_commands_.submit_and_wait(); !done) return done;
+    grant(wish);
+    return {};
+}
+
+Result<void> Session::finish() {
+    if (options_.json.empty()) return {};
+    nlohmann::json document = journal_.json();
+    document["scene"] = {{"name", stage_->source().name},
+                         {"nodes", stage_->scene().node_count()},
+                         {"instances", stage_->scene().instance_count()},
+                         {"triangles", stage_->triangle_count()}};
+    document["device"] = device_->name();
+    document["counts_exactly"] = device_->counts_exactly();
+    document["validation_messages"] = nlohmann::json::array();
+    for (const std::string& message : device_->validation_messages())
+        document["validation_messages"].push_back(message);
+    document["settings"] = to_json(settings_);
+    document["pictures"] = pictures_;
+    return write_text(options_.json, document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace crofton::viewer

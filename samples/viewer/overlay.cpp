@@ -1,0 +1,123 @@
+#include "overlay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/collide/mesh_mesh.hpp>
+#include <glm/geometric.hpp>
+
+namespace crofton::viewer {
+namespace {
+
+constexpr std::uint32_t kOutside = rgba(225, 60, 70), kBound = rgba(250, 235, 90), kFrustum = rgba(255, 255, 255),
+                        kTree = rgba(110, 220, 255), kPair = rgba(255, 90, 60), kContact = rgba(255, 250, 80),
+                        kSelection = rgba(90, 170, 255);
+constexpr std::array<std::uint32_t, 8> kCascades{rgba(255, 90, 90),   rgba(255, 190, 70),  rgba(130, 230, 90),
+                                                 rgba(70, 220, 220),  rgba(100, 140, 255), rgba(210, 110, 255),
+                                                 rgba(255, 120, 200), rgba(200, 200, 200)};
+// Beyond this many pairs the picture says nothing more.
+constexpr std::size_t kMaxPairs = 200;
+constexpr std::size_t kMaxContactsOfPair = 64;
+
+}  // namespace
+
+std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
+    std::vector<Cascade> result;
+    const double near = camera.near, far = std::min(camera.far, std::max(reach, 2.0 * near));
+    const auto depth_at = [&](int i) {
+        const double share = static_cast<double>(i) / count;
+        return 0.5 * (near + (far - near) * share) + 0.5 * near * std::pow(far / near, share);
+    };
+    for (int i = 0; i < count; ++i) {
+        Cascade cascade{camera, 0, kCascades[static_cast<std::size_t>(i) % kCascades.size()]};
+        cascade.camera.near = depth_at(i);
+        cascade.camera.far = depth_at(i + 1);
+        result.push_back(cascade);
+    }
+    return result;
+}
+
+void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage,
+                   const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades,
+                   scene::InstanceId selected, bool show_frustum) {
+    const scene::Scene& scene = stage.scene();
+    const auto verdicts = stage.pipeline().verdicts();
+    const auto boxes = stage.pipeline().bounds().boxes();
+    if (settings.outside)
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+            if (!scene.is_removed(i) && verdicts[i] == cull::Verdict::outside) lines.box(boxes[i], kOutside);
+    if (settings.bounds)
+        for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
+    if (settings.tree_level >= 0) draw_tree_level(lines, stage.pipeline().tree(), settings.tree_level);
+    contacts_ = 0;
+    if (settings.coloring == Coloring::collision && settings.collisions) draw_pairs(lines, stage, frame);
+    if (selected < scene.instance_count() && !scene.is_removed(selected)) {
+        lines.box(boxes[selected], kSelection);
+        lines.axes(scene.world_boxes()[selected]);
+    }
+    const double reach = 1.5 * glm::length(stage.extent().half_extents());
+    if (show_frustum && cascades.size() < 2) lines.frustum(frame.camera, reach, kFrustum);
+    if (show_frustum || settings.freeze)
+        for (const Cascade& cascade : cascades)
+            if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far, cascade.color);
+}
+
+void Overlay::draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const {
+    std::vector<tree::NodeId> nodes{0}, next;
+    for (int depth = 0; depth < level && !nodes.empty(); ++depth) {
+        next.clear();
+        for (const tree::NodeId node : nodes)
+            for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane)
+                if ((tree.nodes()[node].child[lane] & tree::kLeafBit) == 0)
+                    next.push_back(tree.nodes()[node].child[lane]);
+        nodes.swap(next);
+    }
+    for (const tree::NodeId node : nodes)
+        for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane) {
+            const Aabb bounds = tree.child_bounds(node, lane);
+            if (!bounds.is_empty()) lines.box(obb_of(bounds), kTree);
+        }
+}
+
+void Overlay::draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame) {
+    const auto boxes = stage.scene().world_boxes();
+    const std::size_t count = std::min(frame.colliding_ids.size(), kMaxPairs);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto [a, b] = frame.colliding_ids[i];
+        for (const scene::InstanceId instance : {a, b}) {
+            lines.box(boxes[instance], kPair);
+            lines.axes(boxes[instance]);
+        }
+        lines.segment(boxes[a].center, boxes[b].center, kPair);
+        draw_contacts(lines, stage.scene(), a, b);
+    }
+}
+
+const tree::MeshTree* Overlay::tree_of(const scene::Scene& scene, scene::MeshId mesh) {
+    auto& slot = trees_[mesh];
+    if (!slot)
+        if (auto built = tree::MeshTree::build(scene.mesh(mesh)))
+            slot = std::make_unique<tree::MeshTree>(std::move(*built));
+    return slot.get();
+}
+
+void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b) {
+    const scene::Transform &world_a = scene.world(scene.node_of(a)), &world_b = scene.world(scene.node_of(b));
+    const collide::Pose pose_a{world_a.linear, world_a.translation}, pose_b{world_b.linear, world_b.translation};
+    // Scaled bodies have no pose; their boxes are shown alone.
+    if (!collide::validate(pose_a) || !collide::validate(pose_b)) return;
+    const tree::MeshTree *tree_a = tree_of(scene, scene.mesh_of(a)), *tree_b = tree_of(scene, scene.mesh_of(b));
+    if (tree_a == nullptr || tree_b == nullptr) return;
+    Vector<collide::MeshContact> found;
+    collide::contacts(*tree_a, *tree_b, collide::relative(pose_a, pose_b), found);
+    contacts_ += found.size();
+    const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[a].half_extents));
+    for (std::size_t i = 0; i < std::min(found.size(), kMaxContactsOfPair); ++i) {
+        const glm::dvec3 begin = collide::transform(pose_a, found[i].segment.begin);
+        const glm::dvec3 end = collide::transform(pose_a, found[i].segment.end);
+        lines.segment(begin, end, kContact);
+        lines.cross(0.5 * (begin + end), size, kContact);
+    }
+}
+
+}  // namespace crofton::viewer

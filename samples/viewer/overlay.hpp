@@ -1,0 +1,41 @@
+// What is drawn over the scene as lines: bounds, frusta, contacts.
+#pragma once
+#include <crofton/tree/mesh_tree.hpp>
+#include <memory>
+#include <unordered_map>
+
+#include "line_list.hpp"
+#include "settings.hpp"
+#include "stage.hpp"
+
+namespace crofton::viewer {
+
+// One view of several into which the depth range is split.
+struct Cascade {
+    Camera camera;
+    std::uint64_t visible = 0;
+    std::uint32_t color = 0;
+};
+// The camera's range [near, far or `reach`] in `count` parts, halfway between even and geometric spacing.
+[[nodiscard]] std::vector<Cascade> split_view(const Camera& camera, int count, double reach);
+
+class Overlay {
+  public:
+    // All lines that the settings ask for, for an eye at `eye`. `frame` is what culling said; its camera culled.
+    void draw(LineList& lines, const Settings& settings, const Stage& stage, const pipeline::FrameStatistics& frame,
+              std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum);
+    // Forgets what belongs to a scene that is gone.
+    void clear() { trees_.clear(); }
+    [[nodiscard]] std::uint64_t contact_count() const { return contacts_; }
+
+  private:
+    void draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const;
+    void draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
+    void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);
+    const tree::MeshTree* tree_of(const scene::Scene& scene, scene::MeshId mesh);
+
+    std::unordered_map<scene::MeshId, std::unique_ptr<tree::MeshTree>> trees_;
+    std::uint64_t contacts_ = 0;
+};
+
+}  // namespace crofton::viewer

@@ -1,0 +1,61 @@
+// The user interface: what one can read and switch.
+#pragma once
+#include <imgui.h>
+
+#include <crofton/scene/scene.hpp>
+#include <optional>
+#include <vector>
+
+#include "eye.hpp"
+#include "journal.hpp"
+#include "overlay.hpp"
+#include "painter.hpp"
+#include "picking.hpp"
+#include "settings.hpp"
+#include "stage.hpp"
+
+namespace crofton::viewer {
+
+// Children of each node, for the tree panel.
+class NodeTree {
+  public:
+    void rebuild(const scene::Scene& scene);
+    [[nodiscard]] std::span<const scene::NodeId> children(scene::NodeId parent) const;  // kNone: the roots
+    [[nodiscard]] std::span<const scene::InstanceId> instances(scene::NodeId node) const;
+
+  private:
+    std::vector<std::uint32_t> child_begin_, instance_begin_;
+    std::vector<scene::NodeId> children_;
+    std::vector<scene::InstanceId> instances_;
+};
+
+// What the panels show, and what they may change.
+struct PanelInput {
+    Settings& settings;
+    Eye& eye;
+    const Stage& stage;
+    const NodeTree& nodes;
+    const pipeline::FrameStatistics& frame;
+    const pipeline::FrameStatistics* other;  // of the comparison's B, or null
+    const Journal& journal;
+    const Painter& painter;
+    const Overlay& overlay;
+    std::span<const Cascade> cascades;
+    std::optional<Pick> pick;
+    scene::InstanceId selected;
+    ImTextureID inset;  // null: none
+    ImVec2 inset_size;
+    const std::string& device;
+    bool recording, replaying;
+};
+
+// What the user asked for with a button.
+struct PanelWish {
+    bool frame_all = false, record = false, replay = false, export_files = false, screenshot = false, step = false;
+    std::optional<scene::InstanceId> select;
+};
+
+void apply_style(float scale);
+[[nodiscard]] PanelWish draw_panels(const PanelInput& input);
+
+}  // namespace crofton::viewer

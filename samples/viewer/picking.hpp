@@ -1,0 +1,22 @@
+// What lies under the cursor.
+#pragma once
+#include <crofton/geometry/camera.hpp>
+#include <crofton/scene/scene.hpp>
+#include <optional>
+#include <span>
+
+namespace crofton::viewer {
+
+struct Pick {
+    scene::InstanceId instance = 0;
+    std::uint32_t triangle = 0;
+    double distance = 0.0;
+    glm::dvec3 at{0.0};
+};
+
+// The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. Boxes first, then
+// triangles.
+[[nodiscard]] std::optional<Pick> pick(const scene::Scene& scene, std::span<const scene::InstanceId> candidates,
+                                       const Camera& camera, const glm::dvec2& cursor);
+
+}  // namespace crofton::viewer

@@ -1,0 +1,199 @@
+#include "session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/cull/cull.hpp>
+#include <crofton/geometry/clip_space.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <thread>
+
+#include "picture.hpp"
+
+namespace crofton::viewer {
+namespace {
+
+constexpr VkExtent2D kInsetSize{400, 225};
+
+double microseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Behind and above the camera that culls, far enough to see what it sees.
+Camera from_outside(const Camera& camera, double reach) {
+    const auto corners = view_corners(camera, reach);
+    Aabb bounds;
+    for (const glm::dvec3& corner : corners) bounds.include(corner);
+    const double radius = glm::length(bounds.half_extents());
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const glm::dvec3 side = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)) + glm::dvec3(1e-9, 0.0, 0.0));
+    Camera outside;
+    outside.forward = glm::normalize(0.55 * forward - 0.45 * side - glm::dvec3(0.0, 0.7, 0.0));
+    outside.position = bounds.center() - outside.forward * (radius / std::sin(0.5 * outside.fov_y));
+    outside.near = std::max(radius * 0.01, 1e-3);
+    outside.far = 20.0 * radius;
+    outside.aspect = static_cast<double>(kInsetSize.width) / kInsetSize.height;
+    return outside;
+}
+
+}  // namespace
+
+bool Session::running() const {
+    if (quit_ || (window_ && window_->should_close())) return false;
+    if (options_.frames > 0) return frame_index_ < options_.frames;
+    return window_ != nullptr || !script_.empty();
+}
+
+Result<void> Session::turn() {
+    const auto start = Clock::now();
+    if (window_) {
+        window_->wait_while_minimised();
+        window_->poll();
+    }
+    // Unattended runs must not depend on the machine's speed.
+    const bool unattended = options_.frames > 0 || !options_.script.empty();
+    const double seconds = unattended ? 1.0 / 60.0 : std::min(microseconds_since(last_turn_) * 1e-6, 0.25);
+    last_turn_ = start;
+    handle_events();
+    run_script();
+    if (auto followed = follow_settings(); !followed) return followed;
+    if (auto resized = resize(); !resized) return resized;
+    advance(seconds);
+    if (auto culled = cull(); !culled) return culled;
+    if (auto drawn = draw(); !drawn) return drawn;
+    if (auto drawn = draw_interface(); !drawn) return drawn;
+    if (auto saved = save_screenshots(); !saved) return saved;
+    if (window_) {
+        const VkExtent2D size{rasterizer_->width(), rasterizer_->height()};
+        if (auto shown = window_->present(rasterizer_->native_image()->handle, size); !shown) return shown;
+    }
+    frame_.index = frame_index_++;
+    journal_.add({frame_, microseconds_since(start), ui_us_});
+    // Presenting does not pace on every device: no more than 60 pictures a second.
+    if (window_ && !unattended) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
+    return {};
+}
+
+Result<void> Session::resize() {
+    if (window_) {
+        const VkExtent2D now = window_->framebuffer_size();
+        if (now.width > 0 && now.height > 0) wanted_size_ = now;
+    }
+    if (!stale_size_ && wanted_size_.width == rasterizer_->width() && wanted_size_.height == rasterizer_->height())
+        return {};
+    if (auto resized = rasterizer_->resize(wanted_size_.width, wanted_size_.height); !resized) return resized;
+    stale_size_ = false;
+    eye_.camera.aspect = static_cast<double>(wanted_size_.width) / wanted_size_.height;
+    return ui_->set_target(rasterizer_->native_image()->view, wanted_size_);
+}
+
+void Session::advance(double seconds) {
+    if (replaying_ && !replay_.empty()) eye_.look(replay_[frame_index_ % replay_.size()]);
+    eye_.advance(seconds);
+    if (is_recording_) recording_.push_back(eye_.camera);
+    if (!settings_.freeze) culling_camera_ = eye_.camera;
+    if (!settings_.paused) scene_time_ += seconds * 60.0 * settings_.time_scale;
+    if (step_) scene_time_ += 1.0;
+    step_ = false;
+    const auto scene_frame = static_cast<std::uint32_t>(scene_time_);
+    stage_->animate(scene_frame);
+    if (other_) other_->animate(scene_frame);
+}
+
+Result<void> Session::cull() {
+    auto frame = stage_->run(culling_camera_);
+    if (!frame) return tl::unexpected(std::move(frame.error()));
+    frame_ = std::move(*frame);
+    if (other_) {
+        auto compared = other_->run(culling_camera_);
+        if (!compared) return tl::unexpected(std::move(compared.error()));
+        other_frame_ = std::move(*compared);
+    }
+    cascades_.clear();
+    if (settings_.cascades > 1)
+        cascades_ = split_view(culling_camera_, settings_.cascades, 1.5 * glm::length(stage_->extent().half_extents()));
+    for (Cascade& cascade : cascades_) {
+        const auto frustum = frustum_of(cascade.camera);
+        if (!frustum) return tl::unexpected(frustum.error());
+        cull::cull(stage_->pipeline().tree(), {*frustum}, cascade_visible_);
+        cascade.visible = cascade_visible_.size();
+    }
+    painter_.classify(*stage_, frame_, settings_.coloring, selected_);
+    return {};
+}
+
+Result<render::GpuCounters> Session::draw_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
+    list_->select(frame_.visible_ids, camera);
+    painter_.paint(*list_, settings_.wireframe);
+    lines_.clear(camera.position);
+    overlay_.draw(lines_, settings_, *stage_, frame_, cascades_, selected_, show_frustum);
+    render::Frame frame;
+    frame.camera = camera;
+    frame.transforms = painter_.transforms();
+    frame.ranges = painter_.ranges();
+    frame.wire_ranges = painter_.wire_ranges();
+    frame.lines = lines_.vertices();
+    // Colours that mean something are not hazed.
+    if (settings_.coloring != Coloring::lit) {
+        frame.environment.haze_distance = 0.0f;
+        frame.environment.sky = false;
+        frame.environment.horizon = glm::vec3(0.012f, 0.014f, 0.02f);
+    } else {
+        frame.environment.haze_distance = static_cast<float>(2.5 * glm::length(stage_->extent().half_extents()));
+    }
+    return rasterizer_->draw(frame, picture);
+}
+
+Result<void> Session::draw() {
+    if (settings_.inset) {
+        if (auto sized = rasterizer_->resize(kInsetSize.width, kInsetSize.height, 1); !sized) return sized;
+        const double reach = 1.5 * glm::length(stage_->extent().half_extents());
+        auto drawn = draw_view(from_outside(culling_camera_, reach), 1, true);
+        if (!drawn) return tl::unexpected(std::move(drawn.error()));
+    }
+    const auto start = Clock::now();
+    auto counters = draw_view(eye_.camera, 0, settings_.freeze);
+    if (!counters) return tl::unexpected(std::move(counters.error()));
+    frame_.draw_us = microseconds_since(start);
+    frame_.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
+                                     counters->clipping_primitives, counters->samples_passed};
+    frame_.triangles_clipped = list_->predict_clipped();
+    return {};
+}
+
+Result<void> Session::save_screenshots() {
+    if (options_.frames > 0 && frame_index_ + 1 == options_.frames && !options_.screenshot.empty())
+        screenshots_.push_back(options_.screenshot);
+    if (screenshots_.empty()) return {};
+    if (auto read = rasterizer_->read_pixels(image_); !read) return read;
+    for (const std::string& file : screenshots_) {
+        if (auto written = write_png(file, image_); !written) return written;
+        nlohmann::json tints = nlohmann::json::array();
+        for (const Painter::Count& tint : painter_.counts())
+            tints.push_back({{"name", tint.name}, {"instances", tint.instances}});
+        nlohmann::json views = nlohmann::json::array();
+        for (const Cascade& cascade : cascades_) views.push_back(cascade.visible);
+        pictures_.push_back({{"file", file},
+                             {"frame", frame_index_},
+                             {"width", image_.width},
+                             {"height", image_.height},
+                             {"scene", stage_->source().name},
+                             {"settings", to_json(settings_)},
+                             {"statistics", pipeline::to_json(frame_, false)},
+                             {"eye", pipeline::to_json(eye_.camera)},
+                             {"tints", std::move(tints)},
+                             {"views", std::move(views)},
+                             {"contacts", overlay_.contact_count()},
+                             {"lines", lines_.vertices().size() / 2}});
+        if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
+        if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;
+    }
+    screenshots_.clear();
+    return {};
+}
+
+void Session::report(const Error& error) const {
+    std::fprintf(stderr, "crofton: %s\n", error.message.c_str());
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,105 @@
+// The viewer's state and its turn: events, motion, culling, drawing, user interface, picture.
+#pragma once
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "eye.hpp"
+#include "journal.hpp"
+#include "overlay.hpp"
+#include "painter.hpp"
+#include "panels.hpp"
+#include "script.hpp"
+#include "ui_renderer.hpp"
+#include "viewer.hpp"
+#include "window.hpp"
+
+namespace crofton::viewer {
+
+class Session {
+  public:
+    explicit Session(const ViewerOptions& options) : options_(options), settings_(options.settings) {}
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    [[nodiscard]] Result<void> start();
+    [[nodiscard]] bool running() const;
+    [[nodiscard]] Result<void> turn();
+    // The last screenshot and the statistics.
+    [[nodiscard]] Result<void> finish();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    // Loading (loading.cpp)
+    [[nodiscard]] Result<void> start_device();
+    [[nodiscard]] Result<void> start_interface();
+    [[nodiscard]] Result<void> load(const SceneRequest& request);
+    [[nodiscard]] Result<void> upload_geometry();
+    [[nodiscard]] Result<void> follow_settings();
+    [[nodiscard]] Result<void> load_replay();
+
+    // Input (input.cpp)
+    void handle_events();
+    void handle(const Event& event);
+    bool handle_key(const std::string& key);
+    void run_script();
+    void perform(const Action& action);
+    void click(const glm::dvec2& pixel);
+    void toggle_recording();
+    void export_files();
+    void grant(const PanelWish& wish);
+
+    // One turn (session.cpp)
+    [[nodiscard]] Result<void> resize();
+    void advance(double seconds);
+    [[nodiscard]] Result<void> cull();
+    [[nodiscard]] Result<void> draw();
+    [[nodiscard]] Result<render::GpuCounters> draw_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
+    [[nodiscard]] Result<void> draw_interface();
+    [[nodiscard]] Result<void> save_screenshots();
+    void report(const Error& error) const;
+
+    ViewerOptions options_;
+    Settings settings_;
+    SceneRequest request_;  // what is on stage
+    std::unique_ptr<Window> window_;
+    std::unique_ptr<render::Device> device_;
+    std::unique_ptr<render::Rasterizer> rasterizer_;
+    std::unique_ptr<UiRenderer> ui_;
+    render::Commands ui_commands_;
+    bool imgui_ = false, imgui_window_ = false;
+
+    std::unique_ptr<Stage> stage_, other_;
+    std::unique_ptr<pipeline::DrawList> list_;
+    bool shape_uploaded_ = false;
+    NodeTree nodes_;
+    Eye eye_;
+    Camera culling_camera_;
+    pipeline::FrameStatistics frame_, other_frame_;
+    std::vector<Cascade> cascades_;
+    cull::VisibleSet cascade_visible_;
+    Painter painter_;
+    Overlay overlay_;
+    LineList lines_;
+    Journal journal_;
+    std::optional<Pick> pick_;
+    scene::InstanceId selected_ = scene::kNone;
+
+    std::deque<Action> script_;
+    std::vector<Camera> replay_, recording_;
+    bool replaying_ = false, is_recording_ = false, quit_ = false, step_ = false, stale_size_ = true;
+    std::uint32_t frame_index_ = 0, exports_ = 0;
+    double scene_time_ = 0.0;  // in frames of 1/60 s
+    VkExtent2D wanted_size_{};
+    Clock::time_point last_turn_ = Clock::now();
+    double ui_us_ = 0.0;
+    glm::dvec2 cursor_{0.0};
+    std::vector<std::string> screenshots_;  // to be taken this turn
+    nlohmann::json pictures_ = nlohmann::json::array();
+    render::Image image_;
+};
+
+}  // namespace crofton::viewer
