@@ -17,5 +17,6 @@ struct Outcome {
 
 void add_frames_command(CLI::App& app, Outcome& outcome);
 void add_verify_command(CLI::App& app, Outcome& outcome);
+void add_view_command(CLI::App& app, Outcome& outcome);  // where GLFW and Dear ImGui are installed
 
 }  // namespace crofton::cli

@@ -14,6 +14,9 @@ int main(int argc, char** argv) {
     Outcome outcome;
     add_frames_command(app, outcome);
     add_verify_command(app, outcome);
+#if defined(CROFTON_VIEWER)
+    add_view_command(app, outcome);
+#endif
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

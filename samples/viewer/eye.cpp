@@ -24,17 +24,26 @@ void Eye::look(const Camera& view) {
     target_ = camera.position + glm::normalize(camera.forward) * distance_;
 }
 
-void Eye::frame_all(const Aabb& bounds) {
-    if (bounds.is_empty()) return;
-    const double radius = std::max(glm::length(bounds.half_extents()), 1e-3);
-    target_ = bounds.center();
-    distance_ = radius / std::sin(0.5 * camera.fov_y);
-    camera.forward = glm::normalize(glm::dvec3(-0.6, -0.55, -0.6));
+void Eye::frame_all(const Aabb& focus, const Aabb& extent) {
+    if (focus.is_empty()) return;
+    const double radius = std::max(glm::length(focus.half_extents()), 1e-3);
+    target_ = focus.center();
+    distance_ = 0.75 * radius / std::sin(0.5 * camera.fov_y);
+    camera.forward = glm::normalize(glm::dvec3(-0.6, -0.45, -0.6));
     camera.up = kUp;
     camera.position = target_ - camera.forward * distance_;
-    camera.near = std::max(radius * 1e-4, 0.02);
-    camera.far = 6.0 * radius;
+    camera.near = std::max(radius * 5e-4, 0.02);
+    camera.far = 2.0 * (glm::length(extent.half_extents()) + distance_);
     speed = radius / 6.0;
+}
+
+void Eye::stand(const glm::dvec3& place, const glm::dvec3& next) {
+    const glm::dvec3 along(next.x - place.x, 0.0, next.z - place.z);
+    if (!(glm::length(along) > 0.0)) return;
+    camera.position = place;
+    camera.forward = glm::normalize(along);
+    camera.up = kUp;
+    target_ = place + camera.forward * distance_;
 }
 
 bool Eye::recall_bookmark(int slot) {

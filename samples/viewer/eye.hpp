@@ -14,9 +14,10 @@ enum class EyeMode : std::uint8_t { fly, orbit };
 
 class Eye {
   public:
-    // Looks at `bounds` from a corner above; keeps them as the frame-all target and takes speed and far plane from
-    // them.
-    void frame_all(const Aabb& bounds);
+    // Looks at `focus` from a corner above, as far as `extent` reaches; takes the speed from the focus.
+    void frame_all(const Aabb& focus, const Aabb& extent);
+    // Stands at `place` and looks towards `next`, horizontally.
+    void stand(const glm::dvec3& place, const glm::dvec3& next);
     void look(const Camera& camera);
 
     // Mouse and held keys. `scale` is pixels to radians.

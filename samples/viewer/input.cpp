@@ -87,7 +87,7 @@ bool Session::handle_key(const std::string& key) {
         return true;
     }
     if (key == "Home") {
-        eye_.frame_all(stage_->extent());
+        eye_.frame_all(stage_->focus(), stage_->extent());
         return true;
     }
     if (key == "R") {
@@ -174,7 +174,7 @@ void Session::export_files() {
 }
 
 void Session::grant(const PanelWish& wish) {
-    if (wish.frame_all) eye_.frame_all(stage_->extent());
+    if (wish.frame_all) eye_.frame_all(stage_->focus(), stage_->extent());
     if (wish.record) toggle_recording();
     if (wish.replay) replaying_ = !replaying_ && !replay_.empty();
     if (wish.export_files) export_files();

@@ -94,7 +94,9 @@ Result<void> Session::load(const SceneRequest& request) {
     nodes_.rebuild(stage_->scene());
     for (const std::string& warning : stage_->source().warnings) report({ErrorCode::unsupported, kNoItem, warning});
     if (!same_scene) {
-        eye_.frame_all(stage_->extent());
+        eye_.frame_all(stage_->focus(), stage_->extent());
+        const std::vector<glm::dvec3>& walk = stage_->source().walk;
+        if (walk.size() > 1) eye_.stand(walk[0], walk[1]);
         culling_camera_ = eye_.camera;
         if (window_) window_->set_title("Crofton: " + stage_->source().name);
     }

@@ -121,8 +121,8 @@ void method(const char* bounds_label, const char* cull_label, Method& value) {
     static constexpr pipeline::BoundsKind kBounds[] = {sphere, aabb, obb_volume, obb_area, obb_perimeter, obb_frustum};
     static constexpr pipeline::CullMode kModes[] = {pipeline::CullMode::none, pipeline::CullMode::flat,
                                                     pipeline::CullMode::tree};
-    combo(bounds_label, value.bounds, std::span(kBounds));
-    combo(cull_label, value.cull, std::span(kModes));
+    combo(bounds_label, value.bounds, std::span<const pipeline::BoundsKind>(kBounds));
+    combo(cull_label, value.cull, std::span<const pipeline::CullMode>(kModes));
 }
 
 void switches(const PanelInput& input, PanelWish& wish) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "picture.hpp"
+#include "pipeline/camera_path.hpp"
 
 namespace crofton::viewer {
 namespace {

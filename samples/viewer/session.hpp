@@ -1,6 +1,7 @@
 // The viewer's state and its turn: events, motion, culling, drawing, user interface, picture.
 #pragma once
 #include <chrono>
+#include <crofton/cull/visible_set.hpp>
 #include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>

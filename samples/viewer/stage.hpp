@@ -35,6 +35,8 @@ class Stage {
     [[nodiscard]] const scene::Scene& scene() const { return source_.scene; }
     [[nodiscard]] const pipeline::Pipeline& pipeline() const { return *pipeline_; }
     [[nodiscard]] const Aabb& extent() const { return extent_; }
+    // Where most instances are: without the far landscape and the odd stray.
+    [[nodiscard]] const Aabb& focus() const { return focus_; }
     [[nodiscard]] std::uint64_t triangle_count() const { return triangle_count_; }
 
   private:
@@ -44,7 +46,7 @@ class Stage {
     std::optional<pipeline::Pipeline> pipeline_;
     Method method_;
     pipeline::PipelineOptions options_;
-    Aabb extent_;
+    Aabb extent_, focus_;
     std::uint64_t triangle_count_ = 0;
     double update_us_ = 0.0;
 };
