@@ -10,8 +10,9 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
         return fail(ErrorCode::invalid_argument, kNoItem, source + ": a map can be chosen in a .wad file only");
     if (kind == "glb" || kind == "gltf") return load_gltf(source, options);
     if (kind == "obj") return load_obj(source, options);
+    if (kind == "wad") return load_wad(source, options);
     return fail(ErrorCode::unsupported, kNoItem,
-                source + ": unknown kind of scene; known are town and files .glb, .gltf and .obj");
+                source + ": unknown kind of scene; known are town and files .glb, .gltf, .obj and .wad");
 }
 
 }  // namespace crofton::assets

@@ -1,8 +1,8 @@
+#include <doctest/doctest.h>
 #include <algorithm>
 #include <assets/scene_source.hpp>
 #include <cmath>
 #include <cstring>
-#include <doctest/doctest.h>
 
 using namespace crofton;
 using assets::load_scene;

@@ -1,3 +1,4 @@
+#include <array>
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
@@ -45,6 +46,15 @@ std::vector<glm::dvec3> box_points(std::mt19937& random, const glm::dvec3& half,
 }  // namespace
 
 TEST_SUITE("fit/fit") {
+    TEST_CASE("a flat triangle whose thickness is nothing but rounding is fitted at once") {
+        // Single float steps up from zero to 1e-16 would be 10^9 exact tests.
+        const std::array<glm::vec3, 3> points = {{{0, 0, 8}, {1, 0, 0}, {0, 1, 0}}};
+        const auto box = fit_obb(std::span<const glm::vec3>(points));
+        REQUIRE(box.has_value());
+        for (const glm::vec3& p : points) CHECK(contains(*box, glm::dvec3(p)));
+        CHECK(volume(*box) < 1e-12);
+    }
+
     TEST_CASE("no points, NaN, infinite or huge points are refused by their first index") {
         CHECK(fit::fit_obb(std::span<const glm::vec3>()).error().code == ErrorCode::empty);
         std::vector<glm::vec3> points(10, glm::vec3(1.0f));

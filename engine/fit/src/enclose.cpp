@@ -1,6 +1,7 @@
 #include "enclose.hpp"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -70,6 +71,12 @@ Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
         // The centre's own rounding may ask for more than a few steps.
         const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
         reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
+        if (contains_along(box, p, k)) return;
+        // Around flat points `needed` may be nothing but rounding, and single steps from zero would take for ever: the
+        // bound of surely_inside says how much is enough.
+        const glm::dvec3 parts = glm::abs(normal * d);
+        const double rounding = 16.0 * kUnit * (parts.x + parts.y + parts.z) / slabs.determinant;
+        reach = std::max(reach, float_below(needed + rounding));
         while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
     });
     return box;

@@ -1,0 +1,117 @@
+#include <doctest/doctest.h>
+#include <assets/scene_source.hpp>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "test_files.hpp"
+
+using namespace crofton;
+using test_files::glb;
+using test_files::gltf_json;
+using test_files::TemporaryFile;
+
+namespace {
+
+Result<assets::SceneSource> load_glb(const std::string& json) {
+    const TemporaryFile file("scene.glb", glb(json));
+    return assets::load_scene(file.path());
+}
+
+std::string message(const Result<assets::SceneSource>& source) {
+    return source ? "loaded" : source.error().message;
+}
+
+bool says(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+const std::string kShared = std::string(CROFTON_SHARED_DATA) + "/scenes/";
+
+}  // namespace
+
+TEST_SUITE("assets/gltf_loader") {
+    TEST_CASE("nodes with NaN, singular, projective or damaged transforms are named") {
+        const std::string flat = message(load_glb(gltf_json("[{\"name\":\"flat\",\"mesh\":0,\"scale\":[1,0,1]}]")));
+        CHECK(says(flat, "scene.glb"));
+        CHECK(says(flat, "node 0 'flat'"));
+        CHECK(says(flat, "singular"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"matrix\":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]}]"))),
+                   "projective"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"rotation\":[0,0,0,0]}]"))), "quaternion"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[1e300,0,0]}]"))), "exceeds"));
+        CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[1e999,0,0]}]")).has_value());
+        CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[NaN,0,0]}]")).has_value());
+    }
+
+    TEST_CASE("cycles, missing nodes, meshes and accessors are named") {
+        CHECK(says(message(load_glb(gltf_json("[{\"children\":[1]},{\"children\":[0],\"mesh\":0}]"))), "ancestor"));
+        CHECK(says(message(load_glb(gltf_json("[{\"children\":[7]}]"))), "node 7"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":3}]"))), "mesh 3"));
+        CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":9,\"count\":3")).has_value());
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":1,\"count\":4000000000"))),
+                   "do not fit"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":1,\"count\":4"))), "do not fit"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":1,\"byteOffset\":4,\"count\":3"))),
+                   "do not fit"));
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":1,\"count\":2"))), "multiple"));
+    }
+
+    TEST_CASE("an index beyond the vertices and a vertex that is not a number are named") {
+        // The floats of the positions read as indices are far beyond three vertices.
+        const std::string far =
+            message(load_glb(gltf_json("[{\"mesh\":0}]", "\"bufferView\":0,\"byteOffset\":12,\"count\":3")));
+        CHECK(says(far, "of 3"));
+        std::string file = glb(gltf_json("[{\"mesh\":0}]"));
+        const float nan = std::numeric_limits<float>::quiet_NaN();
+        std::memcpy(file.data() + file.size() - 44 + 12, &nan, sizeof nan);
+        const TemporaryFile damaged("nan.glb", file);
+        CHECK(says(message(assets::load_scene(damaged.path())), "vertex 1"));
+    }
+
+    TEST_CASE("scenes without triangles and files that are something else are refused") {
+        CHECK(says(message(load_glb(gltf_json("[{\"name\":\"nothing\"}]"))), "nothing to draw"));
+        CHECK_FALSE(load_glb("{}").has_value());
+        const TemporaryFile empty("empty.gltf", "");
+        CHECK_FALSE(assets::load_scene(empty.path()).has_value());
+        const TemporaryFile text("text.glb", "this is no binary glTF file, but it is long enough for a header");
+        CHECK(says(message(assets::load_scene(text.path())), "text.glb"));
+    }
+
+    TEST_CASE("nodes share a mesh, with matrices, translation, rotation and scale, and their parents'") {
+        auto source = load_glb(
+            gltf_json("[{\"children\":[1,2],\"translation\":[0,0,10]},"
+                      "{\"mesh\":0,\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,5,0,0,1]},"
+                      "{\"mesh\":0,\"rotation\":[0,0,0.7071067811865476,0.7071067811865476],\"scale\":[3,1,1]}]"));
+        REQUIRE_MESSAGE(source.has_value(), message(source));
+        scene::Scene& scene = source->scene;
+        scene.update();
+        REQUIRE(scene.instance_count() == 2);
+        CHECK(scene.mesh_count() == 1);
+        const glm::dvec3 a = scene.world(scene.node_of(0)) * glm::dvec3(1, 0, 0);
+        const glm::dvec3 b = scene.world(scene.node_of(1)) * glm::dvec3(1, 0, 0);
+        CHECK(a == glm::dvec3(7, 0, 10));
+        CHECK(glm::length(b - glm::dvec3(0, 3, 10)) < 1e-12);
+    }
+
+    TEST_CASE("real scenes load: a forest of 1.1 million triangles, a city with a palette texture") {
+        if (!std::filesystem::exists(kShared)) return;
+        const auto forest = assets::load_scene(kShared + "stk_black_forest.glb");
+        REQUIRE_MESSAGE(forest.has_value(), message(forest));
+        CHECK(forest->scene.instance_count() == 2933);
+        CHECK(forest->scene.mesh_count() == 204);
+        std::size_t triangles = 0;
+        for (scene::InstanceId i = 0; i < forest->scene.instance_count(); ++i)
+            triangles += forest->scene.mesh(forest->scene.mesh_of(i)).triangle_count();
+        CHECK(triangles > 1'000'000);
+        const auto taxi = assets::load_scene(kShared + "kaykit_city/car_taxi.gltf");
+        REQUIRE_MESSAGE(taxi.has_value(), message(taxi));
+        CHECK(taxi->warnings.empty());
+        // A taxi is yellow: much red and green, little blue.
+        bool yellow = false;
+        for (scene::MeshId m = 0; m < taxi->scene.mesh_count(); ++m)
+            for (const glm::vec3& c : taxi->scene.mesh(m).colors)
+                yellow = yellow || (c.x > 0.5f && c.y > 0.2f && c.z < 0.15f);
+        CHECK(yellow);
+    }
+}

@@ -1,0 +1,103 @@
+#include <doctest/doctest.h>
+#include <assets/scene_source.hpp>
+#include <filesystem>
+
+#include "test_files.hpp"
+
+using namespace crofton;
+using test_files::TemporaryFile;
+
+namespace {
+
+Result<assets::SceneSource> load(const std::string& text) {
+    const TemporaryFile file("shape.obj", text);
+    return assets::load_scene(file.path());
+}
+
+std::string message(const Result<assets::SceneSource>& source) {
+    return source ? "loaded" : source.error().message;
+}
+bool says(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_SUITE("assets/obj_loader") {
+    TEST_CASE("bad lines are named by number, and nothing is loaded") {
+        CHECK(says(message(load("v 0 0 0\nv 1 0 nan\n")), "line 2: vertex 2"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0\n")), "line 2"));
+        CHECK(says(message(load("v 1e99 0 0\n")), "line 1"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")), "line 4: face: vertex 4 of 3"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n")), "vertex 0"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -4\n")), "vertex -4"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nf 1 2\n")), "fewer than three"));
+        CHECK(says(message(load("v 0 0 0\nf 1 x 1\n")), "'x'"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n")), "line 4"));
+        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "nothing to draw"));
+        CHECK(says(message(load("")), "nothing to draw"));
+    }
+
+    TEST_CASE("missing files, folders and unknown kinds of file are refused by name") {
+        CHECK(says(message(assets::load_scene("/nonexistent/a.obj")), "/nonexistent/a.obj: cannot open"));
+        CHECK(says(message(assets::load_scene("shape.fbx")), "unknown kind"));
+        CHECK(says(message(assets::load_scene("shape")), "unknown kind"));
+        const auto folder = std::filesystem::temp_directory_path() / "crofton_folder.obj";
+        std::filesystem::create_directory(folder);
+        CHECK(says(message(assets::load_scene(folder.string())), "folder"));
+        std::filesystem::remove(folder);
+        assets::LoadOptions options;
+        options.map = "MAP01";
+        CHECK(says(message(assets::load_scene("shape.obj", options)), "map"));
+    }
+
+    TEST_CASE("polygons become fans, negative indices count from the end, parts have their own vertices") {
+        const auto source = load(
+            "o quad\nv 0 0 0\nv 2 0 0 \r\nv 2 1 0\nv 0 1 0\nf 1/1/1 2//2 3 4\n"
+            "o tri\nv 5 5 5 0.25 0.5 0.75\nv 6 5 5\nv 5 6 5\nf -3 -2 -1\n");
+        REQUIRE_MESSAGE(source.has_value(), message(source));
+        REQUIRE(source->scene.instance_count() == 2);
+        CHECK(source->scene.mesh(0).triangle_count() == 2);
+        CHECK(source->scene.mesh(1).positions.size() == 3);
+        CHECK(source->scene.mesh(1).colors[0] == glm::vec3(0.25f, 0.5f, 0.75f));
+    }
+
+    TEST_CASE("large meshes are cut into pieces that together hold every triangle once") {
+        std::string text;
+        for (int i = 0; i <= 60; ++i)
+            for (int j = 0; j <= 60; ++j) text += "v " + std::to_string(i) + " 0 " + std::to_string(j) + "\n";
+        for (int i = 0; i < 60; ++i)
+            for (int j = 1; j <= 60; ++j) {
+                const auto at = [&](int a, int b) { return std::to_string(61 * a + b) + " "; };
+                text += "f " + at(i, j) + at(i, j + 1) + at(i + 1, j + 1) + at(i + 1, j) + "\n";
+            }
+        const auto source = load(text);
+        REQUIRE_MESSAGE(source.has_value(), message(source));
+        std::size_t triangles = 0;
+        double area = 0.0;
+        for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
+            const TriangleMesh& mesh = source->scene.mesh(m);
+            CHECK(mesh.triangle_count() <= 512);
+            triangles += mesh.triangle_count();
+            for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+                const glm::vec3 &a = mesh.positions[mesh.indices[t]], &b = mesh.positions[mesh.indices[t + 1]],
+                                &c = mesh.positions[mesh.indices[t + 2]];
+                area += 0.5 * static_cast<double>(std::abs((b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x)));
+            }
+        }
+        CHECK(triangles == 7200);
+        CHECK(area == 3600.0);
+    }
+
+    TEST_CASE("a real dungeon loads") {
+        const std::string path = std::string(CROFTON_SHARED_DATA) + "/scenes/recast_dungeon.obj";
+        if (!std::filesystem::exists(path)) return;
+        const auto source = assets::load_scene(path);
+        REQUIRE_MESSAGE(source.has_value(), message(source));
+        std::size_t triangles = 0;
+        for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m)
+            triangles += source->scene.mesh(m).triangle_count();
+        CHECK(triangles == 10133);
+        CHECK(source->scene.instance_count() > 20);
+    }
+}
