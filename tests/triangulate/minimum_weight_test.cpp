@@ -118,6 +118,50 @@ TEST_SUITE("triangulate/minimum_weight") {
         CHECK(compared > 400);
     }
 
+    TEST_CASE("without time or memory the Delaunay triangulation is returned, and says that it may not be minimal") {
+        std::mt19937_64 random(23);
+        Polygon p;
+        add_star(p, random, {0, 0}, 5.0, 10.0, 300, 0.0);
+        add_star(p, random, {0.5, 0.3}, 0.5, 3.0, 40, 0.0);
+        const auto delaunay = triangulate::triangulate(p, {.method = triangulate::Method::delaunay});
+        const auto minimum = triangulate::triangulate(p);
+        REQUIRE(delaunay.has_value());
+        REQUIRE(minimum.has_value());
+        for (const auto& options : {triangulate::Options{.seconds = 0.0}, triangulate::Options{.bytes = 1000}}) {
+            const auto result = triangulate::triangulate(p, options);
+            REQUIRE(result.has_value());
+            CHECK(result->triangles == delaunay->triangles);
+            CHECK_FALSE(result->optimal);
+            CHECK(result->weight <= minimum->weight * (1.0 + result->gap));
+        }
+    }
+
+    TEST_CASE("the progress callback sees growing shares and can cancel") {
+        std::mt19937_64 random(24);
+        Polygon p;
+        add_star(p, random, {0, 0}, 5.0, 10.0, 2000, 0.0);
+        struct State {
+            double last = -1.0;
+            int calls = 0, allowed = 1 << 30;
+        } state;
+        triangulate::Options options;
+        options.user = &state;
+        options.progress = [](void* user, double fraction) {
+            auto& s = *static_cast<State*>(user);
+            CHECK(fraction >= s.last);
+            CHECK(fraction <= 1.0);
+            s.last = fraction;
+            return ++s.calls < s.allowed;
+        };
+        CHECK(triangulate::triangulate(p, options).has_value());
+        CHECK(state.calls > 10);
+        state = {.allowed = 5};
+        const auto result = triangulate::triangulate(p, options);
+        REQUIRE_FALSE(result.has_value());
+        CHECK(result.error().code == ErrorCode::cancelled);
+        CHECK(state.calls == 5);
+    }
+
     TEST_CASE("agrees with the unpruned programme on real level sectors and glyphs without holes") {
         const std::string folder = std::string(CROFTON_SHARED_DATA) + "/polygons/";
         if (!std::filesystem::exists(folder)) return;

@@ -32,7 +32,7 @@ bool kills(const glm::dvec2& q, const glm::dvec2& y, double turn) {
 
 }  // namespace
 
-bool CandidateFinder::find(const Domain& domain, std::size_t limit, CandidateGraph& graph) {
+bool CandidateFinder::find(const Domain& domain, std::size_t limit, Watch& watch, CandidateGraph& graph) {
     domain_ = &domain;
     mesh_ = &domain.mesh();
     const auto count = static_cast<Index>(mesh_->points.size());
@@ -44,7 +44,7 @@ bool CandidateFinder::find(const Domain& domain, std::size_t limit, CandidateGra
     for (Index p = 0; p < count; ++p) {
         seen_.clear();
         look_from(p);
-        if (graph.destination.size() + seen_.size() > limit) return false;
+        if (graph.destination.size() + seen_.size() > limit || watch.stopped(0.5 * p / count)) return false;
         for (const auto& seen : seen_) {
             graph.destination.push_back(seen.vertex);
             graph.flags.push_back(seen.flags);

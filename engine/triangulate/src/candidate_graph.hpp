@@ -3,6 +3,7 @@
 #include <crofton/core/memory.hpp>
 
 #include "domain.hpp"
+#include "watch.hpp"
 
 namespace crofton::triangulate {
 
@@ -30,8 +31,8 @@ struct CandidateGraph {
 // Finds the candidates by looking from every vertex through the constrained Delaunay triangulation.
 class CandidateFinder {
   public:
-    // False if more than `limit` half-edges would be needed; the graph is then unusable.
-    [[nodiscard]] bool find(const Domain& domain, std::size_t limit, CandidateGraph& graph);
+    // False if more than `limit` half-edges would be needed or the watch stops; the graph is then unusable.
+    [[nodiscard]] bool find(const Domain& domain, std::size_t limit, Watch& watch, CandidateGraph& graph);
 
   private:
     // What is seen from a vertex through mesh half-edge `edge`, between the directions of two visible vertices. The two

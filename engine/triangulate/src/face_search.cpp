@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
 
+constexpr double kSearching = 0.9;  // the share of the work that is done when searching begins, as told to the caller
+
 double total_length(std::span<const glm::dvec2> points, std::span<const Segment> segments) {
     double sum = 0.0;
     for (const Segment& s : segments) {
@@ -22,13 +24,13 @@ double total_length(std::span<const glm::dvec2> points, std::span<const Segment>
 }  // namespace
 
 FaceSearch::Outcome FaceSearch::solve(std::span<const glm::dvec2> points, const CandidateGraph& graph,
-                                      const Faces& faces, Index name, SearchBudget& budget,
+                                      const Faces& faces, Index name, Watch& watch,
                                       Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) {
     if (faces.component_size[name] > kMostPieces) return Outcome::gave_up;
     levels_.resize(kMostPieces + 1);
     extract(points, graph, faces, name, levels_[0]);
-    const Outcome outcome = solve_level(0, budget);
-    if (outcome == Outcome::solved) raise(levels_[0], triangles, diagonals);
+    const Outcome outcome = solve_level(0, watch);
+    if (outcome == Outcome::solved || outcome == Outcome::unproven) raise(levels_[0], triangles, diagonals);
     return outcome;
 }
 
@@ -144,22 +146,23 @@ void FaceSearch::choose(Level& level) {
     });
 }
 
-FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, SearchBudget& budget) {
+FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, Watch& watch) {
     Level& level = levels_[depth];
     find_faces(level.graph, kFixed, level.faces);
     choose(level);
     level.witness.assign(level.graph.half_edge_count(), kNone);
     level.pieces = level.faces.component.size();
-    if (level.pieces > 2) skeleton_.prune(level.points, level.graph, level.certificates);
+    if (level.pieces > 2) skeleton_.prune(level.points, level.graph, level.certificates, watch);
     level.flags = level.graph.flags;
-    bool found = false;
+    bool found = false, proven = true;
     double best = 0.0;
     for (std::size_t i = 0; i < level.choices.size(); ++i) {
-        if (!budget.spend()) return Outcome::gave_up;
+        if (found && watch.stopped_now(kSearching)) return Outcome::unproven;
         level.graph.flags = level.flags;
-        const Outcome outcome = solve_choice(depth, level.choices[i], budget);
+        const Outcome outcome = solve_choice(depth, level.choices[i], watch);
         if (outcome == Outcome::gave_up) return outcome;
-        if (outcome == Outcome::solved) {
+        if (outcome == Outcome::unproven) proven = false;
+        if (outcome == Outcome::solved || outcome == Outcome::unproven) {
             const double weight = total_length(level.points, level.diagonals);
             const double tolerance = (static_cast<double>(level.diagonals.size()) + 8.0) * 0x1p-51 * weight;
             const bool lighter =
@@ -177,10 +180,11 @@ FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, SearchBudget& bud
         level.flags[choice] |= CandidateGraph::kDead;
         level.flags[level.graph.twin[choice]] |= CandidateGraph::kDead;
     }
-    return found ? Outcome::solved : Outcome::infeasible;
+    if (!found) return Outcome::infeasible;
+    return proven ? Outcome::solved : Outcome::unproven;
 }
 
-FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, SearchBudget& budget) {
+FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Watch& watch) {
     Level& level = levels_[depth];
     CandidateGraph& g = level.graph;
     const auto fix = [&](Index h) {
@@ -202,7 +206,7 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Se
     // With all pieces joined the interval programme is the quickest.
     if (level.pieces > 2) {
         level.working_certificates = level.certificates;
-        skeleton_.prune_after(dead_, level.points, g, level.working_certificates);
+        skeleton_.prune_after(dead_, level.points, g, level.working_certificates, watch);
         mark_certain(level);
     }
     level.triangles.clear();
@@ -211,7 +215,7 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Se
         const bool fresh = (g.flags[h] & kFixed) != 0 && (level.flags[h] & kFixed) == 0;
         if (fresh && h < g.twin[h]) level.diagonals.push_back({g.destination[g.twin[h]], g.destination[h]});
     }
-    return solve_rest(depth, budget);
+    return solve_rest(depth, watch);
 }
 
 void FaceSearch::mark_certain(Level& level) const {
@@ -247,10 +251,11 @@ bool FaceSearch::has_crossing(Level& level, Index h) const {
     return false;
 }
 
-FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, SearchBudget& budget) {
+FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, Watch& watch) {
     Level& level = levels_[depth];
     find_faces(level.graph, kFixed, level.faces);
     const auto pieces = static_cast<Index>(level.faces.component.size());
+    Outcome result = Outcome::solved;
     // Simple faces first: they tell at once if this branch has no triangulation.
     program_.start(level.points, level.graph);
     for (Index w = 0; w < pieces; ++w) {
@@ -258,18 +263,23 @@ FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, SearchBudget& budg
         if (w >= level.faces.walk_count()) return Outcome::infeasible;
         const auto walk = level.faces.walk(w);
         if (walk.size() < 3 || !is_outer(level.points, level.graph, walk)) return Outcome::infeasible;
-        if (!(program_.solve(walk) < std::numeric_limits<double>::infinity())) return Outcome::infeasible;
+        // Without a watch: a branch is tried to its end, so that there is always one triangulation.
+        if (!(program_.solve(walk, unhurried_, kSearching) < std::numeric_limits<double>::infinity()))
+            return Outcome::infeasible;
         program_.append(level.triangles, level.diagonals);
     }
     for (Index w = 0; w < pieces; ++w) {
         if (level.faces.component[w] != w || level.faces.component_size[w] == 1) continue;
         if (depth + 1 >= levels_.size()) return Outcome::gave_up;
         extract(level.points, level.graph, level.faces, w, levels_[depth + 1]);
-        const Outcome outcome = solve_level(depth + 1, budget);
-        if (outcome != Outcome::solved) return outcome;
+        const Outcome outcome = solve_level(depth + 1, watch);
+        if (outcome == Outcome::unproven)
+            result = outcome;
+        else if (outcome != Outcome::solved)
+            return outcome;
         raise(levels_[depth + 1], level.triangles, level.diagonals);
     }
-    return Outcome::solved;
+    return result;
 }
 
 }  // namespace crofton::triangulate

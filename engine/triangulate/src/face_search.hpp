@@ -3,10 +3,9 @@
 #include "faces.hpp"
 #include "interval_program.hpp"
 #include "lmt_skeleton.hpp"
+#include "watch.hpp"
 
 namespace crofton::triangulate {
-
-struct SearchBudget;
 
 // At a corner of more than a half-turn every triangulation has an edge on the inner side of either of its sides' lines,
 // for the triangle at that side spans less than a half-turn. Where all candidates there lead to other pieces, one of
@@ -15,13 +14,14 @@ struct SearchBudget;
 // depth.
 class FaceSearch {
   public:
-    enum class Outcome : std::uint8_t { solved, infeasible, gave_up };
+    // `unproven`: time ran out after a triangulation was found; `gave_up`: more pieces than the depth allowed.
+    enum class Outcome : std::uint8_t { solved, unproven, infeasible, gave_up };
     static constexpr std::size_t kMostPieces = 48;
 
     // Triangulates the face that walk or isolated vertex `name` of `faces` stands for. Appends triangles as half-edges
     // of `graph` and all diagonals inside.
     [[nodiscard]] Outcome solve(std::span<const glm::dvec2> points, const CandidateGraph& graph, const Faces& faces,
-                                Index name, SearchBudget& budget, Vector<std::array<Index, 3>>& triangles,
+                                Index name, Watch& watch, Vector<std::array<Index, 3>>& triangles,
                                 Vector<Segment>& diagonals);
 
   private:
@@ -40,9 +40,9 @@ class FaceSearch {
         Vector<Segment> diagonals, best_diagonals;
     };
 
-    [[nodiscard]] Outcome solve_level(std::size_t depth, SearchBudget& budget);
-    [[nodiscard]] Outcome solve_choice(std::size_t depth, Index choice, SearchBudget& budget);
-    [[nodiscard]] Outcome solve_rest(std::size_t depth, SearchBudget& budget);
+    [[nodiscard]] Outcome solve_level(std::size_t depth, Watch& watch);
+    [[nodiscard]] Outcome solve_choice(std::size_t depth, Index choice, Watch& watch);
+    [[nodiscard]] Outcome solve_rest(std::size_t depth, Watch& watch);
     void extract(std::span<const glm::dvec2> points, const CandidateGraph& graph, const Faces& faces, Index name,
                  Level& level);
     void choose(Level& level);
@@ -53,14 +53,10 @@ class FaceSearch {
     Vector<Level> levels_;
     LmtSkeleton skeleton_;
     IntervalProgram program_;
+    Options no_limits_;
+    Watch unhurried_{no_limits_};
     RootSums sums_;
     Vector<Index> members_, option_, dead_;
-};
-
-// How much searching is left; shared by all faces of a polygon.
-struct SearchBudget {
-    std::uint64_t choices = 0;
-    [[nodiscard]] bool spend() { return choices != 0 && choices-- != 0; }
 };
 
 }  // namespace crofton::triangulate

@@ -63,7 +63,7 @@ void IntervalProgram::collect_slots(std::span<const Index> walk) {
     }
 }
 
-double IntervalProgram::solve(std::span<const Index> walk) {
+double IntervalProgram::solve(std::span<const Index> walk, Watch& watch, double fraction) {
     collect_slots(walk);
     const auto count = static_cast<Index>(walk.size());
     // A length has a relative error below 4u (two differences, squares, sum, root; u = 2^-53), a sum of m such terms in
@@ -71,6 +71,7 @@ double IntervalProgram::solve(std::span<const Index> walk) {
     tolerance_ = (count + 8.0) * 0x1p-52;
     for (Index low = count - 1; low-- > 0;) {
         const bool root = low == 0;
+        if (watch.stopped(fraction)) return kInfinity;
         for (Index s = first_[low] + 1; s + 1 < first_[low + 1]; ++s) {
             Slot& slot = slots_[s];
             if (slot.target < low) break;  // targets ascend from low + 1 and then wrap

@@ -6,6 +6,7 @@
 
 #include "candidate_graph.hpp"
 #include "root_sums.hpp"
+#include "watch.hpp"
 
 namespace crofton::triangulate {
 
@@ -18,7 +19,7 @@ class IntervalProgram {
 
     // `walk` holds each corner's outgoing half-edge, in order. Returns the weight of the edges inside, or infinity if
     // the candidates triangulate no such face; the walk must have at least three corners and must outlive append().
-    [[nodiscard]] double solve(std::span<const Index> walk);
+    [[nodiscard]] double solve(std::span<const Index> walk, Watch& watch, double fraction);
     // Appends the triangles of the last solve, as half-edges of the graph whose origins are their corners, and the
     // lengths of the edges inside.
     void append(Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;

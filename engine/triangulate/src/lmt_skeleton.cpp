@@ -15,7 +15,8 @@ void LmtSkeleton::start(std::span<const glm::dvec2> points, CandidateGraph& grap
     if (stamp_.size() < graph.vertex_count()) stamp_.resize(graph.vertex_count(), 0);
 }
 
-void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates) {
+void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates,
+                        Watch& watch) {
     start(points, graph, certificates);
     const auto count = static_cast<Index>(graph.half_edge_count());
     certificates.assign(count, {});
@@ -25,22 +26,23 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
             queued_[h] = 1;
         }
     }
-    run();
+    run(watch);
 }
 
 void LmtSkeleton::prune_after(std::span<const Index> dead, std::span<const glm::dvec2> points, CandidateGraph& graph,
-                              Certificates& certificates) {
+                              Certificates& certificates, Watch& watch) {
     start(points, graph, certificates);
     for (const Index h : dead) kill(h);
-    run();
+    run(watch);
 }
 
-void LmtSkeleton::run() {
+void LmtSkeleton::run(Watch& watch) {
     while (!stack_.empty()) {
         const Index h = stack_.back();
         stack_.pop_back();
         queued_[h] = 0;
-        if (alive(h) && !certify(h)) kill(h);
+        // A stopped watch empties the stack.
+        if (alive(h) && !watch.stopped(0.6) && !certify(h)) kill(h);
     }
 }
 

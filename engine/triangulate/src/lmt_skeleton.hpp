@@ -1,6 +1,7 @@
 // The locally-minimal-triangulation skeleton: which candidates are surely in, which surely out.
 #pragma once
 #include "candidate_graph.hpp"
+#include "watch.hpp"
 
 namespace crofton::triangulate {
 
@@ -16,11 +17,12 @@ class LmtSkeleton {
     };
     using Certificates = Vector<Certificate>;
 
-    // Sets kDead on edges without a certificate until none is left.
-    void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates);
+    // Sets kDead on edges without a certificate until none is left. Stops early, which is right but prunes less, with
+    // the watch.
+    void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates, Watch& watch);
     // The same after some half-edges (one of each edge) have died, given the certificates from before.
     void prune_after(std::span<const Index> dead, std::span<const glm::dvec2> points, CandidateGraph& graph,
-                     Certificates& certificates);
+                     Certificates& certificates, Watch& watch);
     // Sets kCertain on living edges that no living edge crosses. `mesh` is the constrained Delaunay triangulation that
     // the candidates of this graph, just pruned, come from.
     void mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph);
@@ -37,7 +39,7 @@ class LmtSkeleton {
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
     void start(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates);
     void kill(Index h);
-    void run();
+    void run(Watch& watch);
     void walk(Index h);
     void cross_within_triangles();
 

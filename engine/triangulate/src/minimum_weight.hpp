@@ -11,12 +11,18 @@ namespace crofton::triangulate {
 
 class MinimumWeight {
   public:
-    // Fills everything but `triangles` beyond what it finds; false if a budget ran out before any triangulation was
-    // found.
+    // False if a budget ran out before there was a triangulation. Errors: cancelled.
     [[nodiscard]] Result<bool> solve(const Domain& domain, const Options& options, Triangulation& result);
+    // The proven bound on how much heavier than the minimum a triangulation of the last domain with this weight is.
+    [[nodiscard]] double gap_of(double weight) const {
+        return lower_bound_ > 0.0 ? weight / lower_bound_ - 1.0 : std::numeric_limits<double>::infinity();
+    }
 
   private:
-    void write(const Domain& domain, Triangulation& result);
+    [[nodiscard]] FaceSearch::Outcome solve_face(std::span<const glm::dvec2> points, Index name, Watch& watch,
+                                                 double fraction);
+    [[nodiscard]] double face_lower_bound(std::span<const glm::dvec2> points, Index name);
+    void finish(const Domain& domain, bool complete, Triangulation& result);
 
     CandidateGraph graph_;
     CandidateFinder finder_;
@@ -27,6 +33,9 @@ class MinimumWeight {
     FaceSearch search_;
     Vector<std::array<Index, 3>> corners_;
     Vector<Segment> diagonals_;
+    Vector<double> lengths_;
+    double lower_bound_ = 0.0;
+    bool proven_ = true;
 };
 
 }  // namespace crofton::triangulate

@@ -57,6 +57,7 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
         if (*solved) return {};
     }
     write(workspace_->domain, result);
+    if (options.method == Method::minimum_weight) result.gap = workspace_->minimum_weight.gap_of(result.weight);
     return {};
 }
 

@@ -5,6 +5,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/polygon.hpp>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 namespace crofton::triangulate {
@@ -13,6 +14,14 @@ enum class Method : std::uint8_t { ear, delaunay, minimum_weight };
 
 struct Options {
     Method method = Method::minimum_weight;
+    // minimum_weight only. When the time is over or candidates would need more memory than this, the best triangulation
+    // found so far is returned, at worst the constrained Delaunay one, with `optimal` false and a proven `gap`.
+    double seconds = std::numeric_limits<double>::infinity();
+    std::size_t bytes = std::numeric_limits<std::size_t>::max();
+    // Called now and then with the share of the work done, between 0 and 1; returning false ends the call with the
+    // error `cancelled`.
+    bool (*progress)(void* user, double fraction) = nullptr;
+    void* user = nullptr;
 };
 
 // Triangles hold indices into polygon.points, counter-clockwise. Conforming: every vertex is used, collinear ones too,
