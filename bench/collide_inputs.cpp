@@ -43,7 +43,7 @@ BoxPairs random_pairs(std::size_t count) {
 
 std::vector<Obb> crowd(std::size_t count) {
     Random random(7);
-    const double side = 3.1 * std::cbrt(static_cast<double>(count));
+    const double side = 2.71 * std::cbrt(static_cast<double>(count));
     std::vector<Obb> boxes;
     for (std::size_t i = 0; i < count; ++i) boxes.push_back(box_at(random, uniform_vector(random, 0.0, side)));
     return boxes;

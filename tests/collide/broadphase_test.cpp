@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/obb_obb.hpp>
+#include <crofton/core/thread_pool.hpp>
 #include <limits>
 #include <vector>
 
@@ -103,6 +104,36 @@ TEST_SUITE("collide/broadphase") {
         CHECK_FALSE(broadphase.pairs().empty());
         CHECK(same(broadphase.pairs(), brute_force(boxes, filters)));
         CHECK(broadphase.pairs().size() < brute_force(boxes).size());
+    }
+
+    TEST_CASE(
+        "many sizes in many places, from one box to thousands: all pairs, and the same with any number of threads") {
+        std::mt19937_64 random(5);
+        ThreadPool pool(3);
+        for (const int count : {1, 15, 16, 17, 256, 257, 4097}) {
+            std::vector<Obb> boxes = random_boxes(random, count, 10.0);
+            for (std::size_t i = 0; i < boxes.size(); i += 7) boxes[i].half_extents *= std::exp2(float(i % 8));
+            for (std::size_t i = 3; i < boxes.size(); i += 9) boxes[i].half_extents *= 0.01f;
+            Broadphase serial, parallel;
+            REQUIRE(serial.update(boxes).has_value());
+            REQUIRE(parallel.update(boxes, {}, pool).has_value());
+            CHECK(same(serial.pairs(), brute_force(boxes)));
+            CHECK(same(serial.pairs(), parallel.pairs()));
+            CHECK(serial.statistics().boxes.hits == serial.pairs().size());
+        }
+    }
+
+    TEST_CASE("pairs of bounds hold all pairs of boxes, near and far from the origin") {
+        std::mt19937_64 random(6);
+        for (const double place : {0.0, 1e7, -1e15}) {
+            std::vector<Obb> boxes = random_boxes(random, 500, 5.0);
+            for (Obb& box : boxes) box.center += glm::dvec3(place, 0.0, place);
+            Broadphase bounds({.exact_boxes = false}), exact;
+            REQUIRE(bounds.update(boxes).has_value());
+            REQUIRE(exact.update(boxes).has_value());
+            CHECK(std::ranges::includes(bounds.pairs(), exact.pairs()));
+            CHECK(same(exact.pairs(), brute_force(boxes)));
+        }
     }
 
     TEST_CASE("frame after frame of moving boxes: all pairs, in order, and who began, stayed and ended") {

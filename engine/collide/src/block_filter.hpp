@@ -1,6 +1,6 @@
 // The float filter over blocks of box pairs: what kernel files and the code around them share.
 #pragma once
-#include <crofton/collide/obb_batch.hpp>
+#include <crofton/collide/box_block.hpp>
 
 namespace crofton::collide {
 

@@ -1,7 +1,7 @@
 // What the SIMD traversals of a pair of mesh trees share with the exact code around them.
 #pragma once
-#include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/core/function_ref.hpp>
+#include <crofton/tree/mesh_layout.hpp>
 
 namespace crofton::collide {
 

@@ -6,22 +6,12 @@
 #include <crofton/core/assert.hpp>
 
 #include "block_filter.hpp"
+#include "box_lanes.hpp"
 
 namespace crofton::collide {
 namespace {
 
 constexpr std::uint32_t kAllLanes = (1u << kBoxBlock) - 1u;
-
-void put_shape(const Obb& box, std::size_t lane, BoxBlock& block) {
-    for (int k = 0; k < 3; ++k) {
-        block.half[k][lane] = box.half_extents[k];
-        for (int i = 0; i < 3; ++i) block.axes[k][i][lane] = box.axes[k][i];
-    }
-}
-
-void put_center(const glm::dvec3& center, std::size_t lane, BoxBlock& block) {
-    for (int i = 0; i < 3; ++i) block.center[i][lane] = static_cast<float>(center[i]);
-}
 
 // Writes the answers of up to sixteen pairs; `box(side, lane)` gives the boxes of those that are still open.
 template <class Boxes>

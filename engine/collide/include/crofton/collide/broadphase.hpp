@@ -1,6 +1,7 @@
 // Which of many moving boxes meet?
 #pragma once
-#include <compare>
+#include <crofton/collide/obb_batch.hpp>
+#include <crofton/collide/pair.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
@@ -10,12 +11,6 @@
 #include <span>
 
 namespace crofton::collide {
-
-// Indices into the caller's boxes, first < second; ordered by first, then second.
-struct Pair {
-    std::uint32_t first = 0, second = 0;
-    auto operator<=>(const Pair&) const = default;
-};
 
 // Two items are tested iff each one's layers meet what the other collides with.
 struct Filter {
@@ -34,10 +29,11 @@ struct BroadphaseOptions {
 struct BroadphaseStatistics {
     std::uint64_t bound_pairs =
         0;  // pairs whose axis-aligned bounds meet and whose filters pass: given to the exact test
-    std::uint64_t box_pairs = 0;  // of those, pairs listed
-    std::uint64_t nodes_tested = 0;
-    std::uint32_t rejected = 0;  // items whose box is invalid
-    bool rebuilt = false;        // the order of the items was made anew in this update
+    std::uint64_t box_pairs = 0;   // of those, pairs listed
+    std::uint64_t leaf_pairs = 0;  // pairs of leaves of sixteen that were compared
+    BatchStatistics boxes;         // how the exact test decided, by group of axes
+    std::uint32_t rejected = 0;    // items whose box is invalid
+    bool rebuilt = false;          // the order of the items was made anew in this update
 };
 
 // Keeps, between updates, an order of the items in which neighbours in space are neighbours in memory; it is made anew
@@ -52,7 +48,8 @@ class Broadphase {
     // Finds all pairs of boxes that meet (exactly; touching counts) and that `filters` let pass. boxes[i] is the same
     // item as in the update before; items may be added at the end or dropped from it. `filters` is empty, which lets
     // all pass, or has one entry a box. A box that validate(Obb) refuses meets nothing and is listed in rejected().
-    // Errors: filters of another size; 2^32 − 1 boxes or more; max_pairs exceeded (no pairs are kept then).
+    // Allocates only where more boxes or pairs than ever before need it. Errors: filters of another size; 2^32 − 1
+    // boxes or more; max_pairs exceeded (no pairs are kept then).
     Result<void> update(std::span<const Obb> boxes, std::span<const Filter> filters = {},
                         Executor& executor = serial_executor());
 

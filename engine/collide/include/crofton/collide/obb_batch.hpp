@@ -1,6 +1,7 @@
 // Many pairs of boxes at once: the exact answers of intersects(Obb, Obb), sixteen pairs to a step.
 #pragma once
-#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/box_block.hpp>
+#include <crofton/collide/pair.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <cstdint>
@@ -17,16 +18,6 @@ struct BatchStatistics {
     std::uint64_t refined = 0;  // of all: pairs that float could not decide, done in double or exactly
 
     BatchStatistics& operator+=(const BatchStatistics& other);
-};
-
-inline constexpr std::size_t kBoxBlock = 16;
-
-// Sixteen boxes side by side in float, centres relative to an origin; what the filter reads. 1 KiB.
-struct alignas(64) BoxBlock {
-    float center[3][kBoxBlock];
-    float axes[3][3][kBoxBlock];  // [k][i]: component i of axis k
-    float half[3][kBoxBlock];
-    float deviation[kBoxBlock];  // of the axes from orthonormal; NaN for a box that is not finite
 };
 
 // Boxes packed for repeated use. The caller's boxes are kept by reference: pairs that float cannot decide are decided

@@ -1,0 +1,43 @@
+// Axis-aligned bounds in blocks of sixteen and the implicit tree over them: what the broadphase's kernels share with
+// it.
+#pragma once
+#include <crofton/collide/box_block.hpp>
+#include <crofton/collide/pair.hpp>
+#include <crofton/core/function_ref.hpp>
+
+namespace crofton::collide {
+
+// Closed bounds; an empty lane has low > high and meets nothing.
+struct alignas(64) BoundBlock {
+    float low[3][kBoxBlock];
+    float high[3][kBoxBlock];
+};
+
+inline constexpr std::size_t kMaxLevels = 9;  // 16^9 > 2^32
+
+// levels[0] holds the items' bounds; lane l of block b of levels[k + 1] bounds block 16 b + l of levels[k].
+struct BoundTree {
+    const BoundBlock* levels[kMaxLevels];
+    std::size_t sizes[kMaxLevels];  // blocks
+    std::size_t level_count;
+};
+
+// Bounds of sixteen boxes, rounded outward. Returns the lanes that need a closer look: not finite, not orthonormal to
+// 0.9e-4, negative or beyond 1e30.
+std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds);
+
+// Bounds of blocks [begin, end) of one level, into the lanes of the level above.
+void bound_blocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, BoundBlock* above);
+
+// Room for found pairs of slots; `grow` is called when fewer than 256 are left, returns false to stop.
+struct SlotPairs {
+    Pair* data = nullptr;
+    std::size_t count = 0, capacity = 0;
+    std::uint64_t leaf_pairs = 0;
+};
+using GrowPairs = FunctionRef<bool(SlotPairs&)>;
+
+// All pairs of slots (first's leaf ≤ second's leaf) whose bounds meet and whose first lies in leaves [begin, end).
+void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
+
+}  // namespace crofton::collide

@@ -1,0 +1,30 @@
+// Found pairs of slots, turned into a sorted list of pairs of items.
+#pragma once
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/core/memory.hpp>
+#include <span>
+
+namespace crofton::collide {
+
+// A counting sort by the first item, then a small sort of each item's partners. Use: begin, count each part, place, add
+// each part, sort.
+class PairList {
+  public:
+    void begin(std::size_t item_count);
+    // Rewrites the pairs of slots as pairs of items in order; a pair that the filters refuse becomes {0, 0}.
+    void count(std::span<Pair> pairs, std::span<const std::uint32_t> items, std::span<const Filter> filters);
+    void place();
+    void add(std::span<const Pair> pairs);
+    void sort(Vector<Pair>& sorted);
+
+  private:
+    Vector<std::uint64_t> place_;  // by item: how many, then where the next goes
+    Vector<std::uint32_t> partners_;
+    std::uint64_t total_ = 0;
+};
+
+// Merges two sorted lists: what is only in `now`, in both, and only in `before`.
+void compare_pairs(std::span<const Pair> before, std::span<const Pair> now, Vector<Pair>& began, Vector<Pair>& stayed,
+                   Vector<Pair>& ended);
+
+}  // namespace crofton::collide

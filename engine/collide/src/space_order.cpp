@@ -1,0 +1,115 @@
+#include "space_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <utility>
+
+namespace crofton::collide {
+namespace {
+
+constexpr std::size_t kSamples = 256;
+constexpr int kMortonBits = 9;  // per axis
+constexpr int kClassBits = 3;
+
+bool is_finite(const Obb& box) {
+    return std::isfinite(box.center.x) && std::isfinite(box.center.y) && std::isfinite(box.center.z) &&
+           std::isfinite(box.half_extents.x) && std::isfinite(box.half_extents.y) && std::isfinite(box.half_extents.z);
+}
+
+// Sorted values of `measure` over an even sample of the boxes that are finite; empty when there are none.
+template <class Values, class Measure>
+void sample(std::span<const Obb> boxes, Values& values, Measure measure) {
+    values.clear();
+    const std::size_t step = std::max<std::size_t>(1, boxes.size() / kSamples);
+    for (std::size_t i = 0; i < boxes.size() && values.size() < kSamples; i += step)
+        if (is_finite(boxes[i])) values.push_back(measure(boxes[i]));
+    std::sort(values.begin(), values.end());
+}
+
+double size_of(const Obb& box) {
+    return static_cast<double>(box.half_extents.x) + static_cast<double>(box.half_extents.y) +
+           static_cast<double>(box.half_extents.z);
+}
+
+std::uint32_t spread_bits(std::uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+struct FixedSample {
+    std::array<double, kSamples> values;
+    std::size_t count = 0;
+    void clear() { count = 0; }
+    void push_back(double value) { values[count++] = value; }
+    [[nodiscard]] std::size_t size() const { return count; }
+    auto begin() { return values.begin(); }
+    auto end() { return values.begin() + static_cast<std::ptrdiff_t>(count); }
+};
+
+}  // namespace
+
+glm::dvec3 middle_of(std::span<const Obb> boxes) {
+    glm::dvec3 middle(0.0);
+    FixedSample values;
+    for (int i = 0; i < 3; ++i) {
+        sample(boxes, values, [&](const Obb& box) { return box.center[i]; });
+        if (values.count > 0) middle[i] = std::clamp(values.values[values.count / 2], -kMaxCoordinate, kMaxCoordinate);
+    }
+    return middle;
+}
+
+void SpaceOrder::sort(std::span<const Obb> boxes) {
+    FixedSample values;
+    glm::dvec3 low(0.0), scale(0.0);
+    constexpr double kCells = 1 << kMortonBits;
+    for (int i = 0; i < 3; ++i) {
+        sample(boxes, values, [&](const Obb& box) { return box.center[i]; });
+        if (values.count == 0) break;
+        // Between the 2nd and the 98th percentile, widened to hold an even spread: a few far boxes share the outermost
+        // cells.
+        const double from = values.values[values.count / 50], to = values.values[values.count - 1 - values.count / 50];
+        const double margin = 0.025 * (to - from);
+        low[i] = from - margin;
+        scale[i] = to > from ? kCells / (to - from + 2.0 * margin) : 0.0;
+    }
+    sample(boxes, values, size_of);
+    const double median = values.count > 0 ? values.values[values.count / 2] : 1.0;
+
+    keyed_.resize(boxes.size());
+    other_.resize(boxes.size());
+    for (std::size_t n = 0; n < boxes.size(); ++n) {
+        const Obb& box = boxes[n];
+        std::uint32_t key = 0;
+        if (is_finite(box)) {
+            std::uint32_t cell[3];
+            for (int i = 0; i < 3; ++i)
+                cell[i] =
+                    static_cast<std::uint32_t>(std::clamp((box.center[i] - low[i]) * scale[i], 0.0, kCells - 1.0));
+            double limit = 4.0 * median;
+            std::uint32_t size_class = 0;
+            for (const double size = size_of(box); size >= limit && size_class + 1 < (1u << kClassBits); limit *= 4.0)
+                ++size_class;
+            key = size_class << (3 * kMortonBits) | spread_bits(cell[2]) << 2 | spread_bits(cell[1]) << 1 |
+                  spread_bits(cell[0]);
+        }
+        keyed_[n] = {key, static_cast<std::uint32_t>(n)};
+    }
+    constexpr int kDigit = 10;  // three passes make the 30 bits
+    for (int shift = 0; shift < 30; shift += kDigit) {
+        std::array<std::uint32_t, 1u << kDigit> place{};
+        const auto digit = [shift](const Keyed& k) { return k.key >> shift & ((1u << kDigit) - 1u); };
+        for (const Keyed& k : keyed_) ++place[digit(k)];
+        std::uint32_t sum = 0;
+        for (std::uint32_t& p : place) sum += std::exchange(p, sum);
+        for (const Keyed& k : keyed_) other_[place[digit(k)]++] = k;
+        std::swap(keyed_, other_);
+    }
+    items_.resize(boxes.size());
+    for (std::size_t n = 0; n < boxes.size(); ++n) items_[n] = keyed_[n].item;
+}
+
+}  // namespace crofton::collide
