@@ -52,6 +52,8 @@ void all_pairs(benchmark::State& state, bool exact) {
         const auto result = broadphase.update(boxes);
         if (!result) state.SkipWithError(result.error().message.c_str());
     }
+    state.counters["leaf pairs/leaf"] =
+        16.0 * static_cast<double>(broadphase.statistics().leaf_pairs) / static_cast<double>(boxes.size());
     state.counters["pairs/box"] = static_cast<double>(broadphase.pairs().size()) / static_cast<double>(boxes.size());
 }
 

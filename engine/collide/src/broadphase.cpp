@@ -1,3 +1,4 @@
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -88,6 +89,11 @@ void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf,
     const std::size_t begin = leaf * kBoxBlock, count = std::min(kBoxBlock, items.size() - begin);
     for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
         const Obb& box = boxes[items[begin + std::min(lane, count - 1)]];
+        // Neighbours in space lie anywhere in memory: ask for the leaf after next.
+        const char* ahead =
+            reinterpret_cast<const char*>(&boxes[items[std::min(begin + lane + 2 * kBoxBlock, items.size() - 1)]]);
+        hwy::Prefetch(ahead);
+        hwy::Prefetch(ahead + sizeof(Obb) - 1);
         put_center(box.center - origin, lane, block);
         put_shape(box, lane, block);
     }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <crofton/collide/box_block.hpp>
 #include <glm/common.hpp>
 #include <utility>
 
@@ -12,6 +14,7 @@ namespace {
 constexpr std::size_t kSamples = 256;
 constexpr int kMortonBits = 9;  // per axis
 constexpr int kClassBits = 3;
+constexpr std::size_t kChunk = 4096;  // of the curve that is arranged anew
 
 bool is_finite(const Obb& box) {
     return std::isfinite(box.center.x) && std::isfinite(box.center.y) && std::isfinite(box.center.z) &&
@@ -109,7 +112,57 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
         std::swap(keyed_, other_);
     }
     items_.resize(boxes.size());
-    for (std::size_t n = 0; n < boxes.size(); ++n) items_[n] = keyed_[n].item;
+    for (std::size_t begin = 0; begin < boxes.size(); begin += kChunk) {
+        const std::size_t count = std::min(kChunk, boxes.size() - begin);
+        arrange({keyed_.data() + begin, count}, boxes, low, {items_.data() + begin, count});
+    }
+}
+
+// Halves ranges along the axis in which their centres spread most, down to a leaf: squarer leaves than the curve's,
+// which jumps. Cuts are at powers of two, so that blocks of every level hold whole subtrees.
+void SpaceOrder::arrange(std::span<const Keyed> chunk, std::span<const Obb> boxes, const glm::dvec3& origin,
+                         std::span<std::uint32_t> items) {
+    struct Place {
+        float center[3];
+        std::uint32_t item;
+    };
+    struct Range {
+        std::size_t begin, end;
+    };
+    std::array<Place, kChunk> places;
+    for (std::size_t n = 0; n < chunk.size(); ++n) {
+        const Obb& box = boxes[chunk[n].item];
+        places[n].item = chunk[n].item;
+        for (int i = 0; i < 3; ++i)
+            places[n].center[i] = is_finite(box) ? static_cast<float>(box.center[i] - origin[i]) : 0.0f;
+    }
+    std::array<Range, 32> stack;
+    std::size_t height = 0;
+    stack[height++] = {0, chunk.size()};
+    while (height > 0) {
+        const Range range = stack[--height];
+        if (range.end - range.begin <= kBoxBlock) continue;
+        const auto begin = places.begin() + static_cast<std::ptrdiff_t>(range.begin);
+        const auto end = places.begin() + static_cast<std::ptrdiff_t>(range.end);
+        std::size_t axis = 0;
+        float widest = -1.0f;
+        for (std::size_t i = 0; i < 3; ++i) {
+            float least = begin->center[i], most = least;
+            for (auto p = begin; p != end; ++p) {
+                least = std::min(least, p->center[i]);
+                most = std::max(most, p->center[i]);
+            }
+            if (most - least > widest) widest = most - least, axis = i;
+        }
+        const std::size_t cut = range.begin + std::bit_floor(range.end - range.begin - 1);
+        std::nth_element(
+            begin, places.begin() + static_cast<std::ptrdiff_t>(cut), end, [axis](const Place& a, const Place& b) {
+                return a.center[axis] < b.center[axis] || (a.center[axis] == b.center[axis] && a.item < b.item);
+            });
+        stack[height++] = {range.begin, cut};
+        stack[height++] = {cut, range.end};
+    }
+    for (std::size_t n = 0; n < chunk.size(); ++n) items[n] = places[n].item;
 }
 
 }  // namespace crofton::collide

@@ -12,9 +12,9 @@ namespace crofton::collide {
 
 class SpaceOrder {
   public:
-    // Boxes by size class, then along a Morton curve. A box at least four times as large as the median comes after
-    // those of lesser classes, so that it does not widen the bounds of its small neighbours. Invalid boxes come
-    // somewhere.
+    // Boxes by size class, then along a Morton curve, arranged anew within stretches of it. A box at least four times
+    // as large as the median comes after those of lesser classes, so that it does not widen the bounds of its small
+    // neighbours. Invalid boxes come somewhere.
     void sort(std::span<const Obb> boxes);
     [[nodiscard]] std::span<const std::uint32_t> items() const { return items_; }  // by slot
 
@@ -22,6 +22,9 @@ class SpaceOrder {
     struct Keyed {
         std::uint32_t key, item;
     };
+    static void arrange(std::span<const Keyed> chunk, std::span<const Obb> boxes, const glm::dvec3& origin,
+                        std::span<std::uint32_t> items);
+
     Vector<std::uint32_t> items_;
     Vector<Keyed> keyed_, other_;
 };
