@@ -164,7 +164,7 @@ bool Broadphase::State::collect(Executor& executor) {
     std::uint64_t total = 0;
     for (const Worker& worker : workers) {
         total += worker.pairs.count;
-        statistics.leaf_pairs += worker.pairs.leaf_pairs;
+        statistics.nodes_tested += worker.pairs.leaf_pairs;
     }
     return !too_many && total <= options.max_pairs;
 }

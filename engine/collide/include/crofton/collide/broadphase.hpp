@@ -30,7 +30,7 @@ struct BroadphaseStatistics {
     std::uint64_t bound_pairs =
         0;  // pairs whose axis-aligned bounds meet and whose filters pass: given to the exact test
     std::uint64_t box_pairs = 0;   // of those, pairs listed
-    std::uint64_t leaf_pairs = 0;  // pairs of leaves of sixteen that were compared
+    std::uint64_t nodes_tested = 0;  // pairs of leaves of sixteen that were compared
     BatchStatistics boxes;         // how the exact test decided, by group of axes
     std::uint32_t rejected = 0;    // items whose box is invalid
     bool rebuilt = false;          // the order of the items was made anew in this update
