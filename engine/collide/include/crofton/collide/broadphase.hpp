@@ -29,11 +29,11 @@ struct BroadphaseOptions {
 struct BroadphaseStatistics {
     std::uint64_t bound_pairs =
         0;  // pairs whose axis-aligned bounds meet and whose filters pass: given to the exact test
-    std::uint64_t box_pairs = 0;   // of those, pairs listed
+    std::uint64_t box_pairs = 0;     // of those, pairs listed
     std::uint64_t nodes_tested = 0;  // pairs of leaves of sixteen that were compared
-    BatchStatistics boxes;         // how the exact test decided, by group of axes
-    std::uint32_t rejected = 0;    // items whose box is invalid
-    bool rebuilt = false;          // the order of the items was made anew in this update
+    BatchStatistics boxes;           // how the exact test decided, by group of axes
+    std::uint32_t rejected = 0;      // items whose box is invalid
+    bool rebuilt = false;            // the order of the items was made anew in this update
 };
 
 // Keeps, between updates, an order of the items in which neighbours in space are neighbours in memory; it is made anew

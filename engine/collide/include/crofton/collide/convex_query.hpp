@@ -1,0 +1,63 @@
+// How far apart two convex bodies are, how deep they overlap, where they touch, and when they will.
+#pragma once
+#include <crofton/collide/shapes.hpp>
+#include <optional>
+
+namespace crofton::collide {
+
+struct Distance {
+    double distance = 0.0;  // 0 when they meet
+    glm::dvec3 on_a{0.0}, on_b{0.0};
+};
+// Gilbert, Johnson, Keerthi 1988, in double: within 1e-9 of the bodies' size.
+[[nodiscard]] Distance distance(const Convex& a, const Convex& b);
+[[nodiscard]] Distance distance(const Obb& a, const Obb& b);
+
+// The shortest motion of b that ends the overlap is depth · axis (axis of unit length, pointing from a to b); negative
+// depth: a gap, by which the bodies are at least apart. Over the separating axes of the two bodies: exact for the depth
+// up to rounding.
+struct Penetration {
+    double depth = 0.0;
+    glm::dvec3 axis{0.0};
+};
+[[nodiscard]] Penetration penetration(const Convex& a, const Convex& b);
+[[nodiscard]] Penetration penetration(const Obb& a, const Obb& b);
+// The half-space's surface pushes the box out along its normal.
+[[nodiscard]] Penetration penetration(const Plane& half_space, const Convex& body);
+
+struct ContactPoint {
+    glm::dvec3 position{0.0};  // midway between the surfaces
+    double depth = 0.0;        // ≥ 0
+};
+struct Manifold {
+    glm::dvec3 normal{0.0};  // unit, from a to b
+    double depth = 0.0;
+    int count = 0;  // 0 when the bodies do not meet
+    ContactPoint points[8];
+};
+// Where two boxes touch: the incident face clipped against the reference face (Sutherland, Hodgman), or the nearest
+// points of two edges. At most eight points, ordered around the reference face from its first corner: the same input
+// gives the same order. Boxes that meet exactly, but by less than rounding tells, give one point at least.
+[[nodiscard]] Manifold contact_manifold(const Obb& a, const Obb& b);
+[[nodiscard]] Manifold contact_manifold(const Convex& a, const Convex& b);  // one point, at the deepest place
+[[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box);
+
+// Constant linear and angular velocity (rad per unit time) about `pivot`, which moves along.
+struct Motion {
+    glm::dvec3 velocity{0.0};
+    glm::dvec3 spin{0.0};
+    glm::dvec3 pivot{0.0};
+};
+[[nodiscard]] Convex moved(const Convex& body, const Motion& motion, double time);
+
+struct Impact {
+    double time = 0.0;
+    Distance contact;  // at that time
+};
+// The first time in [0, duration] at which the bodies are closer than `tolerance` > 0, by conservative advancement
+// (Mirtich 1996): at the time returned they are, and at no earlier time do they meet. Nothing when that does not
+// happen.
+[[nodiscard]] std::optional<Impact> time_of_impact(const Convex& a, const Motion& motion_a, const Convex& b,
+                                                   const Motion& motion_b, double duration, double tolerance);
+
+}  // namespace crofton::collide

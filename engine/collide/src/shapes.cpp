@@ -1,0 +1,70 @@
+#include <cmath>
+#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/shapes.hpp>
+#include <glm/geometric.hpp>
+
+namespace crofton::collide {
+namespace {
+
+glm::dvec3 unit_or_zero(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 ? v / length : glm::dvec3(0.0);
+}
+
+bool is_finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+Convex convex(const Obb& box) {
+    Convex body;
+    for (const glm::dvec3& corner : corners(box)) body.points[body.point_count++] = corner;
+    for (int k = 0; k < 3; ++k) {
+        body.edges[body.edge_count++] = glm::dvec3(box.axes[k]);
+        body.normals[body.normal_count++] =
+            unit_or_zero(glm::cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3])));
+    }
+    return body;
+}
+
+Convex convex(const Sphere& sphere) {
+    Convex body;
+    body.points[body.point_count++] = sphere.center;
+    body.radius = sphere.radius;
+    return body;
+}
+
+Convex convex(const Capsule& capsule) {
+    Convex body;
+    body.points[body.point_count++] = capsule.begin;
+    body.points[body.point_count++] = capsule.end;
+    body.edges[body.edge_count++] = unit_or_zero(capsule.end - capsule.begin);
+    body.radius = capsule.radius;
+    return body;
+}
+
+Convex convex(const Triangle& triangle) {
+    Convex body;
+    for (std::size_t k = 0; k < 3; ++k) {
+        body.points[body.point_count++] = triangle[k];
+        body.edges[body.edge_count++] = unit_or_zero(triangle[(k + 1) % 3] - triangle[k]);
+    }
+    body.normals[body.normal_count++] = unit_or_zero(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+    return body;
+}
+
+bool intersects(const Obb& box, const Sphere& sphere) {
+    if (!is_finite(sphere.center) || !(sphere.radius >= 0.0) || !validate(box)) return false;
+    return contains(box, sphere.center) || distance(convex(box), convex(sphere)).distance <= 0.0;
+}
+
+bool intersects(const Obb& box, const Capsule& capsule) {
+    if (!is_finite(capsule.begin) || !is_finite(capsule.end) || !(capsule.radius >= 0.0) || !validate(box))
+        return false;
+    // A segment is a triangle without area: its core is decided exactly.
+    if (intersects(box, Triangle{capsule.begin, capsule.end, capsule.end})) return true;
+    return distance(convex(box), convex(capsule)).distance <= 0.0;
+}
+
+}  // namespace crofton::collide

@@ -1,0 +1,221 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/obb_obb.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+Obb cube(const glm::dvec3& center, float half = 1.0f) {
+    return {center, glm::mat3(1.0f), glm::vec3(half)};
+}
+
+// How far a point is outside a box, along its face normals: ≤ 0 inside.
+double outside(const Obb& box, const glm::dvec3& p) {
+    double worst = -1e300;
+    for (int k = 0; k < 3; ++k)
+        worst =
+            std::max(worst, std::abs(glm::dot(glm::dvec3(box.axes[k]), p - box.center)) - double(box.half_extents[k]));
+    return worst;
+}
+
+Obb parted(Obb b, const glm::dvec3& motion) {
+    b.center += motion;
+    return b;
+}
+
+}  // namespace
+
+TEST_SUITE("collide/convex_query") {
+    TEST_CASE("points on top of each other, bodies without extent and coincident boxes have answers") {
+        const Convex point = convex(Sphere{{1.0, 2.0, 3.0}, 0.0});
+        CHECK(distance(point, point).distance == 0.0);
+        CHECK(penetration(point, point).depth == 0.0);
+        const Convex ball = convex(Sphere{{1.0, 2.0, 3.0}, 0.5});
+        CHECK(penetration(ball, ball).depth == doctest::Approx(1.0));
+        CHECK(contact_manifold(ball, ball).count == 1);
+        const Obb box = cube({});
+        CHECK(penetration(box, box).depth == doctest::Approx(2.0));
+        CHECK(distance(box, box).distance == 0.0);
+        CHECK(contact_manifold(box, box).count >= 1);
+        Obb flat = cube({}, 0.0f);
+        CHECK(contact_manifold(flat, flat).count == 1);
+        CHECK_FALSE(time_of_impact(point, {}, convex(cube({9.0, 0.0, 0.0})), {}, 1.0, 1e-6).has_value());
+    }
+
+    TEST_CASE("distances known by hand: faces, edges and corners") {
+        CHECK(distance(cube({}), cube({5.0, 0.5, 0.0})).distance == doctest::Approx(3.0));
+        CHECK(distance(cube({}), cube({5.0, 6.0, 0.0})).distance == doctest::Approx(5.0));
+        CHECK(distance(cube({}), cube({4.0, 4.0, 4.0})).distance == doctest::Approx(2.0 * std::sqrt(3.0)));
+        const Distance d = distance(convex(cube({})), convex(Sphere{{4.0, 0.0, 0.0}, 1.0}));
+        CHECK(d.distance == doctest::Approx(2.0));
+        CHECK(d.on_a.x == doctest::Approx(1.0));
+        CHECK(d.on_b.x == doctest::Approx(3.0));
+        CHECK(distance(convex(Capsule{{0, 0, 0}, {0, 0, 9}, 1.0}), convex(Capsule{{5, -1, 4}, {5, 1, 4}, 1.5}))
+                  .distance == doctest::Approx(2.5));
+    }
+
+    TEST_CASE(
+        "random boxes: nearest points lie on the boxes, the plane between proves the distance, meeting means zero") {
+        std::mt19937_64 random(1);
+        int apart = 0;
+        for (int trial = 0; trial < 5000; ++trial) {
+            const Obb a = random_box(random), b = random_box(random, 2.5);
+            const Distance d = distance(a, b);
+            if (intersects(a, b)) {
+                CHECK(d.distance < 1e-9);
+                continue;
+            }
+            ++apart;
+            CHECK(outside(a, d.on_a) < 1e-6);  // axes are orthonormal to float only
+            CHECK(outside(b, d.on_b) < 1e-6);
+            CHECK(glm::distance(d.on_a, d.on_b) == doctest::Approx(d.distance));
+            const glm::dvec3 n = (d.on_b - d.on_a) / d.distance;
+            const double gap = glm::dot(n, support_point(b, -n)) - glm::dot(n, support_point(a, n));
+            CHECK(gap == doctest::Approx(d.distance).epsilon(1e-8));
+        }
+        CHECK(apart > 1000);
+    }
+
+    TEST_CASE("the penetration's motion just ends the overlap, and a little less does not") {
+        std::mt19937_64 random(2);
+        int meeting = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            const Obb a = random_box(random), b = random_box(random, 1.0);
+            const Penetration p = penetration(a, b);
+            CHECK((p.depth >= -1e-9) == intersects(a, b));
+            CHECK(glm::length(p.axis) == doctest::Approx(1.0));
+            if (p.depth < 1e-3) continue;
+            ++meeting;
+            CHECK_FALSE(intersects(a, parted(b, p.axis * (p.depth * (1.0 + 1e-6) + 1e-6))));
+            CHECK(intersects(a, parted(b, p.axis * (p.depth * (1.0 - 1e-6) - 1e-6))));
+        }
+        CHECK(meeting > 1000);
+    }
+
+    TEST_CASE("manifolds known by hand: a face on a face, a corner on a face, an edge across an edge") {
+        const Manifold stacked = contact_manifold(cube({}), cube({0.5, 0.0, 1.9}));
+        CHECK(stacked.count == 4);
+        CHECK(stacked.normal.z == doctest::Approx(1.0));
+        CHECK(stacked.depth == doctest::Approx(0.1));
+        for (int i = 0; i < stacked.count; ++i) {
+            CHECK(stacked.points[i].depth == doctest::Approx(0.1));
+            CHECK(stacked.points[i].position.z == doctest::Approx(0.95));
+            CHECK(stacked.points[i].position.x >= -0.5 - 1e-12);
+        }
+        Obb turned = cube({0.0, 0.0, 1.9});
+        const float s = float(std::sqrt(0.5));
+        turned.axes = glm::mat3(glm::vec3(s, s, 0), glm::vec3(-s, s, 0), glm::vec3(0, 0, 1));
+        CHECK(contact_manifold(cube({}), turned).count == 8);
+        Obb roof = cube({0.0, 0.0, 1.0 + std::sqrt(2.0) - 0.1});
+        roof.axes = glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, s, s), glm::vec3(0, -s, s));
+        CHECK(contact_manifold(cube({}), roof).count == 2);
+        Obb beam_a = roof, beam_b = roof;
+        beam_a.center = {};
+        beam_b.center = {0.0, 0.0, 2.0 * std::sqrt(2.0) - 0.1};
+        beam_b.axes = glm::mat3(glm::vec3(0, 1, 0), glm::vec3(-s, 0, s), glm::vec3(s, 0, s));
+        const Manifold crossing = contact_manifold(beam_a, beam_b);
+        REQUIRE(crossing.count == 1);
+        CHECK(crossing.depth == doctest::Approx(0.1));
+        CHECK(crossing.points[0].position.z == doctest::Approx(std::sqrt(2.0) - 0.05));
+    }
+
+    TEST_CASE(
+        "random manifolds: one to eight points, in both boxes up to the depth, none when apart, symmetric in depth") {
+        std::mt19937_64 random(3);
+        for (int trial = 0; trial < 4000; ++trial) {
+            const auto [a, b] = trial % 2 ? std::pair(random_box(random), random_box(random))
+                                          : nearly_touching(random, {.parallel = trial % 4 == 0});
+            const Manifold m = contact_manifold(a, b);
+            CHECK((m.count > 0) == intersects(a, b));
+            CHECK(m.count <= 8);
+            for (int i = 0; i < m.count; ++i) {
+                CHECK(outside(a, m.points[i].position) <= 0.5 * m.points[i].depth + 1e-5);
+                CHECK(outside(b, m.points[i].position) <= 0.5 * m.points[i].depth + 1e-5);
+                CHECK(m.points[i].depth >= 0.0);
+            }
+            if (m.count > 0) CHECK(contact_manifold(b, a).depth == doctest::Approx(m.depth).epsilon(1e-6));
+        }
+    }
+
+    TEST_CASE("1,000 crates stacked with rounded rotations: every contact is found, and none between crates apart") {
+        std::mt19937_64 random(4);
+        std::uniform_real_distribution<double> angle(0.0, 2.0 * std::numbers::pi);
+        int missed = 0, invented = 0;
+        for (int stack = 0; stack < 10; ++stack) {
+            const glm::dquat frame = random_rotation(random);
+            std::vector<Obb> crates;
+            for (int i = 0; i < 100; ++i) {
+                Obb crate = cube({}, 0.5f);
+                crate.axes = glm::mat3(glm::mat3_cast(frame * glm::angleAxis(angle(random), glm::dvec3(0, 0, 1))));
+                crate.center =
+                    glm::mat3_cast(frame) * glm::dvec3(0.0, 0.0, i * (1.0 - 1e-5));  // 1e-5 deep in each other
+                crates.push_back(crate);
+            }
+            for (std::size_t i = 0; i < 100; ++i)
+                for (std::size_t j = i + 1; j < 100; ++j) {
+                    const bool hit = contact_manifold(crates[i], crates[j]).count > 0;
+                    missed += j == i + 1 && !hit;
+                    invented += j > i + 1 && hit;
+                }
+        }
+        CHECK(missed == 0);
+        CHECK(invented == 0);
+    }
+
+    TEST_CASE("half-spaces: a box's corners below the ground, and how far to lift it") {
+        const Plane ground{{0.0, 0.0, -2.0}, 0.0};  // z ≤ 0 is solid
+        const Manifold m = contact_manifold(ground, cube({0.0, 0.0, 0.75}));
+        CHECK(m.count == 4);
+        CHECK(m.depth == doctest::Approx(0.25));
+        CHECK(m.normal.z == doctest::Approx(1.0));
+        CHECK(contact_manifold(ground, cube({0.0, 0.0, 1.5})).count == 0);
+        CHECK(penetration(ground, convex(Sphere{{0.0, 0.0, 0.5}, 2.0})).depth == doctest::Approx(1.5));
+    }
+
+    TEST_CASE("swept bodies hit when and where they should") {
+        const Convex a = convex(cube({})), b = convex(cube({10.0, 0.0, 0.0}));
+        const Motion toward{{-2.0, 0.0, 0.0}, {}, {}};
+        const auto impact = time_of_impact(a, {}, b, toward, 10.0, 1e-6);
+        REQUIRE(impact.has_value());
+        CHECK(impact->time == doctest::Approx(4.0).epsilon(1e-6));
+        CHECK(impact->contact.on_a.x == doctest::Approx(1.0));
+        CHECK_FALSE(time_of_impact(a, {}, b, toward, 3.9, 1e-6).has_value());
+        CHECK_FALSE(time_of_impact(a, {}, b, {{-2.0, 1.0, 0.0}, {}, {}}, 100.0, 1e-6).has_value());
+        // A blade of length 2 turning about its end sweeps past a ball's side: it arrives at angle acos-free 90° −
+        // asin(r/d).
+        const Obb blade{{1.0, 0.0, 0.0}, glm::mat3(1.0f), glm::vec3(1.0f, 0.0f, 0.0f)};
+        const Motion turning{{}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
+        const auto touch = time_of_impact(convex(blade), turning, convex(Sphere{{0.0, 1.5, 0.0}, 0.5}), {}, 3.0, 1e-7);
+        REQUIRE(touch.has_value());
+        CHECK(touch->time == doctest::Approx(std::numbers::pi / 2.0 - std::asin(0.5 / 1.5)).epsilon(1e-5));
+    }
+
+    TEST_CASE("random sweeps: apart before the time of impact, within the tolerance at it") {
+        std::mt19937_64 random(5);
+        int impacts = 0;
+        for (int trial = 0; trial < 300; ++trial) {
+            const Obb box_a = random_box(random), box_b = random_box(random, 5.0);
+            const Convex a = convex(box_a), b = convex(box_b);
+            const Motion motion_a{random_vector(random), 2.0 * random_vector(random), box_a.center};
+            const Motion motion_b{-0.5 * box_b.center, random_vector(random), box_b.center};
+            const double tolerance = 1e-4;
+            const auto impact = time_of_impact(a, motion_a, b, motion_b, 4.0, tolerance);
+            const double end = impact ? impact->time : 4.0;
+            impacts += impact.has_value();
+            if (impact) CHECK(distance(moved(a, motion_a, end), moved(b, motion_b, end)).distance < tolerance);
+            for (int step = 0; step < 50 && end > 0.0; ++step) {
+                const double t = end * step / 50.0;
+                CHECK(distance(moved(a, motion_a, t), moved(b, motion_b, t)).distance > 0.0);
+            }
+        }
+        CHECK(impacts > 50);
+    }
+}

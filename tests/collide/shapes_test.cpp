@@ -1,0 +1,120 @@
+#include <doctest/doctest.h>
+#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/shapes.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "oracle/exact_boxes.hpp"
+#include "random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A parallelogram is a box without thickness; a triangle meets a box iff … here by rational linear programming: no
+// plane of the box's and the triangle's half-spaces excludes all vertices of their intersection.
+bool oracle_triangle(const Obb& box, const Triangle& t) {
+    using namespace oracle;
+    // Clip the triangle, a convex polygon in rationals, by the six sides of the box.
+    std::vector<Vec3q> polygon;
+    for (const glm::dvec3& p : t) polygon.push_back(rational(p));
+    for (int k = 0; k < 3; ++k) {
+        const Vec3q u = rational(box.axes[k]);
+        const Vec3q n = cross(rational(box.axes[(k + 1) % 3]), rational(box.axes[(k + 2) % 3]));
+        const Rational reach = abs(dot(u, n)) * Rational(double(box.half_extents[k]));
+        const Rational center = dot(n, rational(box.center));
+        for (const int sign : {1, -1}) {
+            std::vector<Vec3q> kept;
+            const auto over = [&](const Vec3q& p) { return Rational(sign * (dot(n, p) - center) - reach); };
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                const Vec3q &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+                const Rational at_p = over(p), at_q = over(q);
+                if (at_p <= 0) kept.push_back(p);
+                if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0)) {
+                    const Rational s = at_p / (at_p - at_q);
+                    kept.push_back({p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1]), p[2] + s * (q[2] - p[2])});
+                }
+            }
+            polygon = kept;
+            if (polygon.empty()) return false;
+        }
+    }
+    return true;
+}
+
+Obb cube(const glm::dvec3& center, float half = 1.0f) {
+    return {center, glm::mat3(1.0f), glm::vec3(half)};
+}
+
+}  // namespace
+
+TEST_SUITE("collide/shapes") {
+    TEST_CASE("shapes that are not finite meet nothing") {
+        const Obb box = cube({});
+        CHECK_FALSE(intersects(box, Sphere{{0.0, kNan, 0.0}, 1.0}));
+        CHECK_FALSE(intersects(box, Sphere{{}, kNan}));
+        CHECK_FALSE(intersects(box, Capsule{{}, {kNan, 0.0, 0.0}, 1.0}));
+        CHECK_FALSE(intersects(box, Plane{{kNan, 0.0, 1.0}, 0.0}));
+        CHECK_FALSE(intersects(box, Triangle{glm::dvec3(0.0), glm::dvec3(1.0), glm::dvec3(0.0, kNan, 0.0)}));
+    }
+
+    TEST_CASE("a half-space is met to the last bit") {
+        const Obb box = cube({5.0, 0.0, 0.0});
+        CHECK(intersects(box, Plane{{1.0, 0.0, 0.0}, -6.0}));
+        CHECK_FALSE(intersects(box, Plane{{1.0, 0.0, 0.0}, std::nextafter(-6.0, -7.0)}));
+        CHECK(intersects(box, Plane{{-0.5, 0.0, 0.0}, 2.0}));
+        std::mt19937_64 random(1);
+        for (int trial = 0; trial < 3000; ++trial) {
+            const Obb tilted = random_box(random);
+            Plane plane{random_vector(random), 0.0};
+            plane.offset = -glm::dot(plane.normal, support_point(tilted, plane.normal));
+            oracle::Rational value(plane.offset);
+            value += oracle::dot(oracle::rational(plane.normal), oracle::rational(tilted.center));
+            for (int k = 0; k < 3; ++k)
+                value += abs(oracle::dot(oracle::rational(plane.normal), oracle::rational(tilted.axes[k]))) *
+                         oracle::Rational(double(tilted.half_extents[k]));
+            CHECK(intersects(tilted, plane) == (value >= 0));
+        }
+    }
+
+    TEST_CASE("triangles against boxes: as rational clipping says, for generic, touching and degenerate ones") {
+        std::mt19937_64 random(2);
+        int wrong = 0, hits = 0;
+        for (int trial = 0; trial < 4000; ++trial) {
+            Obb box = random_box(random);
+            Triangle t = {2.0 * random_vector(random), 2.0 * random_vector(random), 2.0 * random_vector(random)};
+            if (trial % 4 == 1) t[0] = corners(box)[std::size_t(trial / 4 % 8)];  // a corner, up to rounding
+            if (trial % 4 == 2) {                                                 // along an edge
+                const auto corner = corners(box);
+                const glm::dvec3 middle = 0.5 * (corner[0] + corner[1]), away = middle - box.center;
+                t = {middle + glm::cross(away, t[0]), middle - glm::cross(away, t[0]), middle + 2.0 * away};
+            }
+            if (trial % 8 == 3) t[2] = t[1];
+            if (trial % 5 == 0) box.half_extents[trial % 3] = 0.0f;
+            const bool truth = oracle_triangle(box, t);
+            hits += truth;
+            wrong += intersects(box, t) != truth || intersects(box, Triangle{t[2], t[0], t[1]}) != truth;
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > 500);
+        CHECK(hits < 3500);
+    }
+
+    TEST_CASE("spheres and capsules against a cube, by hand") {
+        const Obb box = cube({});
+        CHECK(intersects(box, Sphere{{2.0, 0.0, 0.0}, 1.0}));
+        CHECK_FALSE(intersects(box, Sphere{{2.0, 0.0, 0.0}, 1.0 - 1e-9}));
+        CHECK_FALSE(intersects(box, Sphere{{2.0, 2.0, 2.0}, std::sqrt(3.0) - 1e-9}));
+        CHECK(intersects(box, Sphere{{2.0, 2.0, 2.0}, std::sqrt(3.0) + 1e-9}));
+        CHECK(intersects(box, Sphere{{0.1, 0.2, 0.3}, 0.0}));
+        CHECK(intersects(box, Capsule{{-5.0, 0.0, 0.0}, {5.0, 0.0, 0.0}, 0.0}));
+        CHECK(intersects(box, Capsule{{-5.0, 1.5, 0.0}, {5.0, 1.5, 0.0}, 0.5}));
+        CHECK_FALSE(intersects(box, Capsule{{-5.0, 1.5, 0.0}, {5.0, 1.5, 0.0}, 0.499999}));
+        CHECK_FALSE(intersects(box, Capsule{{-5.0, 3.5, 0.0}, {0.0, 0.0, 9.0}, 0.5}));
+    }
+}
