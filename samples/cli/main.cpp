@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.fallthrough(false);
     Outcome outcome;
+    add_fit_command(app, outcome);
     add_frames_command(app, outcome);
     add_verify_command(app, outcome);
 #if defined(CROFTON_VIEWER)

@@ -1,0 +1,33 @@
+// What `crofton fit` found, as JSON, as text and as a drawing.
+#pragma once
+#include <crofton/geometry/obb.hpp>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crofton::cli {
+
+struct FittedBox {
+    std::string criterion;  // as the user wrote it
+    Obb box;
+    double value = 0.0;
+    std::optional<double> lower_bound;  // of `exact` only: the others prove nothing
+    std::optional<double> gap;
+    double hull_milliseconds = 0.0, search_milliseconds = 0.0;
+};
+
+struct FittedMesh {
+    std::string file;
+    std::size_t vertices = 0, hull_vertices = 0;
+    std::vector<glm::dvec3> hull_edges;  // two ends each
+    FittedBox chosen;
+    std::vector<FittedBox> others;  // volume, area and perimeter, when several files are compared
+};
+
+[[nodiscard]] nlohmann::json fit_json(const std::vector<FittedMesh>& meshes, const std::string& quality);
+[[nodiscard]] std::string fit_text(const std::vector<FittedMesh>& meshes);
+[[nodiscard]] std::string fit_svg(const std::vector<FittedMesh>& meshes);
+
+}  // namespace crofton::cli
