@@ -54,7 +54,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
         fitted.box = *box;
         fitted.value = criterion(measure::of_box(*box));
     }
-    fitted.search_milliseconds = watch.milliseconds();
+    fitted.milliseconds = watch.milliseconds();
     return fitted;
 }
 
@@ -67,7 +67,7 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
     const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
     const Stopwatch watch;
     const auto hull = convex_hull(span);
-    const double hull_milliseconds = watch.milliseconds();
+    mesh.hull_count_milliseconds = watch.milliseconds();
     if (!hull) return named(hull.error());
     mesh.vertices = points->size();
     mesh.hull_vertices = hull->vertices.size();
@@ -82,7 +82,6 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
     const auto fit_by = [&](const std::string& name, const measure::Criterion& by) {
         return fit_box(span, by, request).map([&](FittedBox fitted) {
             fitted.criterion = name;
-            fitted.hull_milliseconds = hull_milliseconds;
             return fitted;
         });
     };

@@ -46,10 +46,8 @@ nlohmann::json box_json(const FittedBox& fitted) {
             {"value", fitted.value},
             {"lower_bound", optional_number(fitted.lower_bound)},
             {"gap", optional_number(fitted.gap)},
-            {"milliseconds",
-             {{"hull", fitted.hull_milliseconds},
-              {"search", fitted.search_milliseconds},
-              {"total", fitted.hull_milliseconds + fitted.search_milliseconds}}}};
+            // The search needs no hull: 0 of its time goes there. What counting hull_vertices took stands beside them.
+            {"milliseconds", {{"hull", 0.0}, {"search", fitted.milliseconds}, {"total", fitted.milliseconds}}}};
 }
 
 std::string escaped(const std::string& text) {
@@ -78,6 +76,7 @@ nlohmann::json fit_json(const std::vector<FittedMesh>& meshes, const std::string
         entry["file"] = mesh.file;
         entry["vertices"] = mesh.vertices;
         entry["hull_vertices"] = mesh.hull_vertices;
+        entry["hull_count_milliseconds"] = mesh.hull_count_milliseconds;
         if (!mesh.others.empty()) {
             nlohmann::json criteria = nlohmann::json::object();
             for (const FittedBox& other : mesh.others) criteria[other.criterion] = box_json(other);
@@ -105,7 +104,8 @@ std::string fit_text(const std::vector<FittedMesh>& meshes) {
         append(text, "  volume %.9g   area %.9g   edge sum %.9g\n", volume(box), surface_area(box), edge_sum(box));
         append(text, "  %s: value %.9g", fitted.criterion.c_str(), fitted.value);
         if (fitted.lower_bound) append(text, ", proved lower bound %.9g (gap %.2g)", *fitted.lower_bound, *fitted.gap);
-        append(text, "\n  hull %.3f ms, search %.3f ms\n", fitted.hull_milliseconds, fitted.search_milliseconds);
+        append(text, "\n  %.3f ms; counting the hull's vertices, which the fit does not need, %.3f ms\n",
+               fitted.milliseconds, mesh.hull_count_milliseconds);
         return text;
     }
     std::size_t width = 8;
@@ -121,7 +121,7 @@ std::string fit_text(const std::vector<FittedMesh>& meshes) {
                 append(text, "%9.1e ", *fitted.gap);
             else
                 append(text, "%9s ", "-");
-            append(text, "%9.3f\n", fitted.search_milliseconds);
+            append(text, "%9.3f\n", fitted.milliseconds);
         };
         for (const FittedBox& other : mesh.others) row(other);
         const bool listed = std::any_of(mesh.others.begin(), mesh.others.end(), [&](const FittedBox& other) {

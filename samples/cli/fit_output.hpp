@@ -15,13 +15,14 @@ struct FittedBox {
     double value = 0.0;
     std::optional<double> lower_bound;  // of `exact` only: the others prove nothing
     std::optional<double> gap;
-    double hull_milliseconds = 0.0, search_milliseconds = 0.0;
+    double milliseconds = 0.0;  // of the search, which needs no hull
 };
 
 struct FittedMesh {
     std::string file;
     std::size_t vertices = 0, hull_vertices = 0;
-    std::vector<glm::dvec3> hull_edges;  // two ends each
+    double hull_count_milliseconds = 0.0;  // to count them, and for the drawing
+    std::vector<glm::dvec3> hull_edges;    // two ends each
     FittedBox chosen;
     std::vector<FittedBox> others;  // volume, area and perimeter, when several files are compared
 };
