@@ -42,4 +42,12 @@ bool is_usable(const Frustum& frustum) {
     return true;
 }
 
+bool has_unit_normals(const Frustum& frustum) {
+    for (const Plane& plane : frustum.view()) {
+        const glm::dvec3& n = plane.normal;
+        if (std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1.0) > 1e-3) return false;
+    }
+    return true;
+}
+
 }  // namespace crofton::cull

@@ -82,6 +82,8 @@ inline constexpr double kTiny = 1e-200;
 // Whether all numbers are finite and small enough for exact arithmetic.
 [[nodiscard]] bool is_usable(const Obb& box);
 [[nodiscard]] bool is_usable(const Frustum& frustum);
+// Within a thousandth: what the vector kernels' error bounds ask of normals.
+[[nodiscard]] bool has_unit_normals(const Frustum& frustum);
 
 // classify() for numbers that are known to be usable.
 [[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode);

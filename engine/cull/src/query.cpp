@@ -57,7 +57,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
 
 void Query::run(const tree::BoxTree& tree) {
     start(tree.boxes().size());
-    if (!is_usable(view_.frustum)) return run_all(tree);
+    if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     grow(visible_.stack_, (tree.height() + 1) * tree::kWidth);
     const KernelView view = kernel_view_of(view_);
@@ -75,14 +75,18 @@ void Query::run(const tree::BoxTree& tree) {
     finish(output.inside_count, output.straddling_count, tree.boxes().size());
 }
 
-// A view that is not finite: everything may be visible.
+// A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
 void Query::run_all(const tree::BoxTree& tree) {
-    std::size_t straddling = 0;
+    std::size_t inside = 0, straddling = 0;
     for (tree::LeafId l = 0; l < tree.leaves().size(); ++l)
-        for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane)
-            if (tree.leaves()[l].layers[lane] & view_.layer_mask)
-                visible_.straddling_[straddling++] = tree.slot_items()[l * tree::kWidth + lane];
-    finish(0, straddling, tree.boxes().size());
+        for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane) {
+            if (!(tree.leaves()[l].layers[lane] & view_.layer_mask)) continue;
+            const ItemId item = tree.slot_items()[l * tree::kWidth + lane];
+            const Verdict verdict = classify(view_.frustum, tree.boxes()[item], options_.mode);
+            if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
+            if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
+        }
+    finish(inside, straddling, tree.boxes().size());
 }
 
 void Query::decide(const tree::BoxTree& tree, TreeKernelOutput& output) {

@@ -1,6 +1,6 @@
 #include <crofton/tree/box_tree.hpp>
 
-#include <cmath>
+#include <hwy/cache_control.h>
 #include <crofton/core/assert.hpp>
 
 #include "bounds.hpp"
@@ -79,6 +79,15 @@ void BoxTree::adopt(Structure& structure, const Topology& topology) const {
 
 void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology) const {
     const Topology::LeafRecord& record = topology.leaves[l];
+    // The boxes lie in the order of their ids: ask early for those of the leaf after the next.
+    if (l + 2 < topology.leaves.size()) {
+        const Topology::LeafRecord& ahead = topology.leaves[l + 2];
+        for (std::uint32_t i = 0; i < ahead.count; ++i) {
+            const Obb* box = &boxes_[topology.order[ahead.first + i]];
+            hwy::Prefetch(box);
+            hwy::Prefetch(&box->half_extents);
+        }
+    }
     Leaf& leaf = structure.leaves[l];
     clear(leaf);
     leaf.parent = record.parent;

@@ -6,9 +6,9 @@
 namespace crofton::tree {
 namespace {
 
-constexpr std::uint32_t kClusterItems = kWidth * kWidth;
+constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
 // Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
-constexpr std::size_t kSmallCrowd = 16384;
+constexpr std::size_t kSmallCrowd = 32768;
 constexpr unsigned kDigitBits = 11;
 constexpr unsigned kPasses = 6;
 

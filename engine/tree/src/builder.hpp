@@ -32,8 +32,8 @@ struct Topology {
 };
 
 // Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
-// clusters of 256, the clusters are split from the top, and each cluster within itself: the same work per item whatever
-// their number.
+// clusters of 4096, the clusters are split from the top, and each cluster within itself: the same work per item
+// whatever their number.
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
