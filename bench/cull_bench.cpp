@@ -1,6 +1,7 @@
 // Culling beside Bullet's dynamic AABB tree and beside the plainest loop over AABBs. Compare within one run.
 #include <benchmark/benchmark.h>
 
+#include <crofton/cull/box_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/tree/box_tree.hpp>
 #include <map>
@@ -57,6 +58,28 @@ BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)
     ->Range(10000, 1000000);
 BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::Mode::exact, cull::Order::ascending, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tree, 0.01)->Arg(1000000);
+
+// Every box against the view; `ids` lists the visible ones besides.
+void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    std::vector<cull::ItemId> list(boxes.size() + 16);
+    std::size_t visible = 0;
+    for (auto _ : state) {
+        cull::cull(set, boxes, view, verdicts, mode);
+        if (ids) visible = cull::list_bits(verdicts.visible, list);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+        benchmark::DoNotOptimize(list.data());
+    }
+    report(state, visible);
+    state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
+}
+BENCHMARK_CAPTURE(flat_cull, conservative, cull::Mode::conservative, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact, cull::Mode::exact, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::Mode::exact, true)->Arg(10000)->Arg(1000000);
 
 void tree_build(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(tree::BoxTree::build(boxes_of(state.range(0)))->item_count());

@@ -111,13 +111,16 @@ struct LeafBoxes {
         present = shares_layer(view, leaf.layers + l);
     }
 
-    HWY_INLINE VF reach(const KernelPlane& plane) const {
+    // normal · edge k, in units.
+    HWY_INLINE VF slope(const KernelPlane& plane, unsigned k) const {
         const DF d;
         const VF nx = hn::Set(d, plane.normal_f[0]), ny = hn::Set(d, plane.normal_f[1]),
                  nz = hn::Set(d, plane.normal_f[2]);
-        VF sum = hn::Abs(hn::MulAdd(nx, edge[0], hn::MulAdd(ny, edge[1], hn::Mul(nz, edge[2]))));
-        for (unsigned k = 3; k < 9; k += 3)
-            sum = hn::Add(sum, hn::Abs(hn::MulAdd(nx, edge[k], hn::MulAdd(ny, edge[k + 1], hn::Mul(nz, edge[k + 2])))));
+        return hn::MulAdd(nx, edge[3 * k], hn::MulAdd(ny, edge[3 * k + 1], hn::Mul(nz, edge[3 * k + 2])));
+    }
+
+    HWY_INLINE VF reach(const KernelPlane& plane) const {
+        const VF sum = hn::Add(hn::Add(hn::Abs(slope(plane, 0)), hn::Abs(slope(plane, 1))), hn::Abs(slope(plane, 2)));
         return hn::Mul(sum, unit);
     }
 };
@@ -137,6 +140,47 @@ HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, st
     const MF maybe = hn::And(boxes.present, hn::Ge(top, hn::Neg(slack)));
     result.undecided = hn::AndNot(hn::Or(result.inside, result.straddling), maybe);
     return result;
+}
+
+// Those of the wanted lanes whose boxes certainly have a point inside all planes: from the centre towards the plane
+// that it is farthest outside of, to a little beyond it, and from there once more towards the plane that is worst then.
+HWY_INLINE MF has_witness(const KernelView& view, const LeafBoxes& boxes, std::uint32_t planes, const LocalPlane* local,
+                          MF wanted) {
+    const DF d;
+    const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    VF t[3] = {zero, zero, zero};
+    MF found = hn::FirstN(d, 0);
+    for (int round = 0;; ++round) {
+        VF worst = hn::Set(d, 3e38f), slope[3] = {zero, zero, zero};
+        MF inside = boxes.present;
+        for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+            const VF a = hn::Mul(boxes.slope(view.planes[i], 0), boxes.unit),
+                     b = hn::Mul(boxes.slope(view.planes[i], 1), boxes.unit),
+                     c = hn::Mul(boxes.slope(view.planes[i], 2), boxes.unit);
+            const VF value = hn::MulAdd(
+                a, t[0],
+                hn::MulAdd(
+                    b, t[1],
+                    hn::MulAdd(c, t[2], plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset))));
+            inside = hn::And(inside, hn::Ge(value, hn::Add(boxes.edge_slack, hn::Set(d, local[i].slack))));
+            const MF worse = hn::Lt(value, worst);
+            worst = hn::IfThenElse(worse, value, worst);
+            slope[0] = hn::IfThenElse(worse, a, slope[0]);
+            slope[1] = hn::IfThenElse(worse, b, slope[1]);
+            slope[2] = hn::IfThenElse(worse, c, slope[2]);
+        }
+        found = hn::Or(found, inside);
+        if (round == 2 || hn::AllFalse(d, hn::AndNot(found, wanted))) break;
+        // Along the gradient, clamped to the box; any t in [−1, 1]³ is as good a guess as another.
+        const VF square = hn::MulAdd(slope[0], slope[0], hn::MulAdd(slope[1], slope[1], hn::Mul(slope[2], slope[2])));
+        const VF reach = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
+        const VF step =
+            hn::Div(hn::MulAdd(reach, hn::Set(d, 0.05f), hn::Neg(worst)), hn::Max(square, hn::Set(d, 1e-30f)));
+        for (VF& coordinate : t)
+            coordinate = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[&coordinate - t], coordinate)));
+    }
+    return found;
 }
 
 HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, std::uint32_t planes,
@@ -163,8 +207,14 @@ HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, st
     LeafTest result;
     result.inside = hn::AndNot(open_once, boxes.present);
     result.straddling = hn::And(passes, crosses);
-    // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
-    if (exact) result.straddling = hn::And(result.straddling, hn::Or(hn::Not(open_twice), center));
+    // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside, or
+    // another of its points.
+    if (exact) {
+        MF meets = hn::Or(hn::Not(open_twice), center);
+        const MF wanted = hn::AndNot(meets, result.straddling);
+        if (!hn::AllFalse(d, wanted)) meets = hn::Or(meets, has_witness(view, boxes, planes, local, wanted));
+        result.straddling = hn::And(result.straddling, meets);
+    }
     result.undecided = hn::AndNot(hn::Or(result.inside, result.straddling), maybe);
     return result;
 }

@@ -23,7 +23,7 @@ float float_at_least(double value) {
 
 void BoxSet::assign(std::span<const Obb> boxes, Executor& executor) {
     size_ = boxes.size();
-    spheres_.resize((size_ + 15) / 16);
+    spheres_.resize((size_ + 63) / 64 * 4);  // whole words of verdicts
     records_.resize(size_);
     chunks_.resize((size_ + kChunk - 1) / kChunk);
     executor.parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -37,12 +37,11 @@ void BoxSet::assign(std::span<const Obb> boxes, Executor& executor) {
             for (std::size_t i = first; i < last; ++i) write(i, boxes[i]);
         }
     });
-    if (size_ % 16)
-        for (std::size_t lane = size_ % 16; lane < 16; ++lane) {
-            SphereBlock& block = spheres_.back();
-            block.x[lane] = block.y[lane] = block.z[lane] = 0.0f;
-            block.radius[lane] = -kInfinity;
-        }
+    for (std::size_t i = size_; i < spheres_.size() * 16; ++i) {
+        SphereBlock& block = spheres_[i / 16];
+        block.x[i % 16] = block.y[i % 16] = block.z[i % 16] = 0.0f;
+        block.radius[i % 16] = -kInfinity;
+    }
 }
 
 void BoxSet::update(std::span<const std::uint32_t> items, std::span<const Obb> boxes) {
@@ -90,8 +89,8 @@ void cull(const BoxSet& set, std::span<const Obb> boxes, const View& view, Verdi
     CROFTON_ASSERT(boxes.size() == set.size(), "cull needs the boxes that the set was given");
     const std::size_t words = (set.size() + 63) / 64;
     verdicts.statistics = {};
-    verdicts.visible.assign(words, 0);
-    verdicts.inside.assign(words, 0);
+    verdicts.visible.resize(words);
+    verdicts.inside.resize(words);
     const std::size_t stride = BoxSet::kChunk + 16;
     if (verdicts.undecided.size() < set.chunks().size() * stride)
         verdicts.undecided.resize(set.chunks().size() * stride);

@@ -1,4 +1,5 @@
 // Box against convex volume, exactly: certificates in double first, vertex enumeration where they do not decide.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -78,7 +79,7 @@ bool finds_witness(std::span<const Constraint> constraints, int rounds) {
             if (!(free_norm > 0.0)) return false;
             const double reach = violated->reach();
             const double step = (-value + 1e-3 * reach) / free_norm;
-            for (unsigned k = 0; k < 3; ++k) t[k] = std::fmin(1.0, std::fmax(-1.0, t[k] + step * violated->slope[k]));
+            for (unsigned k = 0; k < 3; ++k) t[k] = std::min(1.0, std::max(-1.0, t[k] + step * violated->slope[k]));
             if (violated->base + violated->slope[0] * t[0] + violated->slope[1] * t[1] + violated->slope[2] * t[2] >
                 0.0)
                 break;
