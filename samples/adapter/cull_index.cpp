@@ -1,37 +1,64 @@
 #include "cull_index.hpp"
 
+#include <cstdio>
+#include <cstdlib>
+
 namespace crofton::adapter {
+namespace {
 
-CullIndex::CullIndex() = default;
+// Work that a frame spends on keeping a tree of moving things good, in items.
+constexpr std::size_t kMaintenance = 2000;
 
-cull::ItemId CullIndex::insert(const Obb& box, std::uint32_t layer_mask) {
-    tree_.reset();
-    if (free_.empty()) {
-        boxes_.push_back(box);
-        layer_masks_.push_back(layer_mask);
-        return static_cast<cull::ItemId>(boxes_.size() - 1);
+// Callers give valid boxes and their own ids: a failure here is a mistake in the adapter.
+template <class T>
+T must(Result<T> result) {
+    if (!result) {
+        std::fprintf(stderr, "crofton adapter: %s\n", result.error().message.c_str());
+        std::abort();
     }
-    const cull::ItemId item = free_.back();
-    free_.pop_back();
-    boxes_[item] = box;
-    layer_masks_[item] = layer_mask;
-    return item;
+    if constexpr (!std::is_void_v<T>) return std::move(*result);
+}
+
+}  // namespace
+
+cull::ItemId CullIndex::insert(const Obb& box) {
+    changed_ = true;
+    if (tree_) return must(tree_->insert(box));
+    boxes_.push_back(box);
+    removed_.push_back(false);
+    return static_cast<cull::ItemId>(boxes_.size() - 1);
 }
 
 void CullIndex::move(cull::ItemId item, const Obb& box) {
-    tree_.reset();
-    boxes_[item] = box;
+    changed_ = true;
+    if (tree_)
+        must(tree_->move(item, box));
+    else
+        boxes_[item] = box;
 }
 
 void CullIndex::remove(cull::ItemId item) {
-    tree_.reset();
-    layer_masks_[item] = 0;
-    free_.push_back(item);
+    changed_ = true;
+    if (tree_)
+        must(tree_->remove(item));
+    else
+        removed_[item] = true;
+}
+
+void CullIndex::build() {
+    tree_.emplace(must(tree::BoxTree::build(boxes_)));
+    for (std::size_t i = 0; i < removed_.size(); ++i)
+        if (removed_[i]) must(tree_->remove(static_cast<cull::ItemId>(i)));
+    boxes_ = {};
+    removed_ = {};
 }
 
 void CullIndex::update() {
-    if (tree_) return;
-    tree_ = *tree::BoxTree::build(boxes_, layer_masks_);
+    if (!tree_) build();
+    if (!changed_) return;
+    tree_->refit();
+    tree_->maintain(kMaintenance);
+    changed_ = false;
 }
 
 const cull::VisibleSet& CullIndex::cull(const cull::View& view) {

@@ -6,30 +6,28 @@
 
 namespace crofton::adapter {
 
-// Ids are small and reused. Changes are gathered and given to the tree by the next query.
+// The first query builds a tree over all that has been inserted so far; changes after that go into the tree.
 class CullIndex {
   public:
-    CullIndex();
-
-    // Requires a box that passes validate(Obb).
-    [[nodiscard]] cull::ItemId insert(const Obb& box, std::uint32_t layer_mask = ~0u);
+    // Requires a box that passes validate(Obb). Ids are small and reused.
+    [[nodiscard]] cull::ItemId insert(const Obb& box);
     void move(cull::ItemId item, const Obb& box);
     void remove(cull::ItemId item);
 
-    // Brings the tree up to date with the changes so far; cull() does so as well.
+    // Brings the tree up to date with the changes so far; needed before cull() where there were any.
     void update();
 
-    // The items that the view sees, ascending: the order in which most engines allocated the objects behind them. Valid
-    // until the next call.
+    // The items that the view sees, ascending: the order in which most engines allocated the objects behind them.
+    // Valid until the next call.
     [[nodiscard]] const cull::VisibleSet& cull(const cull::View& view);
 
-    [[nodiscard]] const std::vector<Obb>& boxes() const { return boxes_; }
-
   private:
-    std::vector<Obb> boxes_;
-    std::vector<std::uint32_t> layer_masks_;
-    std::vector<cull::ItemId> free_;
+    void build();
+
+    std::vector<Obb> boxes_;     // while there is no tree
+    std::vector<bool> removed_;  // the same
     std::optional<tree::BoxTree> tree_;
+    bool changed_ = false;
     cull::VisibleSet visible_;
 };
 

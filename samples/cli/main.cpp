@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     app.fallthrough(false);
     Outcome outcome;
     add_fit_command(app, outcome);
+    add_bake_command(app, outcome);
     add_frames_command(app, outcome);
     add_verify_command(app, outcome);
 #if defined(CROFTON_VIEWER)

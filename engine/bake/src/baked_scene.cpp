@@ -88,7 +88,7 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
     for (const auto& each : taken)
         if (!each) return tl::unexpected(each.error());
     if (const auto good = baked.check_meshes(); !good) return tl::unexpected(good.error());
-    auto tree = read_tree(*reader, executor);
+    auto tree = read_tree(*reader);
     if (!tree) return tl::unexpected(tree.error());
     baked.tree_.emplace(std::move(*tree));
     if (const auto good = baked.check_instances(); !good) return tl::unexpected(good.error());

@@ -6,17 +6,15 @@ Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t>
                       Executor& executor) {
     const auto tree = tree::BoxTree::build(boxes, layer_masks, {}, executor);
     if (!tree) return tl::unexpected(tree.error());
-    writer.add("boxes", boxes);
-    writer.add("layers", layer_masks);
+    const Vector<std::byte> bytes = tree->serialise();
+    writer.add("tree", std::span<const std::byte>(bytes));
     return {};
 }
 
-Result<tree::BoxTree> read_tree(const Reader& reader, Executor& executor) {
-    const auto boxes = reader.section<Obb>("boxes");
-    if (!boxes) return tl::unexpected(boxes.error());
-    const auto layers = reader.section<std::uint32_t>("layers");
-    if (!layers) return tl::unexpected(layers.error());
-    return tree::BoxTree::build(*boxes, *layers, {}, executor);
+Result<tree::BoxTree> read_tree(const Reader& reader) {
+    const auto bytes = reader.section<std::byte>("tree");
+    if (!bytes) return tl::unexpected(bytes.error());
+    return tree::BoxTree::deserialise(*bytes);
 }
 
 }  // namespace crofton::bake

@@ -8,6 +8,6 @@ namespace crofton::bake {
 // Builds the tree over the boxes and adds it.
 [[nodiscard]] Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                     Writer& writer, Executor& executor);
-[[nodiscard]] Result<tree::BoxTree> read_tree(const Reader& reader, Executor& executor);
+[[nodiscard]] Result<tree::BoxTree> read_tree(const Reader& reader);
 
 }  // namespace crofton::bake

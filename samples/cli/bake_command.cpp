@@ -1,0 +1,129 @@
+// `crofton bake`: a scene made ready at build time, and what such a file holds.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/thread_pool.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "assets/scene_source.hpp"
+#include "commands.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct BakeOptions {
+    std::string scene, output, map, json;
+    std::uint32_t instances = 0;
+    std::uint64_t seed = 1;
+    unsigned threads = 1;
+};
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+int show(const BakeOptions& options, const char* verb, double milliseconds, const std::string& path,
+         const bake::BakedScene& baked, std::uintmax_t bytes) {
+    std::uint64_t triangles = 0, polygons = 0;
+    for (scene::MeshId i = 0; i < baked.mesh_count(); ++i) {
+        triangles += baked.mesh(i).indices.size() / 3;
+        polygons += baked.polygon(i) ? 1 : 0;
+    }
+    if (options.json != "-")
+        std::printf(
+            "%s: %s in %.1f ms; %zu instances of %zu meshes (%llu triangles, %llu triangulated polygons), %zu nodes, "
+            "a tree of height %u, %.1f MB\n",
+            path.c_str(), verb, milliseconds, baked.instances().size(), baked.mesh_count(),
+            static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons), baked.nodes().size(),
+            baked.tree().height(), static_cast<double>(bytes) / 1e6);
+    if (options.json.empty()) return kSuccess;
+    const auto written = write_json(options.json, {{"file", path},
+                                                   {"version", bake::kVersion},
+                                                   {"bytes", bytes},
+                                                   {"milliseconds", milliseconds},
+                                                   {"instances", baked.instances().size()},
+                                                   {"meshes", baked.mesh_count()},
+                                                   {"triangles", triangles},
+                                                   {"polygons", polygons},
+                                                   {"nodes", baked.nodes().size()},
+                                                   {"tree_height", baked.tree().height()}});
+    return written ? kSuccess : report_error("", written.error());
+}
+
+class BakeRun {
+  public:
+    explicit BakeRun(BakeOptions options) : options_(std::move(options)) {
+        if (options_.threads != 1) pool_.emplace(options_.threads);
+    }
+
+    int run() { return options_.output.empty() ? check() : write(); }
+
+  private:
+    // Loads the file as an engine would and says how long that took.
+    int check() {
+        const auto start = Clock::now();
+        const auto baked = bake::BakedScene::open(options_.scene, executor());
+        const double milliseconds = milliseconds_since(start);
+        if (!baked) return report_error("", baked.error());
+        return show(options_, "loaded", milliseconds, options_.scene, *baked,
+                    std::filesystem::file_size(options_.scene));
+    }
+
+    int write() {
+        auto source = assets::load_scene(options_.scene,
+                                         {.map = options_.map, .seed = options_.seed, .instances = options_.instances});
+        if (!source) return report_error("", source.error());
+        for (const std::string& warning : source->warnings)
+            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+        source->scene.update(executor());
+        const auto start = Clock::now();
+        const auto file = bake::bake(source->scene, executor());
+        const double milliseconds = milliseconds_since(start);
+        if (!file) return report_error(options_.scene, file.error());
+        const std::string_view bytes(reinterpret_cast<const char*>(file->data()), file->size());
+        if (const auto written = write_file(options_.output, bytes); !written) return report_error("", written.error());
+        const auto baked = bake::BakedScene::from_memory(*file, executor());
+        if (!baked) return report_error(options_.output, baked.error());
+        return show(options_, "baked", milliseconds, options_.output, *baked, file->size());
+    }
+
+    Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
+
+    BakeOptions options_;
+    std::optional<ThreadPool> pool_;
+};
+
+}  // namespace
+
+void add_bake_command(CLI::App& app, Outcome& outcome) {
+    auto options = std::make_shared<BakeOptions>();
+    CLI::App* command = app.add_subcommand("bake", "Write a scene's boxes, tree and triangulations to a .crofton file");
+    command
+        ->add_option("scene", options->scene,
+                     "town or a .glb, .gltf, .obj or .wad file; without -o a .crofton file to check")
+        ->required();
+    command->add_option("-o,--output", options->output, "The file to write");
+    command->add_option("--map", options->map, "Which level of a WAD");
+    command->add_option("--instances", options->instances, "Size of the town, roughly");
+    command->add_option("--seed", options->seed, "Of the town")->capture_default_str();
+    command->add_option("--threads", options->threads, "0: one per core")
+        ->check(CLI::Range(0u, 256u))
+        ->capture_default_str();
+    command->add_option("--json", options->json, "Write the figures as JSON to this file; - for standard output");
+    command->footer(
+        "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged.\n\n"
+        "Examples:\n"
+        "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
+        "  crofton bake map01.crofton\n"
+        "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
+    command->callback([options, &outcome] { outcome.status = BakeRun(*options).run(); });
+}
+
+}  // namespace crofton::cli
