@@ -1,7 +1,7 @@
+#include <doctest/doctest.h>
 #include <crofton/core/memory.hpp>
 #include <cstdint>
 #include <cstdlib>
-#include <doctest/doctest.h>
 
 using namespace crofton;
 
@@ -28,6 +28,17 @@ void counting_release(void* user, void* memory, std::size_t bytes, std::size_t) 
 }  // namespace
 
 TEST_SUITE("core/memory") {
+    TEST_CASE("blocks of every size are aligned, usable to their last byte, and given back") {
+        for (const std::size_t bytes : {std::size_t{1}, std::size_t{100}, (std::size_t{4} << 20) - 1,
+                                        std::size_t{4} << 20, (std::size_t{9} << 20) + 5}) {
+            auto* memory = static_cast<unsigned char*>(crofton::detail::allocate(bytes, 64));
+            CHECK(reinterpret_cast<std::uintptr_t>(memory) % 64 == 0);
+            memory[0] = memory[bytes - 1] = 7;
+            CHECK(memory[bytes - 1] == 7);
+            crofton::detail::release(memory, bytes, 64);
+        }
+    }
+
     TEST_CASE("containers take their memory from the host's hooks and give all of it back") {
         Counts counts;
         set_memory_hooks({counting_allocate, counting_release, &counts});

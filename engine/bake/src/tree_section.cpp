@@ -14,7 +14,7 @@ Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t>
 Result<tree::BoxTree> read_tree(const Reader& reader) {
     const auto bytes = reader.section<std::byte>("tree");
     if (!bytes) return tl::unexpected(bytes.error());
-    return tree::BoxTree::deserialise(*bytes);
+    return tree::BoxTree::deserialise(*bytes, tree::Trust::contents);
 }
 
 }  // namespace crofton::bake

@@ -3,11 +3,26 @@
 #include <cstdlib>
 #include <new>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 namespace crofton {
 namespace {
 
+// Large blocks ask for huge pages: a page fault costs as much as filling the page, and a tree of a million items spans
+// tens of thousands of ordinary ones.
+constexpr std::size_t kLargeBlock = std::size_t{4} << 20, kHugePage = std::size_t{2} << 20;
+
+constexpr std::size_t alignment_of(std::size_t bytes, std::size_t alignment) {
+    return bytes >= kLargeBlock && alignment < kHugePage ? kHugePage : alignment;
+}
+
 void* default_allocate(void*, std::size_t bytes, std::size_t alignment) {
-    void* memory = ::operator new(bytes, std::align_val_t{alignment}, std::nothrow);
+    void* memory = ::operator new(bytes, std::align_val_t{alignment_of(bytes, alignment)}, std::nothrow);
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+    if (memory && bytes >= kLargeBlock) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+#endif
     if (!memory) {
         std::fprintf(stderr, "crofton: out of memory for %zu bytes\n", bytes);
         std::abort();
@@ -15,8 +30,8 @@ void* default_allocate(void*, std::size_t bytes, std::size_t alignment) {
     return memory;
 }
 
-void default_release(void*, void* memory, std::size_t, std::size_t alignment) {
-    ::operator delete(memory, std::align_val_t{alignment});
+void default_release(void*, void* memory, std::size_t bytes, std::size_t alignment) {
+    ::operator delete(memory, std::align_val_t{alignment_of(bytes, alignment)});
 }
 
 constexpr MemoryHooks kDefaultHooks{default_allocate, default_release, nullptr};

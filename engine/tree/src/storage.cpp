@@ -56,7 +56,7 @@ Vector<std::byte> BoxTree::serialise() const {
     return bytes;
 }
 
-Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes) {
+Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust trust) {
     const auto damaged = [](const char* why) {
         return fail(ErrorCode::parse, kNoItem, std::string("stored box tree: ") + why);
     };
@@ -87,7 +87,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes) {
     });
     tree.dirty_leaves_.assign((tree.now_.leaves.size() + 63) / 64, 0);
     if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
-    if (auto valid = tree.validate(); !valid)
+    if (auto valid = tree.validate(trust); !valid)
         return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);
     return tree;
 }

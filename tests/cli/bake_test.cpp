@@ -1,0 +1,59 @@
+#include <doctest/doctest.h>
+#include <filesystem>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+
+TEST_SUITE("cli/bake") {
+    TEST_CASE("scenes and files that cannot be read end with status 2, name the culprit and leave no output behind") {
+        const std::string output = scratch().file("never.crofton");
+        for (const char* scene : {"no-such-file.glb", "no-such-kind.xyz"}) {
+            const CliRun run = run_cli(std::string("bake ") + scene + " -o " + output);
+            CHECK(run.status == 2);
+            CHECK(run.err.find(scene) != std::string::npos);
+            CHECK_FALSE(std::filesystem::exists(output));
+        }
+        CHECK(run_cli("bake").status == 2);
+        CHECK(run_cli("bake missing.crofton").status == 2);
+        CHECK(run_cli("bake town --instances 400 -o /no/such/folder/town.crofton").status == 2);
+        CHECK(run_cli("bake town --threads lots").status == 2);
+    }
+
+    TEST_CASE("what was baked is loaded again; damage, a cut and another version are told apart") {
+        const std::string path = scratch().file("town.crofton"), bad = scratch().file("bad.crofton");
+        const CliRun baked = run_cli("bake town --instances 400 -o " + path + " --json -");
+        REQUIRE(baked.status == 0);
+        const CliRun loaded = run_cli("bake " + path + " --json -");
+        REQUIRE(loaded.status == 0);
+        for (const char* key : {"bytes", "instances", "meshes", "triangles", "polygons", "nodes", "tree_height"})
+            CHECK(loaded.json()[key] == baked.json()[key]);
+        CHECK(loaded.json()["instances"].get<int>() > 300);
+        CHECK(std::filesystem::file_size(path) == loaded.json()["bytes"].get<std::size_t>());
+
+        const std::string sound = contents_of(path);
+        const auto refused = [&](std::string contents, const char* reason) {
+            write_contents(bad, contents);
+            const CliRun run = run_cli("bake " + bad);
+            CHECK(run.status == 2);
+            CHECK(run.err.find("bad.crofton") != std::string::npos);
+            CAPTURE(run.err);
+            CHECK(run.err.find(reason) != std::string::npos);
+        };
+        std::string damaged = sound;
+        damaged[sound.size() / 2] ^= 1;
+        refused(damaged, "damaged");
+        refused(sound.substr(0, sound.size() / 2), "cut off");
+        std::string newer = sound;
+        newer[12] = 9;
+        refused(newer, "version 9");
+        refused("not a file of ours at all, but long enough to have a header of its own", "not a .crofton file");
+    }
+
+    TEST_CASE("the same scene is baked to the same bytes, with any number of threads") {
+        const std::string one = scratch().file("one.crofton"), two = scratch().file("two.crofton");
+        REQUIRE(run_cli("bake town --instances 400 -o " + one).status == 0);
+        REQUIRE(run_cli("bake town --instances 400 --threads 3 -o " + two).status == 0);
+        CHECK(contents_of(one) == contents_of(two));
+    }
+}
