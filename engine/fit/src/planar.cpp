@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/fit/planar.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/measure/planar.hpp>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "calipers.hpp"
+
+namespace crofton::fit {
+namespace {
+
+constexpr double kUnit = 0x1p-53;
+
+Result<void> check(std::span<const glm::dvec2> points) {
+    if (points.empty()) return fail(ErrorCode::empty, kNoItem, "fit: no points");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec2 p = points[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y))
+            return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
+        if (std::max(std::abs(p.x), std::abs(p.y)) > kMaxCoordinate)
+            return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
+    }
+    return {};
+}
+
+// The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: off by
+// less than 4 units of Σ|axis_i d_i|, which is added; nothing is where the terms are zero.
+Rectangle around(std::span<const glm::dvec2> points, const glm::dvec2& axis) {
+    const glm::dvec2 axes[2] = {axis, {-axis.y, axis.x}};
+    const glm::dvec2 first = points[0];
+    Rectangle rectangle;
+    rectangle.axis = axis;
+    glm::dvec2 middle;
+    for (int k = 0; k < 2; ++k) {
+        double low = 0.0, high = 0.0;
+        for (const glm::dvec2& p : points) {
+            const double t = glm::dot(axes[k], p - first);
+            low = std::min(low, t);
+            high = std::max(high, t);
+        }
+        middle[k] = 0.5 * (low + high);
+    }
+    rectangle.center = first + axes[0] * middle.x + axes[1] * middle.y;
+    for (int k = 0; k < 2; ++k)
+        for (const glm::dvec2& p : points) {
+            const glm::dvec2 d = p - rectangle.center;
+            const double x = axes[k].x * d.x, y = axes[k].y * d.y;
+            const double reach = std::abs(x + y) + 5.0 * kUnit * (std::abs(x) + std::abs(y));
+            rectangle.half_extents[k] = std::max(rectangle.half_extents[k], reach);
+        }
+    return rectangle;
+}
+
+Circle through(const glm::dvec2& a, const glm::dvec2& b) {
+    return {0.5 * (a + b), 0.5 * glm::distance(a, b)};
+}
+
+Circle through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    const glm::dvec2 p = b - a, q = c - a;
+    const double twice = 2.0 * (p.x * q.y - p.y * q.x);
+    if (twice == 0.0) {
+        // Collinear: the longest of the three segments.
+        Circle longest = through(a, b);
+        for (const Circle& other : {through(b, c), through(c, a)})
+            if (other.radius > longest.radius) longest = other;
+        return longest;
+    }
+    const double pp = glm::dot(p, p), qq = glm::dot(q, q);
+    const glm::dvec2 center = glm::dvec2(q.y * pp - p.y * qq, p.x * qq - q.x * pp) / twice;
+    return {a + center, glm::length(center)};
+}
+
+}  // namespace
+
+Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
+    if (auto valid = check(points); !valid) return tl::unexpected(valid.error());
+    const auto hull = measure::convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    return minimal_rectangle_of_convex(*hull, criterion);
+}
+
+Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon, PlanarCriterion criterion) {
+    if (auto valid = check(polygon); !valid) return tl::unexpected(valid.error());
+    const bool by_area = criterion == PlanarCriterion::area;
+    const Calipers best = minimal_rectangle(polygon, by_area ? 1.0 : 0.0, by_area ? 0.0 : 1.0);
+    return around(polygon, best.direction);
+}
+
+Result<Circle> minimal_circle(std::span<const glm::dvec2> points) {
+    if (auto valid = check(points); !valid) return tl::unexpected(valid.error());
+    auto hull = measure::convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    Vector<glm::dvec2>& corners = *hull;
+    // A fixed shuffle: what it must avoid is the order around the hull, not an adversary.
+    std::uint64_t state = 0x9e3779b97f4a7c15u;
+    for (std::size_t i = corners.size(); i > 1; --i) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        std::swap(corners[i - 1], corners[(state >> 33) % i]);
+    }
+    // Work near the origin, so that squares do not lose what the coordinates hold.
+    const glm::dvec2 origin = corners[0];
+    for (glm::dvec2& p : corners) p -= origin;
+    Circle circle;
+    const auto outside = [&](const glm::dvec2& p) {
+        return glm::distance(p, circle.center) > circle.radius * (1.0 + 1e-14);
+    };
+    for (std::size_t i = 1; i < corners.size(); ++i) {
+        if (!outside(corners[i])) continue;
+        circle = {corners[i], 0.0};
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!outside(corners[j])) continue;
+            circle = through(corners[i], corners[j]);
+            for (std::size_t k = 0; k < j; ++k)
+                if (outside(corners[k])) circle = through(corners[i], corners[j], corners[k]);
+        }
+    }
+    circle.center += origin;
+    circle.radius = 0.0;
+    // Differences, squares, sum and root round by less than 4 units together.
+    for (const glm::dvec2& p : points)
+        circle.radius = std::max(circle.radius, glm::distance(p, circle.center) * (1.0 + 5.0 * kUnit));
+    return circle;
+}
+
+}  // namespace crofton::fit
