@@ -18,6 +18,7 @@
 #include "pipeline/draw_list.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/verify.hpp"
+#include "pipeline/walk.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
 
@@ -129,6 +130,8 @@ class FramesRun {
             std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
         source_->scene.update(executor());
         focus_ = pipeline::focus_of(source_->scene);
+        if (source_->walk.empty() && options_.camera == "street")
+            source_->walk = pipeline::find_walk(source_->scene, focus_);
         auto cameras = pipeline::make_camera_path({options_.camera, options_.frames, options_.seed, aspect}, focus_,
                                                   source_->walk);
         if (!cameras) return tl::unexpected(cameras.error());

@@ -101,29 +101,39 @@ Result<double> number_from(const json& entry, const char* field, double otherwis
 }  // namespace
 
 Aabb focus_of(const scene::Scene& scene) {
-    struct End {
-        double position;
+    // From the meshes' own extents, not from the boxes fitted to them: the camera must not depend on the bounds
+    // compared.
+    std::vector<Aabb> mesh_extents(scene.mesh_count());
+    for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh)
+        for (const glm::vec3& p : scene.mesh(mesh).positions) mesh_extents[mesh].include(glm::dvec3(p));
+    struct Extent {
+        Aabb box;
         double weight;
     };
+    std::vector<Extent> extents;
+    double total = 0.0;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
+        if (scene.is_removed(i)) continue;
+        const scene::MeshId mesh = scene.mesh_of(i);
+        const scene::Transform& world = scene.world(scene.node_of(i));
+        const glm::dvec3 center = world.linear * mesh_extents[mesh].center() + world.translation;
+        const glm::dvec3 half = mesh_extents[mesh].half_extents();
+        const glm::dvec3 reach = glm::abs(world.linear[0]) * half.x + glm::abs(world.linear[1]) * half.y +
+                                 glm::abs(world.linear[2]) * half.z;
+        extents.push_back({{center - reach, center + reach}, static_cast<double>(scene.mesh(mesh).triangle_count())});
+        total += extents.back().weight;
+    }
     Aabb focus;
-    std::vector<End> ends;
     for (int axis = 0; axis < 3; ++axis)
         for (const bool upper : {false, true}) {
-            ends.clear();
-            double total = 0.0;
-            for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
-                if (scene.is_removed(i)) continue;
-                const Aabb box = aabb_of(scene.world_boxes()[i]);
-                const double weight = static_cast<double>(scene.mesh(scene.mesh_of(i)).triangle_count());
-                ends.push_back({upper ? -box.max[axis] : box.min[axis], weight});
-                total += weight;
-            }
-            std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.position < b.position; });
+            const auto end_of = [&](const Extent& e) { return upper ? -e.box.max[axis] : e.box.min[axis]; };
+            std::sort(extents.begin(), extents.end(),
+                      [&](const Extent& a, const Extent& b) { return end_of(a) < end_of(b); });
             double below = 0.0;
-            for (const End& end : ends) {
-                below += end.weight;
+            for (const Extent& extent : extents) {
+                below += extent.weight;
                 if (below < 0.05 * total) continue;
-                (upper ? focus.max : focus.min)[axis] = upper ? -end.position : end.position;
+                (upper ? focus.max : focus.min)[axis] = upper ? -end_of(extent) : end_of(extent);
                 break;
             }
         }
