@@ -19,11 +19,8 @@ Result<void> create_logical_device(VulkanContext& context, const DeviceOptions& 
 
     VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_FEATURES_EXT};
     multi_draw.multiDraw = VK_TRUE;
-    VkPhysicalDeviceVulkan11Features vulkan11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
-    vulkan11.shaderDrawParameters = VK_TRUE;
-    if (context.max_multi_draws > 0) vulkan11.pNext = &multi_draw;
     VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-    features.pNext = &vulkan11;
+    if (context.max_multi_draws > 0) features.pNext = &multi_draw;
     features.features.multiDrawIndirect = context.multi_draw_indirect;
     features.features.drawIndirectFirstInstance = context.multi_draw_indirect;
     features.features.pipelineStatisticsQuery = context.pipeline_statistics;

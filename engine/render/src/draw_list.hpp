@@ -5,7 +5,7 @@
 
 namespace crofton::render {
 
-// One draw after merging; its slot in the transforms' buffer is its index in the list.
+// One draw after merging.
 struct MergedDraw {
     std::uint32_t first_index, index_count, transform;
 };

@@ -73,12 +73,9 @@ Result<void> examine(VulkanContext& context, const DeviceOptions& options) {
 
     const bool multi_draw_known = has_extension(context.physical_device, VK_EXT_MULTI_DRAW_EXTENSION_NAME);
     VkPhysicalDeviceMultiDrawFeaturesEXT multi_draw{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_FEATURES_EXT};
-    VkPhysicalDeviceVulkan11Features vulkan11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
     VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-    features.pNext = &vulkan11;
-    if (multi_draw_known) vulkan11.pNext = &multi_draw;
+    if (multi_draw_known) features.pNext = &multi_draw;
     vkGetPhysicalDeviceFeatures2(context.physical_device, &features);
-    if (vulkan11.shaderDrawParameters == VK_FALSE) return lacks("shaderDrawParameters");
 
     VkPhysicalDeviceMultiDrawPropertiesEXT limits{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTI_DRAW_PROPERTIES_EXT};
     if (multi_draw_known && multi_draw.multiDraw == VK_TRUE) {

@@ -18,7 +18,7 @@ namespace {
 struct Recipe {
     std::span<const std::uint32_t> vertex_shader, fragment_shader;
     std::span<const VkVertexInputAttributeDescription> attributes;
-    std::uint32_t stride = 0;
+    std::span<const VkVertexInputBindingDescription> bindings;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     VkPolygonMode mode = VK_POLYGON_MODE_FILL;
     VkCullModeFlags cull = VK_CULL_MODE_NONE;
@@ -120,10 +120,9 @@ VkResult create_pipeline(const Pipelines& pipelines, const Recipe& recipe, VkSha
                          VkShaderModule fragment, VkPipeline& pipeline) {
     const std::array stages{stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex),
                             stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-    const VkVertexInputBindingDescription binding{0, recipe.stride, VK_VERTEX_INPUT_RATE_VERTEX};
     VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    input.vertexBindingDescriptionCount = recipe.attributes.empty() ? 0 : 1;
-    input.pVertexBindingDescriptions = &binding;
+    input.vertexBindingDescriptionCount = static_cast<std::uint32_t>(recipe.bindings.size());
+    input.pVertexBindingDescriptions = recipe.bindings.data();
     input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(recipe.attributes.size());
     input.pVertexAttributeDescriptions = recipe.attributes.data();
     VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
@@ -185,32 +184,40 @@ Result<VkPipeline> cook(const Pipelines& pipelines, const Recipe& recipe) {
     return pipeline;
 }
 
-Result<void> create_layouts(Pipelines& pipelines) {
+Result<void> create_layout(Pipelines& pipelines) {
     const VulkanContext& context = pipelines.context;
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT,
-                                               nullptr};
-    VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-    set.bindingCount = 1;
-    set.pBindings = &binding;
-    VkResult result = context.vk.vkCreateDescriptorSetLayout(context.device, &set, nullptr, &pipelines.set_layout);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateDescriptorSetLayout"));
     const VkPushConstantRange constants{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                         kPushConstantBytes};
     VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-    layout.setLayoutCount = 1;
-    layout.pSetLayouts = &pipelines.set_layout;
     layout.pushConstantRangeCount = 1;
     layout.pPushConstantRanges = &constants;
-    result = context.vk.vkCreatePipelineLayout(context.device, &layout, nullptr, &pipelines.layout);
+    const VkResult result = context.vk.vkCreatePipelineLayout(context.device, &layout, nullptr, &pipelines.layout);
     if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreatePipelineLayout"));
     return {};
 }
 
-constexpr std::array<VkVertexInputAttributeDescription, 3> kVertexAttributes{{
+// The draw's transform comes as attributes that step once an instance: software devices fetch those once for eight
+// vertices, and a storage buffer once for each.
+constexpr std::array<VkVertexInputBindingDescription, 2> kVertexBindings{{
+    {0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX},
+    {1, sizeof(DrawTransform), VK_VERTEX_INPUT_RATE_INSTANCE},
+}};
+constexpr VkFormat kFloat4 = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr std::array<VkVertexInputAttributeDescription, 11> kVertexAttributes{{
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
     {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
     {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
+    {3, 1, kFloat4, offsetof(DrawTransform, to_clip)},
+    {4, 1, kFloat4, offsetof(DrawTransform, to_clip) + 16},
+    {5, 1, kFloat4, offsetof(DrawTransform, to_clip) + 32},
+    {6, 1, kFloat4, offsetof(DrawTransform, to_clip) + 48},
+    {7, 1, kFloat4, offsetof(DrawTransform, normal)},
+    {8, 1, kFloat4, offsetof(DrawTransform, normal) + 16},
+    {9, 1, kFloat4, offsetof(DrawTransform, normal) + 32},
+    {10, 1, kFloat4, offsetof(DrawTransform, tint_share)},
 }};
+constexpr std::array<VkVertexInputBindingDescription, 1> kLineBindings{
+    {{0, sizeof(LineVertex), VK_VERTEX_INPUT_RATE_VERTEX}}};
 constexpr std::array<VkVertexInputAttributeDescription, 2> kLineAttributes{{
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(LineVertex, position)},
     {1, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(LineVertex, rgba)},
@@ -222,7 +229,6 @@ Pipelines::~Pipelines() {
     const auto& vk = context.vk;
     for (VkPipeline pipeline : {triangles, wires, lines, sky}) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
     vk.vkDestroyPipelineLayout(context.device, layout, nullptr);
-    vk.vkDestroyDescriptorSetLayout(context.device, set_layout, nullptr);
     vk.vkDestroyRenderPass(context.device, render_pass, nullptr);
 }
 
@@ -230,20 +236,20 @@ Result<void> Pipelines::create(bool cull_back_faces) {
     auto pass = create_render_pass(context);
     if (!pass) return tl::unexpected(std::move(pass.error()));
     render_pass = *pass;
-    if (auto made = create_layouts(*this); !made) return made;
+    if (auto made = create_layout(*this); !made) return made;
 
-    Recipe triangle_recipe{shaders::scene_vert, shaders::scene_frag, kVertexAttributes, sizeof(Vertex)};
+    Recipe triangle_recipe{shaders::scene_vert, shaders::scene_frag, kVertexAttributes, kVertexBindings};
     triangle_recipe.cull = cull_back_faces ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
     Recipe wire_recipe = triangle_recipe;
     wire_recipe.mode = VK_POLYGON_MODE_LINE;
     wire_recipe.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
     wire_recipe.depth_bias = true;
-    Recipe line_recipe{shaders::line_vert, shaders::line_frag, kLineAttributes, sizeof(LineVertex)};
+    Recipe line_recipe{shaders::line_vert, shaders::line_frag, kLineAttributes, kLineBindings};
     line_recipe.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
     line_recipe.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
     line_recipe.blend = true;
     line_recipe.depth_write = false;
-    Recipe sky_recipe{shaders::sky_vert, shaders::sky_frag, {}, 0};
+    Recipe sky_recipe{shaders::sky_vert, shaders::sky_frag, {}, {}};
     sky_recipe.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
     sky_recipe.depth_write = false;
 

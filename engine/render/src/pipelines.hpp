@@ -19,7 +19,6 @@ struct Pipelines {
     const VulkanContext& context;
     // Colour ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment shaders that follow.
     VkRenderPass render_pass = VK_NULL_HANDLE;
-    VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;  // binding 0: the draws' storage buffer
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline triangles = VK_NULL_HANDLE;
     VkPipeline wires = VK_NULL_HANDLE;  // null where the device cannot

@@ -32,7 +32,6 @@ Rasterizer::State::~State() {
     context.vk.vkDeviceWaitIdle(context.device);
     context.vk.vkDestroyQueryPool(context.device, statistics, nullptr);
     context.vk.vkDestroyQueryPool(context.device, occlusion, nullptr);
-    context.vk.vkDestroyDescriptorPool(context.device, descriptor_pool, nullptr);
 }
 
 Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
@@ -43,8 +42,7 @@ Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
     auto made_commands = Commands::create(context);
     if (!made_commands) return tl::unexpected(std::move(made_commands.error()));
     commands = std::move(*made_commands);
-    if (auto made = create_queries(); !made) return made;
-    return create_descriptors();
+    return create_queries();
 }
 
 Result<void> Rasterizer::State::create_queries() {
@@ -63,29 +61,12 @@ Result<void> Rasterizer::State::create_queries() {
     return {};
 }
 
-Result<void> Rasterizer::State::create_descriptors() {
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
-    VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    pool.maxSets = 1;
-    pool.poolSizeCount = 1;
-    pool.pPoolSizes = &size;
-    VkResult result = context.vk.vkCreateDescriptorPool(context.device, &pool, nullptr, &descriptor_pool);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateDescriptorPool"));
-    VkDescriptorSetAllocateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-    set.descriptorPool = descriptor_pool;
-    set.descriptorSetCount = 1;
-    set.pSetLayouts = &pipelines.set_layout;
-    result = context.vk.vkAllocateDescriptorSets(context.device, &set, &descriptor_set);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkAllocateDescriptorSets"));
-    return {};
-}
-
-Result<bool> Rasterizer::State::reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const {
-    if (buffer.size >= size) return false;
+Result<void> Rasterizer::State::reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const {
+    if (buffer.size >= size) return {};
     auto grown = create_host_buffer(context, std::max<VkDeviceSize>(size, buffer.size * 2), usage);
     if (!grown) return tl::unexpected(std::move(grown.error()));
     buffer = std::move(*grown);
-    return true;
+    return {};
 }
 
 Result<void> Rasterizer::State::prepare(const Frame& frame) {
@@ -95,45 +76,27 @@ Result<void> Rasterizer::State::prepare(const Frame& frame) {
     if (auto merged = merge_ranges(frame.wire_ranges, index_count, frame.transforms.size(), draws); !merged)
         return merged;
 
-    const VkDeviceSize bytes = std::max<VkDeviceSize>(draws.size(), 1) * sizeof(DrawTransform);
-    if (bytes > context.properties.limits.maxStorageBufferRange)
-        return fail(ErrorCode::out_of_range, kNoItem,
-                    std::to_string(draws.size()) + " draws are more than the device takes");
-    auto replaced = reserve(transforms, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    if (!replaced) return tl::unexpected(std::move(replaced.error()));
-    if (*replaced) {
-        const VkDescriptorBufferInfo whole{transforms.handle, 0, VK_WHOLE_SIZE};
-        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        write.dstSet = descriptor_set;
-        write.descriptorCount = 1;
-        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        write.pBufferInfo = &whole;
-        context.vk.vkUpdateDescriptorSets(context.device, 1, &write, 0, nullptr);
+    if (!draws.empty()) {
+        const std::size_t bytes = frame.transforms.size_bytes();
+        if (auto made = reserve(transforms, bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !made) return made;
+        std::memcpy(transforms.mapped, frame.transforms.data(), bytes);
     }
-    for (std::size_t i = 0; i < draws.size(); ++i)
-        std::memcpy(transforms.mapped + i * sizeof(DrawTransform), &frame.transforms[draws[i].transform],
-                    sizeof(DrawTransform));
-
     if (context.max_multi_draws > 0) {
         multi_draws.clear();
         for (const MergedDraw& draw : draws) multi_draws.push_back({draw.first_index, draw.index_count, 0});
     } else if (context.multi_draw_indirect && !draws.empty()) {
-        auto made =
-            reserve(indirect, draws.size() * sizeof(VkDrawIndexedIndirectCommand), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-        if (!made) return tl::unexpected(std::move(made.error()));
-        const std::size_t limit = context.properties.limits.maxDrawIndirectCount;
+        if (auto made = reserve(indirect, draws.size() * sizeof(VkDrawIndexedIndirectCommand),
+                                VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+            !made)
+            return made;
         for (std::size_t i = 0; i < draws.size(); ++i) {
-            // gl_DrawID restarts with every call, so the base is the call's first draw.
-            const std::size_t call =
-                i < counted_draws ? i / limit * limit : counted_draws + (i - counted_draws) / limit * limit;
             const VkDrawIndexedIndirectCommand command{draws[i].index_count, 1, draws[i].first_index, 0,
-                                                       static_cast<std::uint32_t>(call)};
+                                                       draws[i].transform};
             std::memcpy(indirect.mapped + i * sizeof command, &command, sizeof command);
         }
     }
     if (!frame.lines.empty()) {
-        auto made = reserve(lines, frame.lines.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-        if (!made) return tl::unexpected(std::move(made.error()));
+        if (auto made = reserve(lines, frame.lines.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !made) return made;
         std::memcpy(lines.mapped, frame.lines.data(), frame.lines.size_bytes());
     }
     return {};

@@ -29,17 +29,14 @@ struct Rasterizer::State {
     std::size_t counted_draws = 0;  // of `draws`
     Vector<VkMultiDrawIndexedInfoEXT> multi_draws;
 
-    VkDescriptorPool descriptor_pool = VK_NULL_HANDLE;
-    VkDescriptorSet descriptor_set = VK_NULL_HANDLE;
     VkQueryPool statistics = VK_NULL_HANDLE;  // null where the device has none
     VkQueryPool occlusion = VK_NULL_HANDLE;
     Commands commands;
 
     [[nodiscard]] Result<void> create(const RasterizerOptions& options);
     [[nodiscard]] Result<void> create_queries();
-    [[nodiscard]] Result<void> create_descriptors();
-    // Makes `buffer` at least `size` bytes; returns whether it was replaced.
-    [[nodiscard]] Result<bool> reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const;
+    // Makes `buffer` at least `size` bytes.
+    [[nodiscard]] Result<void> reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const;
     // Fills draws, transforms, indirect and lines.
     [[nodiscard]] Result<void> prepare(const Frame& frame);
     void record(const Frame& frame, const Target& target);

@@ -60,11 +60,13 @@ glm::mat4 camera_relative_to_clip(const Camera& camera) {
 void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     const auto& vk = context.vk;
     if (context.max_multi_draws > 0) {
-        for (std::size_t i = begin; i < end; i += context.max_multi_draws) {
-            const std::size_t count = std::min<std::size_t>(context.max_multi_draws, end - i);
-            // The shader's slot is gl_BaseInstance + gl_DrawID.
-            vk.vkCmdDrawMultiIndexedEXT(commands.handle, static_cast<std::uint32_t>(count), multi_draws.data() + i, 1,
-                                        static_cast<std::uint32_t>(i), sizeof(VkMultiDrawIndexedInfoEXT), nullptr);
+        // The instance is the transform, so each call takes a run of draws that share one.
+        for (std::size_t i = begin; i < end;) {
+            std::size_t run = i + 1;
+            while (run < end && draws[run].transform == draws[i].transform && run - i < context.max_multi_draws) ++run;
+            vk.vkCmdDrawMultiIndexedEXT(commands.handle, static_cast<std::uint32_t>(run - i), multi_draws.data() + i, 1,
+                                        draws[i].transform, sizeof(VkMultiDrawIndexedInfoEXT), nullptr);
+            i = run;
         }
     } else if (context.multi_draw_indirect) {
         const std::size_t limit = context.properties.limits.maxDrawIndirectCount;
@@ -74,8 +76,7 @@ void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
                                         sizeof(VkDrawIndexedIndirectCommand));
     } else {
         for (std::size_t i = begin; i < end; ++i)
-            vk.vkCmdDrawIndexed(commands.handle, draws[i].index_count, 1, draws[i].first_index, 0,
-                                static_cast<std::uint32_t>(i));
+            vk.vkCmdDrawIndexed(commands.handle, draws[i].index_count, 1, draws[i].first_index, 0, draws[i].transform);
     }
 }
 
@@ -107,10 +108,10 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
 
     const SceneConstants scene = scene_constants(frame);
     if (!draws.empty()) {
-        const VkDeviceSize zero = 0;
-        vk.vkCmdBindVertexBuffers(cmd, 0, 1, &vertices.handle, &zero);
+        const std::array buffers{vertices.handle, transforms.handle};
+        const std::array<VkDeviceSize, 2> offsets{};
+        vk.vkCmdBindVertexBuffers(cmd, 0, 2, buffers.data(), offsets.data());
         vk.vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
-        vk.vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &descriptor_set, 0, nullptr);
         vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof scene, &scene);
         vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.triangles);
     }

@@ -31,7 +31,7 @@ struct DrawTransform {
     float unlit = 0.0f;               // 1: colours as given, without light
     float padding[2]{};
 };
-static_assert(sizeof(DrawTransform) == 128, "std430 layout of the vertex shader's buffer");
+static_assert(sizeof(DrawTransform) == 128, "the layout that the vertex shader's attributes are read by");
 
 // For a mesh placed by x ↦ linear · x + translation; `to_clip` is ModelToClip's matrix for the same.
 [[nodiscard]] DrawTransform draw_transform(const glm::mat4& to_clip, const glm::dmat3& linear);
