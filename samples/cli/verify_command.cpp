@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "report.hpp"
+#include "verify_cull.hpp"
 #include "verify_rows.hpp"
 #include "verify_topics.hpp"
 
@@ -20,6 +21,7 @@ struct Topic {
 constexpr Topic kTopics[] = {
     {"paper", verify_paper},
     {"lines", verify_lines},
+    {"cull", verify_cull},
 };
 
 struct Request {

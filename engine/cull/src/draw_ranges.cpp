@@ -1,0 +1,35 @@
+#include <bit>
+#include <crofton/core/assert.hpp>
+#include <crofton/cull/draw_ranges.hpp>
+
+namespace crofton::cull {
+
+void to_bits(std::span<const tree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits) {
+    bits.assign((items + 63) / 64, 0);
+    for (const tree::ItemId id : ids) {
+        CROFTON_ASSERT(id < items, "an id beyond the number of items");
+        bits[id / 64] |= std::uint64_t{1} << (id % 64);
+    }
+}
+
+void merge_ranges(std::span<const std::uint64_t> bits, std::uint32_t max_gap, Vector<ItemRange>& ranges) {
+    ranges.clear();
+    for (std::size_t w = 0; w < bits.size(); ++w) {
+        std::uint64_t word = bits[w];
+        for (unsigned at = 0; word != 0;) {
+            const auto skip = static_cast<unsigned>(std::countr_zero(word));
+            word >>= skip;
+            at += skip;
+            const auto run = static_cast<unsigned>(std::countr_one(word));
+            const auto first = static_cast<tree::ItemId>(64 * w + at);
+            if (!ranges.empty() && first - (ranges.back().first + ranges.back().count) <= max_gap)
+                ranges.back().count = first + run - ranges.back().first;
+            else
+                ranges.push_back({first, run});
+            at += run;
+            word = run == 64 ? 0 : word >> run;
+        }
+    }
+}
+
+}  // namespace crofton::cull

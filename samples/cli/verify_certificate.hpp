@@ -1,0 +1,17 @@
+// Proofs, checked in exact arithmetic, that a box and a frustum meet or do not: the judge of `crofton verify cull`.
+#pragma once
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <cstdint>
+
+namespace crofton::cli {
+
+enum class Proof : std::uint8_t { meets, disjoint, none };
+
+// A point of the box that lies in all half-spaces, or a sum of half-spaces, with factors ≥ 0, that excludes the whole
+// box. The point and the factors are guessed in floating point, by trying all vertices; whether they prove anything is
+// decided exactly, by arithmetic on integers of any length. `none` where no guess proves anything: boxes that touch to
+// within rounding.
+[[nodiscard]] Proof prove(const Frustum& frustum, const Obb& box);
+
+}  // namespace crofton::cli

@@ -1,0 +1,128 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/cull/many_views.hpp>
+#include <crofton/cull/shadow_volume.hpp>
+#include <map>
+#include <oracle/random_boxes.hpp>
+#include <vector>
+
+using namespace crofton;
+
+namespace {
+
+// One query per view, put together.
+std::map<cull::ItemId, std::uint32_t> one_by_one(const tree::BoxTree& tree, std::span<const cull::View> views,
+                                                 cull::Mode mode) {
+    std::map<cull::ItemId, std::uint32_t> masks;
+    cull::VisibleSet visible;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        cull::cull(tree, views[v], visible, {mode});
+        for (const cull::ItemId id : visible.ids()) masks[id] |= 1u << v;
+    }
+    return masks;
+}
+
+}  // namespace
+
+TEST_SUITE("cull/many_views") {
+    TEST_CASE("no views see nothing; a view that is not finite does not spoil the others") {
+        const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 1);
+        const auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
+        cull::ManyVisible visible;
+        cull::cull(*tree, std::span<const cull::View>{}, visible);
+        CHECK(visible.size() == 0);
+        std::vector<cull::View> views(3, cull::View{*frustum_of(Camera{}), 3u});
+        views[1].frustum.planes[0].offset = std::nan("");
+        cull::cull(*tree, views, visible);
+        const auto expected = one_by_one(*tree, views, cull::Mode::exact);
+        CHECK(visible.size() == expected.size());
+        for (std::size_t i = 0; i < visible.size(); ++i)
+            CHECK(expected.at(visible.ids()[i]) == visible.view_masks()[i]);
+    }
+
+    TEST_CASE("32 views in one pass see what each sees alone: cameras, open volumes, shadow volumes, layers") {
+        for (const double offset : {0.0, 1e7})
+            for (const std::size_t count : {1u, 40u, 6000u}) {
+                const oracle::Crowd crowd = oracle::random_crowd(count, offset, count);
+                auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
+                REQUIRE(tree.has_value());
+                oracle::NearMisses random(11, offset);
+                // Some leaves no longer in one run, some half empty.
+                for (std::uint32_t i = 0; i + 7 < count; i += 7) {
+                    REQUIRE(tree->remove(i).has_value());
+                    REQUIRE(tree->insert(crowd.boxes[i], crowd.layers[i]).has_value());
+                }
+                tree->refit();
+                std::vector<cull::View> views;
+                for (unsigned v = 0; v < 32; ++v) {
+                    Camera camera = random.camera();
+                    camera.far = camera.near + random.number(1.0, 60.0);
+                    cull::View view{*frustum_of(camera), v % 4 ? ~0u : 1u << (v % 5)};
+                    if (v % 5 == 1) view.frustum.plane_count = 5;
+                    if (v % 5 == 2) view.frustum = *cull::shadow_volume(view.frustum, random.direction());
+                    if (v % 5 == 3)
+                        view.frustum =
+                            *cull::shadow_volume_of_point(view.frustum, camera.position + 30.0 * random.direction());
+                    views.push_back(view);
+                }
+                cull::ManyVisible visible;
+                for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact})
+                    for (const std::size_t used : {32u, 4u}) {
+                        const auto some = std::span<const cull::View>(views).first(used);
+                        cull::cull(*tree, some, visible, mode);
+                        const auto expected = one_by_one(*tree, some, mode);
+                        REQUIRE(visible.size() == expected.size());
+                        for (std::size_t i = 0; i < visible.size(); ++i)
+                            REQUIRE(expected.at(visible.ids()[i]) == visible.view_masks()[i]);
+                    }
+            }
+    }
+}
+
+TEST_SUITE("cull/shadow_volume") {
+    TEST_CASE("a light that is no direction, not finite or a view of too many planes is refused") {
+        const Frustum view = *frustum_of(Camera{});
+        CHECK(cull::shadow_volume(view, glm::dvec3(0.0)).error().code == ErrorCode::degenerate);
+        CHECK(cull::shadow_volume(view, {std::nan(""), 0.0, 1.0}).error().code == ErrorCode::non_finite);
+        CHECK(cull::shadow_volume(*cull::shadow_volume(view, {0.3, 1.0, 0.2}), {1.0, 0.0, 0.0}).error().code ==
+              ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a point belongs to the volume iff its way from the light meets the view") {
+        oracle::NearMisses random(4);
+        int inside = 0;
+        for (int trial = 0; trial < 400; ++trial) {
+            const Frustum view = *frustum_of(random.camera());
+            const glm::dvec3 direction = random.direction(), light = view.origin + 40.0 * random.direction();
+            const Frustum far_volume = *cull::shadow_volume(view, direction),
+                          near_volume = *cull::shadow_volume_of_point(view, light);
+            CHECK(far_volume.plane_count <= Frustum::kMaxPlanes);
+            for (int n = 0; n < 50; ++n) {
+                const glm::dvec3 point = view.origin + random.number(0.0, 40.0) * random.direction();
+                // Along the light the planes are linear: the part of the way inside the view is an interval.
+                const auto meets = [&](const glm::dvec3& step, double longest) {
+                    double low = 0.0, high = longest;
+                    for (const Plane& plane : view.view()) {
+                        const double at = glm::dot(plane.normal, point - view.origin) + plane.offset,
+                                     slope = glm::dot(plane.normal, step);
+                        if (slope > 0.0) low = std::max(low, -at / slope);
+                        if (slope < 0.0) high = std::min(high, -at / slope);
+                        if (slope == 0.0 && at < 0.0) return -1.0;
+                    }
+                    return high - low;
+                };
+                const auto least = [&](const Frustum& volume) {
+                    double value = 1e300;
+                    for (const Plane& plane : volume.view())
+                        value = std::min(value, glm::dot(plane.normal, point - volume.origin) + plane.offset);
+                    return value;
+                };
+                const double through_far = meets(-direction, 1e9), through_near = meets(point - light, 1e9);
+                if (std::abs(least(far_volume)) > 1e-9) CHECK((least(far_volume) > 0.0) == (through_far >= 0.0));
+                if (std::abs(least(near_volume)) > 1e-9) CHECK((least(near_volume) > 0.0) == (through_near >= 0.0));
+                inside += through_far >= 0.0;
+            }
+        }
+        CHECK(inside > 1000);
+    }
+}
