@@ -14,7 +14,7 @@ void add_floor(scene::Scene& scene, double height, float half = 10.0f) {
     for (const glm::vec3& p :
          {glm::vec3(-half, 0, -half), glm::vec3(half, 0, -half), glm::vec3(half, 0, half), glm::vec3(-half, 0, half)})
         mesh.positions.push_back(p);
-    for (const std::uint32_t index : {0, 2, 1, 0, 3, 2}) mesh.indices.push_back(index);
+    for (const std::uint32_t index : {0u, 2u, 1u, 0u, 3u, 2u}) mesh.indices.push_back(index);
     const auto node = scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.0, height, 0.0}});
     REQUIRE(scene.add_instance(*node, *scene.add_mesh(std::move(mesh))).has_value());
     scene.update();
