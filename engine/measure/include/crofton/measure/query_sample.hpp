@@ -14,6 +14,8 @@ namespace crofton::measure {
 
 class QuerySample {
   public:
+    QuerySample() = default;  // no queries
+
     // Quasi-random, by seed: planes and lines that hit the ball, frusta of this camera whose own box, grown by the
     // ball's radius, holds the ball's centre; all motions that can hit anything inside the ball are among them. At most
     // 2^24. Errors: a radius that is not positive and finite; count 0 or too large; as of_frustum for the camera.

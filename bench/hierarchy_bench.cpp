@@ -1,0 +1,242 @@
+// What a tree's criterion is worth: tests per query for trees built by every strategy, on real and random scenes. The
+// time is that of the build. docs/hierarchies.md quotes: bench_measure --benchmark_filter=hierarchy
+#include <benchmark/benchmark.h>
+
+#include <assets/scene_source.hpp>
+#include <cmath>
+#include <crofton/cull/classify.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/query_sample.hpp>
+#include <crofton/measure/random_motion.hpp>
+#include <crofton/tree/visit_tree.hpp>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <pipeline/camera_path.hpp>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace crofton;
+using measure::Criterion;
+using tree::Split;
+using tree::Visit;
+using tree::VisitTree;
+
+struct World {
+    std::vector<Obb> boxes;
+    std::vector<Camera> views;
+    measure::Ball region;
+};
+
+void enclose(World& world) {
+    Aabb all;
+    for (const Obb& box : world.boxes) all.include(aabb_of(box));
+    world.region = {all.center(), glm::length(all.half_extents())};
+}
+
+World random_world(const glm::dvec3& least, const glm::dvec3& most) {
+    World world;
+    measure::Random random(1);
+    const auto between = [&](double a, double b) { return a * std::pow(b / a, random.uniform()); };
+    for (int i = 0; i < 20'000; ++i) {
+        Obb box;
+        box.center = 100.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
+        box.axes = glm::mat3(measure::rotation(random.point<3>()));
+        box.half_extents =
+            glm::vec3(0.5 * glm::dvec3(between(least.x, most.x), between(least.y, most.y), between(least.z, most.z)));
+        world.boxes.push_back(box);
+    }
+    enclose(world);
+    Camera camera;
+    camera.far = 50.0;
+    const Aabb inside{glm::dvec3(0.0), glm::dvec3(100.0)};
+    for (int i = 0; i < 100; ++i) world.views.push_back(measure::random_camera(camera, inside, random.point<6>()));
+    return world;
+}
+
+// Instances of a scene, seen along a street path or, without a walk, an orbit.
+World scene_world(const std::string& source, std::uint32_t instances, const std::string& path) {
+    World world;
+    assets::LoadOptions options;
+    options.instances = instances;
+    auto loaded = assets::load_scene(source, options);
+    if (!loaded) return world;
+    loaded->scene.update();
+    for (std::size_t i = 0; i < loaded->scene.instance_count(); ++i)
+        if (!loaded->scene.is_removed(static_cast<scene::InstanceId>(i)))
+            world.boxes.push_back(loaded->scene.world_boxes()[i]);
+    enclose(world);
+    const auto cameras =
+        pipeline::make_camera_path({.kind = path, .frames = 100}, pipeline::focus_of(loaded->scene), loaded->walk);
+    if (cameras) world.views = *cameras;
+    return world;
+}
+
+const World& world_named(const std::string& name) {
+    static std::map<std::string, World> worlds;
+    const auto found = worlds.find(name);
+    if (found != worlds.end()) return found->second;
+    const std::string shared = CROFTON_SHARED_DATA "/scenes/";
+    World& world = worlds[name];
+    if (name == "boxes") world = random_world(glm::dvec3(0.1), glm::dvec3(3.0));
+    if (name == "needles") world = random_world({5.0, 0.02, 0.02}, {20.0, 0.1, 0.1});
+    if (name == "town_street") world = scene_world("town", 0, "street");
+    if (name == "town_orbit") world = scene_world("town", 0, "orbit");
+    if (name == "large_town_street") world = scene_world("town", 30'000, "street");
+    if (name == "forest_street") world = scene_world(shared + "stk_black_forest.glb", 0, "street");
+    if (name == "forest_orbit") world = scene_world(shared + "stk_black_forest.glb", 0, "orbit");
+    return world;
+}
+
+// The frustum in use, its far plane at the end of the world where it has none nearer.
+Camera finite(Camera camera, const World& world) {
+    camera.far = std::min(camera.far, 2.0 * world.region.radius);
+    return camera;
+}
+
+enum class Build { median, nested, sampled, inserted };
+
+struct Strategy {
+    const char* name;
+    Build build;
+    Criterion (*criterion)(const World&);
+    bool oriented;
+};
+
+Criterion by_area(const World&) {
+    return measure::minimal_area();
+}
+Criterion by_edges(const World&) {
+    return measure::minimal_perimeter();
+}
+Criterion by_frustum(const World& world) {
+    return *measure::for_frustum(finite(world.views[0], world));
+}
+// How often a bound straddles: μ(hits) − μ(is contained) = 2V + 2·F_B·M/4π to first order; F drops out.
+Criterion by_straddling(const World& world) {
+    const auto b = *measure::of_frustum(finite(world.views[0], world));
+    return {1.0, 0.0, b.area / (4.0 * std::numbers::pi)};
+}
+
+constexpr Strategy kStrategies[] = {
+    {"median", Build::median, by_edges, false},
+    {"nested_F", Build::nested, by_area, false},
+    {"nested_M", Build::nested, by_edges, false},
+    {"kinematic", Build::nested, by_frustum, false},
+    {"straddling", Build::nested, by_straddling, false},
+    {"sampled", Build::sampled, by_frustum, false},
+    {"oriented_F", Build::nested, by_area, true},
+    {"oriented_M", Build::nested, by_edges, true},
+    {"oriented_kinematic", Build::nested, by_frustum, true},
+    {"oriented_n_level", Build::sampled, by_frustum, true},
+    {"inserted_F", Build::inserted, by_area, false},
+    {"inserted_M", Build::inserted, by_edges, false},
+    {"inserted_kinematic", Build::inserted, by_frustum, false},
+};
+
+VisitTree build(const World& world, const Strategy& strategy) {
+    tree::VisitOptions options{.criterion = strategy.criterion(world), .oriented = strategy.oriented};
+    if (strategy.build == Build::inserted) {
+        VisitTree tree = *VisitTree::build({}, options);
+        for (const Obb& box : world.boxes) (void)*tree.insert(box);
+        return tree;
+    }
+    options.split = strategy.build == Build::median
+                        ? Split::median
+                        : (strategy.build == Build::sampled ? Split::sampled : Split::nested);
+    measure::QuerySample queries;
+    if (options.split == Split::sampled) {
+        queries = *measure::QuerySample::frusta(finite(world.views[0], world), world.region, 4096, 1);
+        options.queries = &queries;
+    }
+    return *VisitTree::build(world.boxes, options);
+}
+
+struct Tally {
+    double tests = 0.0, tests_without_taking = 0.0, improper_outside = 0.0, improper_inside = 0.0;
+};
+
+// Per node how many items below meet the view, and how many are inside.
+struct Below {
+    std::uint32_t met = 0, inside = 0, all = 0;
+};
+
+Tally tally(const World& world, const VisitTree& tree) {
+    Tally sum;
+    std::vector<Below> below(2 * world.boxes.size());
+    for (const Camera& view : world.views) {
+        const Frustum frustum = *frustum_of(view);
+        std::fill(below.begin(), below.end(), Below{});
+        for (tree::ItemId i = 0; i < world.boxes.size(); ++i) {
+            const cull::Verdict verdict = cull::classify(frustum, world.boxes[i]);
+            for (std::uint32_t n = tree.leaf(i); n != tree::kNone; n = tree.node(n).parent) {
+                below[n].met += verdict != cull::Verdict::outside;
+                below[n].inside += verdict == cull::Verdict::inside;
+                ++below[n].all;
+            }
+        }
+        const auto node_of = [&](const Obb& bound) {
+            const auto* node = reinterpret_cast<const VisitTree::Node*>(&bound);  // `bound` is a node's first member
+            return static_cast<std::size_t>(node - &tree.node(0));
+        };
+        sum.tests += static_cast<double>(tree.visit(
+            [&](const Obb& bound) {
+                const cull::Verdict verdict = cull::classify(frustum, bound);
+                const Below& b = below[node_of(bound)];
+                sum.improper_outside += verdict != cull::Verdict::outside && b.met == 0;
+                sum.improper_inside += verdict == cull::Verdict::straddling && b.inside == b.all;
+                return verdict == cull::Verdict::outside
+                           ? Visit::skip
+                           : (verdict == cull::Verdict::inside ? Visit::take : Visit::descend);
+            },
+            [](tree::ItemId) {}));
+        sum.tests_without_taking += static_cast<double>(tree.visit(
+            [&](const Obb& bound) {
+                return cull::classify(frustum, bound) == cull::Verdict::outside ? Visit::skip : Visit::descend;
+            },
+            [](tree::ItemId) {}));
+    }
+    const double n = static_cast<double>(world.views.size());
+    return {sum.tests / n, sum.tests_without_taking / n, sum.improper_outside / n, sum.improper_inside / n};
+}
+
+double tests_per_line(const World& world, const VisitTree& tree) {
+    const auto lines = *measure::QuerySample::lines(world.region, 1024, 2);
+    std::size_t tests = 0;
+    for (std::uint32_t i = 0; i < lines.size(); ++i)
+        tests += tree.visit([&](const Obb& bound) { return lines.hits(i, bound) ? Visit::descend : Visit::skip; },
+                            [](tree::ItemId) {});
+    return static_cast<double>(tests) / lines.size();
+}
+
+void hierarchy(benchmark::State& state, const std::string& world_name, const Strategy& strategy) {
+    const World& world = world_named(world_name);
+    if (world.boxes.empty() || world.views.empty()) return state.SkipWithError("scene not found");
+    for (auto _ : state) benchmark::DoNotOptimize(build(world, strategy));
+    const VisitTree tree = build(world, strategy);
+    const Tally result = tally(world, tree);
+    state.counters["boxes"] = static_cast<double>(world.boxes.size());
+    state.counters["tests"] = result.tests;
+    state.counters["tests_no_take"] = result.tests_without_taking;
+    state.counters["improper_out"] = result.improper_outside;
+    state.counters["improper_in"] = result.improper_inside;
+    state.counters["tests_per_line"] = tests_per_line(world, tree);
+}
+
+const bool kRegistered = [] {
+    for (const char* world :
+         {"boxes", "needles", "town_street", "town_orbit", "large_town_street", "forest_street", "forest_orbit"})
+        for (const Strategy& strategy : kStrategies)
+            benchmark::RegisterBenchmark(
+                (std::string("hierarchy/") + world + "/" + strategy.name).c_str(),
+                [world = std::string(world), &strategy](benchmark::State& state) { hierarchy(state, world, strategy); })
+                ->Unit(benchmark::kMillisecond)
+                ->Iterations(strategy.build == Build::sampled ? 1 : 3);
+    return true;
+}();
+
+}  // namespace
