@@ -1,6 +1,9 @@
 #include <doctest/doctest.h>
 #include <cmath>
+#include <crofton/geometry/frustum.hpp>
 #include <crofton/measure/criterion.hpp>
+#include <crofton/measure/random.hpp>
+#include <crofton/measure/random_motion.hpp>
 #include <numbers>
 #include <vector>
 
@@ -44,6 +47,66 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(k.volume == doctest::Approx(8.0 / 3.0));
         CHECK(k.area == doctest::Approx(std::sqrt(3.0) * edge * edge));
         CHECK(k.mean_curvature == doctest::Approx(3.0 * edge * std::acos(-1.0 / 3.0)));
+    }
+
+    TEST_CASE("hulls of points, segments and flat clouds have the measures of their dimension") {
+        CHECK(of_hull({}).error().code == ErrorCode::empty);
+        const std::vector<glm::dvec3> same(5, glm::dvec3(3.0));
+        CHECK(of_hull(same)->mean_curvature == 0.0);
+        std::vector<glm::dvec3> line, plane;
+        for (int i = 0; i < 7; ++i) line.push_back(static_cast<double>(i * i) * glm::dvec3(1.0, 2.0, 2.0));
+        CHECK(of_hull(line)->mean_curvature == doctest::Approx(of_segment(108.0).mean_curvature));
+        for (int i = 0; i < 25; ++i) plane.emplace_back(i % 5, 3 * (i / 5), 4 * (i / 5));  // a rectangle of 4 by 20
+        const IntrinsicVolumes flat = of_flat_polygon(80.0, 48.0);
+        CHECK(of_hull(plane)->area == doctest::Approx(flat.area));
+        CHECK(of_hull(plane)->mean_curvature == doctest::Approx(flat.mean_curvature));
+        CHECK(of_hull(plane)->volume == 0.0);
+    }
+
+    TEST_CASE("the hull of a full grid is its box, and of points in a ball nearly the ball") {
+        std::vector<glm::dvec3> grid;
+        for (int i = 0; i < 5 * 4 * 3; ++i) grid.emplace_back(i % 5, (i / 5) % 4, i / 20);
+        const IntrinsicVolumes box = of_box(4.0, 3.0, 2.0), hull = *of_hull(grid);
+        CHECK(hull.volume == doctest::Approx(box.volume));
+        CHECK(hull.area == doctest::Approx(box.area));
+        CHECK(hull.mean_curvature == doctest::Approx(box.mean_curvature));
+        Random random(1);
+        std::vector<glm::dvec3> cloud;
+        for (int i = 0; i < 2000; ++i) cloud.push_back(direction(random.point<2>()));
+        CHECK(of_hull(cloud)->volume == doctest::Approx(of_ball(1.0).volume).epsilon(0.01));
+        CHECK(of_hull(cloud)->area == doctest::Approx(of_ball(1.0).area).epsilon(0.01));
+        CHECK(of_hull(cloud)->mean_curvature == doctest::Approx(of_ball(1.0).mean_curvature).epsilon(0.005));
+        // Agrees with the frustum's own closed forms.
+        Camera camera;
+        camera.near = 1.0, camera.far = 9.0;
+        const auto c = *frustum_corners(*frustum_of(camera));
+        CHECK(of_hull(c)->mean_curvature == doctest::Approx(of_frustum(camera)->mean_curvature));
+    }
+
+    TEST_CASE("measures are additive over a convex union, grow with the body and scale by their degree") {
+        Random random(2);
+        for (int trial = 0; trial < 20; ++trial) {
+            std::vector<glm::dvec3> points, more;
+            for (int i = 0; i < 12; ++i) points.push_back(ball_point(random.point<3>()));
+            more = points;
+            more.push_back(2.0 * direction(random.point<2>()));
+            const IntrinsicVolumes k = *of_hull(points), larger = *of_hull(more);
+            CHECK(larger.volume >= k.volume);
+            CHECK(larger.area >= k.area);
+            CHECK(larger.mean_curvature >= k.mean_curvature);
+            const Motion move{rotation(random.point<3>()), glm::dvec3(5.0)};
+            for (glm::dvec3& p : points) p = move(3.0 * p);
+            const IntrinsicVolumes moved = *of_hull(points);
+            CHECK(moved.volume == doctest::Approx(27.0 * k.volume));
+            CHECK(moved.area == doctest::Approx(9.0 * k.area));
+            CHECK(moved.mean_curvature == doctest::Approx(3.0 * k.mean_curvature));
+        }
+        // A box cut in two: union and the common rectangle against the halves.
+        const IntrinsicVolumes whole = of_box(5.0, 2.0, 1.0), left = of_box(3.0, 2.0, 1.0),
+                               right = of_box(2.0, 2.0, 1.0), cut = of_flat_polygon(2.0, 6.0);
+        CHECK(whole.volume + cut.volume == doctest::Approx(left.volume + right.volume));
+        CHECK(whole.area + cut.area == doctest::Approx(left.area + right.area));
+        CHECK(whole.mean_curvature + cut.mean_curvature == doctest::Approx(left.mean_curvature + right.mean_curvature));
     }
 
     TEST_CASE("a narrow view of a near-cube gives the cube's measures") {
