@@ -54,6 +54,27 @@ TEST_SUITE("measure/query_sample") {
         check(*QuerySample::frusta(camera, region, n, 4), box, kinematic_measure(*of_frustum(camera), k));
     }
 
+    TEST_CASE("a frustum straddles what it meets and does not contain; planes and lines contain nothing") {
+        Camera camera;
+        camera.near = 0.5, camera.far = 8.0;
+        const Ball region{glm::dvec3(0.0), 2.0};
+        const auto frusta = *QuerySample::frusta(camera, region, 4096, 1);
+        const auto planes = *QuerySample::planes(region, 4096, 1);
+        Obb large = turned_box(), point;
+        large.half_extents = glm::vec3(100.0f);
+        int met = 0, straddled = 0;
+        for (std::uint32_t i = 0; i < 4096; ++i) {
+            CHECK(planes.straddles(i, turned_box()) == planes.hits(i, turned_box()));
+            CHECK(frusta.straddles(i, large));        // meets it, cannot hold it
+            CHECK_FALSE(frusta.straddles(i, point));  // holds it or misses it
+            CHECK((!frusta.straddles(i, turned_box()) || frusta.hits(i, turned_box())));
+            met += frusta.hits(i, turned_box());
+            straddled += frusta.straddles(i, turned_box());
+        }
+        CHECK(straddled > 0);
+        CHECK(straddled < met);
+    }
+
     TEST_CASE("queries that hit two boxes agree with the exact measures (4) and (5)") {
         Obb other;
         other.half_extents = glm::vec3(0.5f);

@@ -104,7 +104,7 @@ bool QuerySample::hits(std::uint32_t i, const Obb& box) const {
     const Query& q = queries_[i];
     const glm::dvec3 d = box.center - q.point;
     if (kind_ == Kind::plane) return std::abs(glm::dot(d, q.direction)) <= HalfEdges(box).reach(q.direction);
-    if (kind_ == Kind::frustum) return frustum_hits(q, box);
+    if (kind_ == Kind::frustum) return frustum_hits(q, box, nullptr);
     // Separating axes of a line and a box: the box's axes crossed with the line.
     const HalfEdges half(box);
     for (int k = 0; k < 3; ++k) {
@@ -114,16 +114,27 @@ bool QuerySample::hits(std::uint32_t i, const Obb& box) const {
     return true;
 }
 
-bool QuerySample::frustum_hits(const Query& q, const Obb& box) const {
+bool QuerySample::straddles(std::uint32_t i, const Obb& box) const {
+    if (kind_ != Kind::frustum) return hits(i, box);
+    bool contained = false;
+    return frustum_hits(queries_[i], box, &contained) && !contained;
+}
+
+bool QuerySample::frustum_hits(const Query& q, const Obb& box, bool* contained) const {
     // In the frustum's own frame.
     const glm::dmat3 back = glm::transpose(q.rotation);
     const glm::dvec3 center = back * (box.center - q.point);
     HalfEdges half(box);
     for (glm::dvec3& a : half.axis) a = back * a;
+    bool inside = true;
     for (std::size_t k = 0; k < normals_.size(); ++k) {
         const double at = glm::dot(normals_[k], center), reach = half.reach(normals_[k]);
         if (at + reach < extents_[k][0] || at - reach > extents_[k][1]) return false;
+        // Inward normals: the lower extent is the plane itself; the far plane is the upper one along near's normal.
+        inside = inside && at - reach >= extents_[k][0] && (k != 4 || at + reach <= extents_[k][1]);
     }
+    if (contained != nullptr) *contained = inside;
+    if (inside) return true;
     const auto apart = [&](const glm::dvec3& n) {
         const double at = glm::dot(n, center), reach = half.reach(n);
         double low = std::numeric_limits<double>::infinity(), high = -low;

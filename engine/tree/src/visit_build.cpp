@@ -41,7 +41,7 @@ class VisitBuilder {
         struct Task {
             std::uint32_t begin, end, parent;
             int side;
-            Vector<std::uint32_t> alive;  // queries that hit all ancestors
+            Vector<std::uint32_t> alive;  // queries that straddle all ancestors
         };
         Vector<Task> tasks;
         Vector<std::uint32_t> all;
@@ -59,7 +59,8 @@ class VisitBuilder {
                 tree_.leaf_of_[items[0]] = n;
                 continue;
             }
-            if (!task.alive.empty()) task.alive = options_.queries->hitting(task.alive, tree_.nodes_[n].bound);
+            std::erase_if(task.alive,
+                          [&](std::uint32_t q) { return !options_.queries->straddles(q, tree_.nodes_[n].bound); });
             const std::uint32_t middle = task.begin + split(items, task.alive);
             tasks.push_back({middle, task.end, n, 1, task.alive});
             tasks.push_back({task.begin, middle, n, 0, std::move(task.alive)});
@@ -97,11 +98,15 @@ class VisitBuilder {
             add(fit::fit_obb(points_, {.criterion = measure::minimal_area(), .quality = fit::Quality::fast}));
         std::size_t best = 0;
         const bool counted = alive.size() >= options_.min_queries;
-        std::size_t least_hits = counted ? options_.queries->hitting(alive, candidates[0]).size() : 0;
+        const auto straddling = [&](const Obb& box) {
+            return std::count_if(alive.begin(), alive.end(),
+                                 [&](std::uint32_t q) { return options_.queries->straddles(q, box); });
+        };
+        auto least_hits = counted ? straddling(candidates[0]) : 0;
         double least = value(options_.criterion, candidates[0]);
         for (std::size_t i = 1; i < count; ++i) {
             const double v = value(options_.criterion, candidates[i]);
-            const std::size_t hits = counted ? options_.queries->hitting(alive, candidates[i]).size() : 0;
+            const auto hits = counted ? straddling(candidates[i]) : 0;
             if (hits < least_hits || (hits == least_hits && v < least)) best = i, least = v, least_hits = hits;
         }
         return candidates[best];
@@ -173,7 +178,7 @@ class VisitBuilder {
             return value(options_.criterion, box);
         const Obb bound = obb_of(box);
         std::size_t hits = 0;
-        for (const std::uint32_t q : alive) hits += options_.queries->hits(q, bound);
+        for (const std::uint32_t q : alive) hits += options_.queries->straddles(q, bound);
         return static_cast<double>(hits);
     }
 

@@ -30,8 +30,7 @@ struct IntrinsicVolumes {
                                                    std::span<const std::uint32_t> triangles);
 [[nodiscard]] Result<IntrinsicVolumes> of_polytope(const TriangleMesh& surface);
 
-// The convex hull of points, whatever its dimension. Signs are exact; O(n · corners of the hull). Errors: no points;
-// NaN or infinite coordinates, by index.
+// The convex hull of points, whatever its dimension. Errors: as crofton::convex_hull.
 [[nodiscard]] Result<IntrinsicVolumes> of_hull(std::span<const glm::dvec3> points);
 
 // The view volume of a camera, a convex polytope with 8 corners. Errors: as validate(Camera); far must be finite.

@@ -31,6 +31,10 @@ class QuerySample {
     // Does query i meet the box? In double; touching up to rounding is left to rounding.
     [[nodiscard]] bool hits(std::uint32_t i, const Obb& box) const;
 
+    // Does it meet the box without containing it? Then what is below the box must be looked at: a frustum takes a box
+    // that it contains as a whole. Planes and lines contain nothing.
+    [[nodiscard]] bool straddles(std::uint32_t i, const Obb& box) const;
+
     // The queries among `candidates` that hit the box, in order.
     [[nodiscard]] Vector<std::uint32_t> hitting(std::span<const std::uint32_t> candidates, const Obb& box) const;
     [[nodiscard]] Vector<std::uint32_t> all() const;
@@ -44,7 +48,7 @@ class QuerySample {
         glm::dmat3 rotation{1.0};
     };
     static Result<QuerySample> make(Kind kind, const Ball& region, std::uint32_t count);
-    [[nodiscard]] bool frustum_hits(const Query& query, const Obb& box) const;
+    [[nodiscard]] bool frustum_hits(const Query& query, const Obb& box, bool* contained) const;
 
     Kind kind_ = Kind::plane;
     double measure_ = 0.0;

@@ -14,7 +14,7 @@ namespace crofton::tree {
 enum class Split : std::uint8_t {
     median,  // halves along the longest axis: no measure at all
     nested,  // least Σ criterion(side) · items(side): the chance of a visit where bounds are nested
-    sampled  // least Σ queries(side) · items(side), over the sampled queries that hit *all* ancestors' bounds
+    sampled  // least Σ queries(side) · items(side), over the sampled queries that straddle *all* ancestors' bounds
 };
 
 struct VisitOptions {
@@ -23,7 +23,7 @@ struct VisitOptions {
     // cost is the true chance of a visit for nested boxes.
     measure::Criterion criterion = measure::minimal_perimeter();
     // false: axis-aligned bounds, nested by nature. true: oriented ones, which need not lie within their parent's; the
-    // best of a few fits by the criterion (nested, median) or by the queries that hit all ancestors (sampled).
+    // best of a few fits by the criterion (nested, median) or by the queries that straddle all ancestors (sampled).
     bool oriented = false;
     // For Split::sampled; where fewer than min_queries are left, the criterion decides. Lives as long as build().
     const measure::QuerySample* queries = nullptr;
