@@ -21,7 +21,7 @@ struct LoadOptions {
 struct SceneSource {
     std::string name;
     scene::Scene scene;
-    std::vector<glm::dvec3> walk;           // a closed path at about eye height that leads where people go; may be empty
+    std::vector<glm::dvec3> walk;  // a closed path at about eye height that leads where people go; may be empty
     std::vector<scene::InstanceId> movers;  // ascending: the instances that animate() moves; may be empty
     std::vector<std::string> warnings;      // what a file held that was left out, and why
     std::function<void(scene::Scene&, std::uint32_t)> motion;

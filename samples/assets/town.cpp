@@ -16,7 +16,7 @@ constexpr std::uint32_t kDefaultInstances = 3000;
 constexpr std::uint32_t kMaxInstances = 1'000'000;
 constexpr double kInstancesPerBlock = 245.0;  // vehicles and country included, measured on the default town
 constexpr double kVehiclesPerBlock = 12.0;
-constexpr double kTurn = 0.4;  // of the whole town against the axes, as towns do
+constexpr double kTurn = 0.4;       // of the whole town against the axes, as towns do
 constexpr double kEyeHeight = 2.3;  // over the heads of those who walk there too
 
 Grid make_grid(Library& library, int columns, int rows) {
