@@ -1,0 +1,62 @@
+// Global lines for a scene, in blocks that anyone can draw again: the four right ways of THEORY.md section 6.
+#pragma once
+#include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/measure/global_lines.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <cstdint>
+
+namespace crofton::radiosity {
+
+enum class LineMethod : std::uint8_t {
+    sphere_points,  // two uniform points of the bounding sphere
+    disc,           // uniform direction, uniform point of the orthogonal disc
+    bundles,        // parallel lines through a jittered grid
+    walls,          // from the bounding box's surface, cosine-weighted
+};
+[[nodiscard]] const char* to_string(LineMethod method);
+
+// Lines in blocks of about kBlock: exactly that many, but for bundles, which hold that many on average.
+class LineSource {
+  public:
+    static constexpr std::size_t kBlock = 1024;
+
+    // Requires bounds of at least two positive extents.
+    LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed,
+               measure::Sequence sequence = measure::Sequence::pseudo_random);
+
+    // Replaces `lines` with block number `block`: the same lines whenever and wherever it is drawn.
+    void draw(std::uint64_t block, Vector<measure::Line>& lines) const;
+
+    // Of the body that the lines fill uniformly. N lines cross a surface of area S inside it 2·N·S/surface_area() times
+    // on average.
+    [[nodiscard]] double surface_area() const;
+    [[nodiscard]] LineMethod method() const { return method_; }
+
+  private:
+    Aabb bounds_;
+    measure::Ball ball_;
+    LineMethod method_;
+    std::uint64_t seed_;
+    measure::UnitPoints points_;
+};
+
+// What uniform lines see of a scene. The mean number of crossings is 2·S/F for a surface S in a convex body of surface
+// F, whatever the shape: it is the spread, and the share of lines that meet nothing, that tell open scenes from crowded
+// ones.
+struct VisibilityComplexity {
+    double mean_crossings = 0.0;
+    double deviation = 0.0;  // of the number of crossings, from line to line
+    double wasted = 0.0;     // share of lines without any
+    std::uint64_t lines = 0;
+};
+[[nodiscard]] VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineSource& source,
+                                                         std::uint64_t blocks, Executor& executor = serial_executor());
+
+// The way that wastes fewer lines on this scene: walls or disc, by a trial of 8 blocks each. A box always has
+// less surface than its circumscribed sphere (for a cube 2/π of it, for a flat square box 1/π), and the chance to meet
+// a scene inside goes with the reciprocal: so for boxes as bodies this is walls, and by how much is
+// docs/radiosity.md's.
+[[nodiscard]] LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed);
+
+}  // namespace crofton::radiosity

@@ -1,0 +1,37 @@
+// Points and directions on patches.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/patches.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace crofton::radiosity {
+
+struct Corners {
+    glm::dvec3 a, b, c;
+};
+inline Corners corners_of(const Patches& patches, std::uint32_t triangle) {
+    const auto at = [&](std::uint32_t k) {
+        return glm::dvec3(patches.mesh.positions[patches.mesh.indices[3 * triangle + k]]);
+    };
+    return {at(0), at(1), at(2)};
+}
+
+// A uniform point of a triangle, and a direction over its front whose cosine against the normal is `cosine`.
+inline Ray local_ray(const Patches& patches, std::uint32_t triangle, double u, double v, double cosine, double turn) {
+    const Corners t = corners_of(patches, triangle);
+    const double root = std::sqrt(u);
+    const glm::dvec3 point = t.a + root * (1.0 - v) * (t.b - t.a) + root * v * (t.c - t.a);
+    const glm::dvec3 normal = glm::normalize(glm::cross(t.b - t.a, t.c - t.a)), side = glm::normalize(t.b - t.a);
+    const double angle = 2.0 * std::numbers::pi * turn, sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    Ray ray;
+    ray.line.point = point;
+    ray.line.direction = cosine * normal + sine * (std::cos(angle) * side + std::sin(angle) * glm::cross(normal, side));
+    ray.skip = triangle;
+    return ray;
+}
+
+}  // namespace crofton::radiosity

@@ -1,0 +1,47 @@
+// The inner loops of LineTracer, on plain floats (no GLM here: see docs/architecture.md on vector kernels).
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace crofton::radiosity::detail {
+
+inline constexpr std::size_t kLanes = 8;
+inline constexpr std::uint32_t kLeaf = 0x80000000u;   // in a child: the rest is a leaf's index
+inline constexpr std::uint32_t kFront = 0x80000000u;  // in a hit: the line comes from the front
+inline constexpr std::uint32_t kMiss = ~std::uint32_t{0};
+inline constexpr std::size_t kMaxDepth = 64;  // of the tree; the builder sees to it
+
+// Boxes of up to eight children; unused lanes are empty (low > high).
+struct alignas(64) TracerNode {
+    float low[3][kLanes], high[3][kLanes];
+    std::uint32_t child[kLanes];
+    std::uint32_t count;
+};
+
+// Corner and edges of up to eight triangles; unused lanes have no area.
+struct alignas(64) TracerLeaf {
+    float corner[3][kLanes], first[3][kLanes], second[3][kLanes];
+    std::uint32_t triangle[kLanes];
+    std::uint32_t count;
+};
+
+struct FlatRay {
+    float point[3], direction[3];  // no component of the direction is 0
+    std::uint32_t skip;
+};
+struct FlatHit {
+    float t;
+    std::uint32_t triangle;  // with kFront, or kMiss
+};
+
+struct TracerView {
+    const TracerNode* nodes;
+    const TracerLeaf* leaves;
+};
+
+// All crossings of each line, sorted, into hits[0 .. capacity); ends[i] as in LineHits. Returns how many lines fitted.
+std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits,
+                      std::size_t capacity, std::uint32_t* ends);
+void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits);
+
+}  // namespace crofton::radiosity::detail
