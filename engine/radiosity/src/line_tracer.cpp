@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/core/assert.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
+#include <glm/geometric.hpp>
 
 #include "trace_kernels.hpp"
 #include "tracer_build.hpp"
@@ -45,12 +46,13 @@ Result<LineTracer> LineTracer::build(const TriangleMesh& mesh) {
     LineTracer tracer;
     for (const std::uint32_t i : mesh.indices) tracer.bounds_.include(glm::dvec3(mesh.positions[i]));
     tracer.origin_ = tracer.bounds_.center();
+    tracer.tie_ = static_cast<float>(1e-6 * glm::length(tracer.bounds_.half_extents()));
     detail::build_tracer(mesh, tracer.origin_, tracer.nodes_, tracer.leaves_);
     return tracer;
 }
 
 void LineTracer::all_hits(std::span<const measure::Line> lines, LineHits& result) const {
-    const detail::TracerView tree{nodes_.data(), leaves_.data()};
+    const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
     std::array<detail::FlatRay, kBatch> rays;
     std::array<std::uint32_t, kBatch> ends;
     thread_local Vector<detail::FlatHit> hits;
@@ -74,7 +76,7 @@ void LineTracer::all_hits(std::span<const measure::Line> lines, LineHits& result
 
 void LineTracer::first_hits(std::span<const Ray> rays, std::span<Hit> result) const {
     CROFTON_ASSERT(rays.size() == result.size(), "one result per ray");
-    const detail::TracerView tree{nodes_.data(), leaves_.data()};
+    const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
     std::array<detail::FlatRay, kBatch> flat_rays;
     std::array<detail::FlatHit, kBatch> hits;
     for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {

@@ -70,8 +70,8 @@ Result<Solver> Solver::create(const Patches& patches, const SolverOptions& optio
     };
     if (!valid(options.outside.sky) || !valid(options.outside.sun))
         return fail(ErrorCode::out_of_range, kNoItem, "radiosity: sky and sun must be finite and not negative");
-    if (options.lines == 0 || !(options.cutoff > 0.0))
-        return fail(ErrorCode::out_of_range, kNoItem, "radiosity: lines and cutoff must be positive");
+    if (options.lines == 0 || options.first_shot == 0 || !(options.cutoff > 0.0))
+        return fail(ErrorCode::out_of_range, kNoItem, "radiosity: lines, first_shot and cutoff must be positive");
     const glm::vec3 outside = options.outside.sky + options.outside.sun;
     bool light = outside.x + outside.y + outside.z > 0.0f;
     for (const Material& m : patches.materials) light = light || m.emission.x + m.emission.y + m.emission.z > 0.0f;

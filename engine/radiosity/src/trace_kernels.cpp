@@ -86,6 +86,11 @@ HWY_INLINE unsigned triangles(D d, const TracerLeaf& leaf, const Spread& ray, fl
 
 constexpr float kFar = 3e38f;
 
+// Where two faces back to back coincide, rounding must not put the back one in front.
+HWY_INLINE float sort_key(const FlatHit& hit, float tie) {
+    return (hit.triangle & kFront) ? hit.t : hit.t + tie;
+}
+
 std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits,
                       std::size_t capacity, std::uint32_t* ends) {
     const D d;
@@ -108,11 +113,12 @@ std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t c
                     const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));
                     const FlatHit hit{values[lane], leaf.triangle[lane] | ((front >> lane & 1u) ? kFront : 0u)};
                     // Insertion keeps the few hits of one line sorted, ties by number.
+                    const auto before = [&](const FlatHit& x, const FlatHit& y) {
+                        const float kx = sort_key(x, tree.tie), ky = sort_key(y, tree.tie);
+                        return kx != ky ? kx < ky : x.triangle < y.triangle;
+                    };
                     std::size_t at = used++;
-                    for (; at > first && (hits[at - 1].t > hit.t ||
-                                          (hits[at - 1].t == hit.t && hits[at - 1].triangle > hit.triangle));
-                         --at)
-                        hits[at] = hits[at - 1];
+                    for (; at > first && before(hit, hits[at - 1]); --at) hits[at] = hits[at - 1];
                     hits[at] = hit;
                 }
                 continue;
@@ -137,26 +143,30 @@ void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count,
     for (std::size_t r = 0; r < count; ++r) {
         const Spread ray(d, rays[r]);
         FlatHit best{kFar, kMiss};
+        float best_key = kFar;
         std::size_t top = 0;
         stack[top++] = {0, 0.0f};
         while (top > 0) {
             const Entry entry = stack[--top];
-            if (entry.enter > best.t) continue;
+            if (entry.enter > best_key) continue;
             if (entry.item & kLeaf) {
                 const TracerLeaf& leaf = tree.leaves[entry.item & ~kLeaf];
                 unsigned front;
                 for (unsigned bits = triangles(d, leaf, ray, values, &front); bits != 0; bits &= bits - 1) {
                     const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));
-                    if (!(values[lane] > 0.0f) || leaf.triangle[lane] == rays[r].skip) continue;
-                    const std::uint32_t named = leaf.triangle[lane] | ((front >> lane & 1u) ? kFront : 0u);
-                    if (values[lane] < best.t || (values[lane] == best.t && named < best.triangle))
-                        best = {values[lane], named};
+                    if (!(values[lane] > tree.tie) || leaf.triangle[lane] == rays[r].skip) continue;
+                    const FlatHit hit{values[lane], leaf.triangle[lane] | ((front >> lane & 1u) ? kFront : 0u)};
+                    const float key = sort_key(hit, tree.tie);
+                    if (key < best_key || (key == best_key && hit.triangle < best.triangle)) {
+                        best = hit;
+                        best_key = key;
+                    }
                 }
                 continue;
             }
             const TracerNode& node = tree.nodes[entry.item];
             const std::size_t base = top;
-            for (unsigned bits = children(d, node, ray, 0.0f, best.t, values); bits != 0; bits &= bits - 1) {
+            for (unsigned bits = children(d, node, ray, 0.0f, best_key, values); bits != 0; bits &= bits - 1) {
                 const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));
                 const Entry child{node.child[lane], values[lane]};
                 std::size_t at = top++;  // the nearest on top

@@ -37,6 +37,7 @@ struct FlatHit {
 struct TracerView {
     const TracerNode* nodes;
     const TracerLeaf* leaves;
+    float tie;  // crossings closer together than this along a line count as one place: fronts come first there
 };
 
 // All crossings of each line, sorted, into hits[0 .. capacity); ends[i] as in LineHits. Returns how many lines fitted.

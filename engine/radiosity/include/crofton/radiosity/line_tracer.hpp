@@ -22,7 +22,7 @@ struct Hit {
     bool front = false;  // the line comes from the triangle's front
 };
 
-// The crossings of line i are hits[ends[i−1] .. ends[i]), ascending in t.
+// The crossings of line i are hits[ends[i−1] .. ends[i]), ascending in t (ties: see LineTracer).
 struct LineHits {
     Vector<Hit> hits;
     Vector<std::uint32_t> ends;
@@ -35,8 +35,9 @@ struct Ray {
 
 // A hierarchy of axis-aligned boxes, eight to a node, over the triangles. For measuring, where a crossing more or less
 // in 10^6 drowns in the spread of random lines: single precision, so a line through the common edge of two triangles
-// may (about once in 10^6) cross both or neither, and crossings closer together than 10^-6 of the scene may change
-// places. The same bits on every machine and for any thread count.
+// may (about once in 10^6) cross both or neither. Crossings closer together than 10^-6 of the scene's half diagonal
+// count as one place, fronts first: so two faces back to back at one place (a sheet with two sides) are seen from
+// either side. The same bits on every machine and for any thread count.
 class LineTracer {
   public:
     // Errors: as validate(TriangleMesh); no triangles; 2^30 of them or more.
@@ -47,7 +48,7 @@ class LineTracer {
 
     // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe.
     void all_hits(std::span<const measure::Line> lines, LineHits& result) const;
-    // The first crossing of each ray with t > 0, triangles[i] = kNothing where there is none. Same sizes.
+    // The first crossing of each ray beyond that distance, triangle = kNothing where there is none. Same sizes.
     void first_hits(std::span<const Ray> rays, std::span<Hit> result) const;
 
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
@@ -56,6 +57,7 @@ class LineTracer {
     LineTracer();
     Aabb bounds_;
     glm::dvec3 origin_{0.0};
+    float tie_ = 0.0f;
     Vector<detail::TracerNode> nodes_;
     Vector<detail::TracerLeaf> leaves_;
 };

@@ -1,0 +1,177 @@
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/radiosity/form_factors.hpp>
+
+#include "shapes.hpp"
+
+using namespace crofton;
+using namespace crofton::radiosity;
+using shapes::Shape;
+
+namespace {
+
+struct Case {
+    Patches patches;
+    LineTracer tracer;
+};
+
+Case make_case(const Shape& shape, std::size_t count) {
+    const std::vector<Material> materials(count);
+    auto patches = make_patches(shape.mesh, shape.patches, materials);
+    REQUIRE_MESSAGE(patches.has_value(), patches.error().message);
+    auto tracer = LineTracer::build(patches->mesh);
+    return {std::move(*patches), std::move(*tracer)};
+}
+
+// F_01 by all estimators within 4 standard errors of the truth.
+void check_pair(const Shape& shape, std::size_t count, double truth) {
+    const Case c = make_case(shape, count);
+    for (const LocalDensity density : {LocalDensity::cosine, LocalDensity::uniform}) {
+        const FactorRow row = factors_by_local_lines(c.tracer, c.patches, 0, 200'000, density, 17);
+        CHECK(row.standard_errors[1] < 0.01);
+        CHECK(std::abs(row.factors[1] - truth) < 4.0 * row.standard_errors[1] + 1e-9);
+    }
+    // The spread over sixteen independent estimates, since the lines of one bundle are not independent.
+    for (const LineMethod method :
+         {LineMethod::sphere_points, LineMethod::disc, LineMethod::bundles, LineMethod::walls}) {
+        double sum = 0.0, squares = 0.0;
+        constexpr int kRepeats = 16;
+        for (int r = 0; r < kRepeats; ++r) {
+            const LineSource source(c.tracer.bounds(), method, 23 + static_cast<std::uint64_t>(r));
+            const auto matrix = factors_by_global_lines(c.tracer, c.patches, source, 40);
+            REQUIRE(matrix.has_value());
+            sum += matrix->factor(0, 1);
+            squares += matrix->factor(0, 1) * matrix->factor(0, 1);
+        }
+        const double mean = sum / kRepeats, error = std::sqrt((squares / kRepeats - mean * mean) / (kRepeats - 1));
+        CHECK(error < 0.1 * truth);
+        CHECK(std::abs(mean - truth) < 4.0 * error);
+    }
+}
+
+// Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11: identical, parallel, directly opposed
+// rectangles of sides X·c and Y·c at distance c.
+double opposed_rectangles(double x, double y) {
+    const double x1 = 1 + x * x, y1 = 1 + y * y;
+    return 2.0 / (3.141592653589793 * x * y) *
+           (0.5 * std::log(x1 * y1 / (x1 + y * y)) + x * std::sqrt(y1) * std::atan(x / std::sqrt(y1)) +
+            y * std::sqrt(x1) * std::atan(y / std::sqrt(x1)) - x * std::atan(x) - y * std::atan(y));
+}
+
+// C-14: rectangles with a common edge l at 90°: from w × l to h × l, W = w/l, H = h/l.
+double rectangles_at_right_angle(double h, double w) {
+    const double h2 = h * h, w2 = w * w, s = h2 + w2;
+    return 1.0 / (3.141592653589793 * w) *
+           (w * std::atan(1 / w) + h * std::atan(1 / h) - std::sqrt(s) * std::atan(1 / std::sqrt(s)) +
+            0.25 * std::log((1 + w2) * (1 + h2) / (1 + s) * std::pow(w2 * (1 + s) / ((1 + w2) * s), w2) *
+                            std::pow(h2 * (1 + s) / ((1 + h2) * s), h2)));
+}
+
+Shape opposed(float x, float y) {
+    Shape s;
+    s.parallelogram({0, 0, 0}, {x, 0, 0}, {0, y, 0}, 0);
+    s.parallelogram({0, 0, 1}, {0, y, 0}, {x, 0, 0}, 1);
+    return s;
+}
+
+Shape right_angle(float h, float w) {
+    Shape s;
+    s.parallelogram({0, 0, 0}, {1, 0, 0}, {0, w, 0}, 0);
+    s.parallelogram({0, 0, 0}, {0, 0, h}, {1, 0, 0}, 1);
+    return s;
+}
+
+}  // namespace
+
+TEST_SUITE("radiosity/form_factors") {
+    TEST_CASE("the full matrix of too many patches is refused") {
+        Shape s;
+        for (std::uint32_t i = 0; i < 16'385; ++i) s.triangle({0, 0, static_cast<float>(i)}, {1, 0, 0}, {0, 1, 0}, i);
+        const Case c = make_case(s, 16'385);
+        const LineSource source(c.tracer.bounds(), LineMethod::walls, 1);
+        CHECK(factors_by_global_lines(c.tracer, c.patches, source, 1).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("a wrong density gives a detectably wrong factor") {
+        const Case c = make_case(opposed(1, 1), 2);
+        const FactorRow wrong =
+            factors_by_local_lines(c.tracer, c.patches, 0, 200'000, LocalDensity::uniform_unweighted, 17);
+        CHECK(std::abs(wrong.factors[1] - 0.199825) > 20.0 * wrong.standard_errors[1]);
+    }
+
+    TEST_CASE("two unit squares face to face at distance one: 0.199825") {
+        CHECK(opposed_rectangles(1, 1) == doctest::Approx(0.199825).epsilon(5e-6));
+        check_pair(opposed(1, 1), 2, 0.199825);
+    }
+
+    TEST_CASE("two unit squares with a common edge at a right angle: 0.200044") {
+        CHECK(rectangles_at_right_angle(1, 1) == doctest::Approx(0.200044).epsilon(5e-6));
+        check_pair(right_angle(1, 1), 2, 0.200044);
+    }
+
+    TEST_CASE("rectangles of Howell's catalogue, C-11 and C-14") {
+        check_pair(opposed(2, 0.5f), 2, opposed_rectangles(2, 0.5));
+        check_pair(opposed(4, 3), 2, opposed_rectangles(4, 3));
+        check_pair(right_angle(2, 0.5f), 2, rectangles_at_right_angle(2, 0.5));
+        check_pair(right_angle(0.4f, 3), 2, rectangles_at_right_angle(0.4, 3));
+    }
+
+    TEST_CASE(
+        "concentric spheres, non-planar patches: 1 from the inner to the outer, the ratio of areas back, the rest to "
+        "itself") {
+        Shape s;
+        s.sphere({0, 0, 0}, 1.0f, 24, false, 0);
+        s.sphere({0, 0, 0}, 2.0f, 24, true, 1);
+        const Case c = make_case(s, 2);
+        const double back = c.patches.areas[0] / c.patches.areas[1];
+        const FactorRow outer = factors_by_local_lines(c.tracer, c.patches, 1, 200'000, LocalDensity::cosine, 3);
+        CHECK(std::abs(outer.factors[0] - back) < 4.0 * outer.standard_errors[0]);
+        CHECK(outer.escaped < 1e-4);
+        const LineSource source(c.tracer.bounds(), LineMethod::walls, 5);
+        const auto matrix = factors_by_global_lines(c.tracer, c.patches, source, 200);
+        REQUIRE(matrix.has_value());
+        CHECK(matrix->factor(0, 1) > 0.9999);
+        CHECK(std::abs(matrix->factor(1, 0) - back) < 4.0 * matrix->standard_error(1, 0));
+        CHECK(std::abs(matrix->factor(1, 1) - (1.0 - back)) < 4.0 * matrix->standard_error(1, 1));
+    }
+
+    TEST_CASE("in a closed room rows sum to one and factors are reciprocal") {
+        Shape s;
+        s.room({0, 0, 0}, {3, 2, 1}, 0);
+        s.parallelogram({1, 0.5f, 0.4f}, {1, 0, 0}, {0, 1, 0.1f}, 6);  // a table top: its back swallows
+        s.parallelogram({1, 0.5f, 0.4f}, {0, 1, 0.1f}, {1, 0, 0}, 7);  // and its underside
+        const Case c = make_case(s, 8);
+        const LineSource source(c.tracer.bounds(), LineMethod::walls, 5);
+        const auto m = factors_by_global_lines(c.tracer, c.patches, source, 400);
+        REQUIRE(m.has_value());
+        for (std::size_t i = 0; i < 8; ++i) {
+            double sum = 0.0;
+            for (std::size_t j = 0; j < 8; ++j) {
+                sum += m->factor(i, j);
+                // Both ways along a stretch at once: the counts themselves are symmetric.
+                CHECK(m->transfers[i * 8 + j] == m->transfers[j * 8 + i]);
+                const double there = c.patches.areas[i] * m->factor(i, j), back = c.patches.areas[j] * m->factor(j, i);
+                const double error = std::hypot(c.patches.areas[i] * m->standard_error(i, j),
+                                                c.patches.areas[j] * m->standard_error(j, i));
+                CHECK(std::abs(there - back) < 4.5 * error + 1e-4);
+            }
+            CHECK(sum == doctest::Approx(1.0).epsilon(1e-4));
+            const FactorRow row = factors_by_local_lines(c.tracer, c.patches, static_cast<std::uint32_t>(i), 20'000,
+                                                         LocalDensity::cosine, 9);
+            for (std::size_t j = 0; j < 8; ++j)
+                CHECK(std::abs(row.factors[j] - m->factor(i, j)) <
+                      4.5 * std::hypot(row.standard_errors[j], m->standard_error(i, j)) + 1e-3);
+        }
+    }
+
+    TEST_CASE("the same counts for any number of threads") {
+        Shape s;
+        s.room({0, 0, 0}, {1, 1, 1}, 0);
+        const Case c = make_case(s, 6);
+        const LineSource source(c.tracer.bounds(), LineMethod::bundles, 5);
+        ThreadPool pool(4);
+        CHECK(factors_by_global_lines(c.tracer, c.patches, source, 50)->transfers ==
+              factors_by_global_lines(c.tracer, c.patches, source, 50, pool)->transfers);
+    }
+}

@@ -1,0 +1,151 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+
+#include "shapes.hpp"
+
+using namespace crofton;
+using namespace crofton::radiosity;
+
+namespace {
+
+TriangleMesh soup(int triangles, float size, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    TriangleMesh mesh;
+    for (int t = 0; t < triangles; ++t) {
+        const glm::vec3 center = vector();
+        for (int k = 0; k < 3; ++k) {
+            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.positions.push_back(center + size * vector());
+        }
+    }
+    return mesh;
+}
+
+// By signed volumes in double: t, or NaN where the line misses.
+double crossing(const TriangleMesh& mesh, std::size_t t, const measure::Line& line) {
+    const glm::dvec3 a(mesh.positions[mesh.indices[3 * t]]), b(mesh.positions[mesh.indices[3 * t + 1]]),
+        c(mesh.positions[mesh.indices[3 * t + 2]]);
+    const auto side = [&](const glm::dvec3& p, const glm::dvec3& q) {
+        return glm::dot(line.direction, glm::cross(p - line.point, q - line.point));
+    };
+    const double x = side(a, b), y = side(b, c), z = side(c, a);
+    if (!((x > 0 && y > 0 && z > 0) || (x < 0 && y < 0 && z < 0))) return std::numeric_limits<double>::quiet_NaN();
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    return glm::dot(a - line.point, n) / glm::dot(line.direction, n);
+}
+
+}  // namespace
+
+TEST_SUITE("radiosity/line_tracer") {
+    TEST_CASE("invalid and empty meshes are refused") {
+        CHECK(LineTracer::build({}).error().code == ErrorCode::empty);
+        TriangleMesh mesh = soup(3, 1.0f, 1);
+        mesh.indices[4] = 99;
+        CHECK(LineTracer::build(mesh).error().code == ErrorCode::out_of_range);
+        mesh = soup(3, 1.0f, 1);
+        mesh.positions[5].y = std::numeric_limits<float>::quiet_NaN();
+        CHECK(LineTracer::build(mesh).error().item == 5);
+    }
+
+    TEST_CASE("a million identical triangles make a tree, and a line through them meets each") {
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        for (int i = 0; i < 100'000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
+        const auto tracer = LineTracer::build(mesh);
+        REQUIRE(tracer.has_value());
+        LineHits hits;
+        const measure::Line line{{0.2, 0.2, -5.0}, {0.0, 0.0, 1.0}};
+        tracer->all_hits({&line, 1}, hits);
+        REQUIRE(hits.hits.size() == 100'000);
+        CHECK(std::is_sorted(hits.hits.begin(), hits.hits.end(),
+                             [](const Hit& a, const Hit& b) { return a.triangle < b.triangle; }));
+    }
+
+    TEST_CASE("lines along an axis and in a face's plane do not break the boxes' arithmetic") {
+        shapes::Shape room;
+        room.room({0, 0, 0}, {2, 2, 2}, 0);
+        const auto tracer = LineTracer::build(room.mesh);
+        REQUIRE(tracer.has_value());
+        for (int axis = 0; axis < 3; ++axis) {
+            measure::Line line{{0.7, 0.9, 0.6}, glm::dvec3(0.0)};
+            line.direction[axis] = 1.0;
+            LineHits hits;
+            tracer->all_hits({&line, 1}, hits);
+            REQUIRE(hits.hits.size() == 2);
+            CHECK_FALSE(hits.hits[0].front);  // it enters through the back of a wall that looks inward
+            CHECK(hits.hits[1].front);
+            CHECK(hits.hits[1].t - hits.hits[0].t == doctest::Approx(2.0));
+        }
+    }
+
+    TEST_CASE("all crossings agree with brute force in double on random triangles of several sizes") {
+        for (const float size : {0.02f, 0.2f, 1.5f}) {
+            const TriangleMesh mesh = soup(3000, size, 7);
+            const auto tracer = LineTracer::build(mesh);
+            REQUIRE(tracer.has_value());
+            const measure::UnitPoints points(3);
+            std::vector<measure::Line> lines;
+            for (std::uint64_t i = 0; i < 300; ++i)
+                lines.push_back(measure::line_through_disc({glm::dvec3(0.0), 2.0}, points.at<4>(i)));
+            LineHits hits;
+            tracer->all_hits(lines, hits);
+            REQUIRE(hits.ends.size() == lines.size());
+            std::size_t differences = 0, total = 0;
+            std::uint32_t begin = 0;
+            for (std::size_t l = 0; l < lines.size(); ++l) {
+                std::vector<std::uint32_t> ours, truth;
+                for (std::uint32_t h = begin; h < hits.ends[l]; ++h) {
+                    const Hit& hit = hits.hits[h];
+                    ours.push_back(hit.triangle);
+                    const double t = crossing(mesh, hit.triangle, lines[l]);
+                    if (!std::isnan(t)) CHECK(std::abs(static_cast<double>(hit.t) - t) < 2e-3);
+                    if (h > begin) CHECK(hits.hits[h - 1].t <= hit.t + 4e-6f);
+                }
+                begin = hits.ends[l];
+                for (std::uint32_t t = 0; t < 3000; ++t)
+                    if (!std::isnan(crossing(mesh, t, lines[l]))) truth.push_back(t);
+                std::sort(ours.begin(), ours.end());
+                std::vector<std::uint32_t> apart;
+                std::set_symmetric_difference(ours.begin(), ours.end(), truth.begin(), truth.end(),
+                                              std::back_inserter(apart));
+                differences += apart.size();
+                total += truth.size();
+            }
+            CHECK(differences <= 2 + total / 10'000);
+        }
+    }
+
+    TEST_CASE("the first crossing is the least positive one of all, the ray's own triangle left out") {
+        const TriangleMesh mesh = soup(2000, 0.3f, 9);
+        const auto tracer = LineTracer::build(mesh);
+        REQUIRE(tracer.has_value());
+        const measure::UnitPoints points(5);
+        std::size_t compared = 0;
+        for (std::uint64_t i = 0; i < 500; ++i) {
+            measure::Line line = measure::line_through_disc({glm::dvec3(0.0), 1.0}, points.at<4>(i));
+            LineHits all;
+            tracer->all_hits({&line, 1}, all);
+            std::vector<Hit> ahead;
+            for (const Hit& hit : all.hits)
+                if (hit.t > 0.0f) ahead.push_back(hit);
+            Ray ray{line, Hit::kNothing};
+            Hit first;
+            tracer->first_hits({&ray, 1}, {&first, 1});
+            CHECK(first.triangle == (ahead.empty() ? Hit::kNothing : ahead[0].triangle));
+            if (ahead.size() < 2) continue;
+            ray.skip = ahead[0].triangle;
+            tracer->first_hits({&ray, 1}, {&first, 1});
+            CHECK(first.triangle == ahead[1].triangle);
+            ++compared;
+        }
+        CHECK(compared > 100);
+    }
+}

@@ -1,0 +1,66 @@
+// Small scenes with known answers.
+#pragma once
+#include <cmath>
+#include <crofton/geometry/triangle_mesh.hpp>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <numbers>
+#include <vector>
+
+namespace shapes {
+
+// A mesh with a patch number for each triangle.
+struct Shape {
+    crofton::TriangleMesh mesh;
+    std::vector<std::uint32_t> patches;
+
+    void triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t patch) {
+        for (const glm::vec3& p : {a, b, c}) {
+            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.positions.push_back(p);
+        }
+        patches.push_back(patch);
+    }
+    // Counter-clockwise seen from its front.
+    void quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d, std::uint32_t patch) {
+        triangle(a, b, c, patch);
+        triangle(a, c, d, patch);
+    }
+    // corner + s·u + t·v for s, t in [0, 1]; front toward cross(u, v).
+    void parallelogram(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, std::uint32_t patch) {
+        quad(corner, corner + u, corner + u + v, corner + v, patch);
+    }
+    // Six patches first, … first + 5 that look into the box: x low, x high, y low, y high, z low, z high.
+    void room(const glm::vec3& low, const glm::vec3& high, std::uint32_t first) {
+        const glm::vec3 d = high - low, x(d.x, 0, 0), y(0, d.y, 0), z(0, 0, d.z);
+        parallelogram(low, y, z, first);
+        parallelogram(low + x, z, y, first + 1);
+        parallelogram(low, z, x, first + 2);
+        parallelogram(low + y, x, z, first + 3);
+        parallelogram(low, x, y, first + 4);
+        parallelogram(low + z, y, x, first + 5);
+    }
+    // A sphere of rings × 2·rings quads; `inward` turns its front to the centre.
+    void sphere(const glm::vec3& center, float radius, int rings, bool inward, std::uint32_t patch) {
+        const auto at = [&](int i, int j) {
+            const double a = std::numbers::pi * i / rings, b = std::numbers::pi * j / rings;
+            return center + radius * glm::vec3(static_cast<float>(std::sin(a) * std::cos(b)),
+                                               static_cast<float>(std::cos(a)),
+                                               static_cast<float>(std::sin(a) * std::sin(b)));
+        };
+        for (int i = 0; i < rings; ++i)
+            for (int j = 0; j < 2 * rings; ++j) {
+                const glm::vec3 p[4] = {at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)};
+                const auto add = [&](int a, int b, int c) {
+                    if (inward)
+                        triangle(p[a], p[c], p[b], patch);
+                    else
+                        triangle(p[a], p[b], p[c], patch);
+                };
+                if (i > 0) add(0, 1, 2);
+                if (i + 1 < rings) add(0, 2, 3);
+            }
+    }
+};
+
+}  // namespace shapes

@@ -1,0 +1,241 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/radiosity/form_factors.hpp>
+#include <crofton/radiosity/solver.hpp>
+#include <cstring>
+
+#include "shapes.hpp"
+
+using namespace crofton;
+using namespace crofton::radiosity;
+using shapes::Shape;
+
+namespace {
+
+Patches patches_of(const Shape& shape, const std::vector<Material>& materials) {
+    auto patches = make_patches(shape.mesh, shape.patches, materials);
+    REQUIRE_MESSAGE(patches.has_value(), patches.error().message);
+    return std::move(*patches);
+}
+
+SolverOptions quick() {
+    SolverOptions options;
+    options.lines = 1 << 12;
+    options.first_shot = 1 << 14;
+    return options;
+}
+
+bool same(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+// A room cut into cells × cells patches a wall, with a lamp on the ceiling: the box of every radiosity paper.
+struct Box {
+    Shape shape;
+    std::vector<Material> materials;
+};
+Box lit_box(int cells) {
+    Box box;
+    const auto wall = [&](glm::vec3 corner, glm::vec3 u, glm::vec3 v, glm::vec3 color, bool ceiling) {
+        u /= static_cast<float>(cells);
+        v /= static_cast<float>(cells);
+        for (int i = 0; i < cells; ++i)
+            for (int j = 0; j < cells; ++j) {
+                const bool lamp = ceiling && i == cells / 2 && j == cells / 2;
+                box.shape.parallelogram(corner + static_cast<float>(i) * u + static_cast<float>(j) * v, u, v,
+                                        static_cast<std::uint32_t>(box.materials.size()));
+                box.materials.push_back({lamp ? glm::vec3(10.0f, 9.0f, 7.0f) : glm::vec3(0.0f), color});
+            }
+    };
+    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), white(0.7f);
+    wall({0, 0, 0}, y, z, {0.6f, 0.05f, 0.05f}, false);
+    wall(x, z, y, {0.1f, 0.5f, 0.1f}, false);
+    wall({0, 0, 0}, z, x, white, false);
+    wall(y, x, z, white, true);
+    wall({0, 0, 0}, x, y, white, false);
+    wall(z, y, x, white, false);
+    return box;
+}
+
+// The full system B = E + R·F·B with factors from local lines, iterated to the end: shares no code with the solver's
+// walks.
+std::vector<glm::dvec3> full_matrix_solution(const Patches& patches, std::uint64_t lines) {
+    const auto tracer = LineTracer::build(patches.mesh);
+    const std::size_t n = patches.count();
+    std::vector<FactorRow> rows;
+    for (std::uint32_t i = 0; i < n; ++i)
+        rows.push_back(factors_by_local_lines(*tracer, patches, i, lines, LocalDensity::cosine, 1000 + i));
+    std::vector<glm::dvec3> light(n, glm::dvec3(0.0));
+    for (int iteration = 0; iteration < 100; ++iteration) {
+        std::vector<glm::dvec3> next(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            glm::dvec3 arrived(0.0);
+            for (std::size_t j = 0; j < n; ++j) arrived += rows[i].factors[j] * light[j];
+            next[i] =
+                glm::dvec3(patches.materials[i].emission) + glm::dvec3(patches.materials[i].reflectance) * arrived;
+        }
+        light = std::move(next);
+    }
+    return light;
+}
+
+}  // namespace
+
+TEST_SUITE("radiosity/solver") {
+    TEST_CASE("a scene without light, and light that is not finite, are refused by name") {
+        Shape s;
+        s.room({0, 0, 0}, {1, 1, 1}, 0);
+        const Patches dark = patches_of(s, std::vector<Material>(6));
+        const auto refused = Solver::create(dark);
+        REQUIRE_FALSE(refused.has_value());
+        CHECK(refused.error().message.find("nothing gives light") != std::string::npos);
+        SolverOptions options;
+        options.outside.sky.y = -1.0f;
+        CHECK(Solver::create(dark, options).error().code == ErrorCode::out_of_range);
+        options = {};
+        options.outside.sun = glm::vec3(1.0f);
+        options.outside.to_sun = glm::dvec3(0.0);
+        CHECK(Solver::create(dark, options).error().code == ErrorCode::degenerate);
+        options = quick();
+        options.lines = 0;
+        CHECK_FALSE(Solver::create(dark, options).has_value());
+    }
+
+    TEST_CASE("furnace: in a closed box that glows with 1 and reflects rho, the radiosity is 1/(1 - rho) everywhere") {
+        for (const float rho : {0.0f, 0.5f, 0.7f}) {
+            Shape s;
+            s.room({0, 0, 0}, {3, 1, 2}, 0);
+            s.sphere({1.5f, 0.5f, 1}, 0.3f, 8, false, 6);
+            const Patches patches = patches_of(s, std::vector<Material>(7, {glm::vec3(1.0f), glm::vec3(rho)}));
+            for (const Transport transport : {Transport::global, Transport::local}) {
+                SolverOptions options = quick();
+                options.transport = transport;
+                auto solver = Solver::create(patches, options);
+                REQUIRE(solver.has_value());
+                for (int run = 0; run < 12; ++run) solver->run();
+                // The first shot is the only noise, about √(7/(12·2^14)) per patch: later bounces of a constant are
+                // exact.
+                for (const glm::vec3& b : solver->radiosity())
+                    CHECK(b.x == doctest::Approx(1.0 / (1.0 - rho)).epsilon(0.02));
+                CHECK(solver->unseen() == 0.0);
+            }
+        }
+    }
+
+    TEST_CASE("energy: what the lamps of a closed scene give off is absorbed") {
+        const Box box = lit_box(3);
+        const Patches patches = patches_of(box.shape, box.materials);
+        auto solver = Solver::create(patches, quick());
+        REQUIRE(solver.has_value());
+        for (int run = 0; run < 10; ++run) solver->run();
+        for (int k = 0; k < 3; ++k) {
+            double given = 0.0, absorbed = 0.0;
+            for (std::size_t i = 0; i < patches.count(); ++i) {
+                const double e = static_cast<double>(patches.materials[i].emission[k]),
+                             r = static_cast<double>(patches.materials[i].reflectance[k]);
+                given += patches.areas[i] * e;
+                absorbed += patches.areas[i] * (1.0 - r) * (static_cast<double>(solver->radiosity()[i][k]) - e) / r;
+            }
+            CHECK(absorbed == doctest::Approx(given).epsilon(0.01));
+        }
+    }
+
+    TEST_CASE("a coloured box with a lamp agrees with an independent full-matrix solution") {
+        const Box box = lit_box(4);
+        const Patches patches = patches_of(box.shape, box.materials);
+        const auto truth = full_matrix_solution(patches, 20'000);
+        for (const Transport transport : {Transport::global, Transport::local}) {
+            SolverOptions options = quick();
+            options.transport = transport;
+            auto solver = Solver::create(patches, options);
+            REQUIRE(solver.has_value());
+            for (int run = 0; run < 20; ++run) solver->run();
+            CHECK(solver->relative_error() < 0.02);
+            double error = 0.0, size = 0.0;
+            for (std::size_t i = 0; i < truth.size(); ++i)
+                for (int k = 0; k < 3; ++k) {
+                    const double difference = static_cast<double>(solver->radiosity()[i][k]) - truth[i][k];
+                    error += patches.areas[i] * difference * difference;
+                    size += patches.areas[i] * truth[i][k] * truth[i][k];
+                }
+            CHECK(std::sqrt(error / size) < 0.02);
+        }
+    }
+
+    TEST_CASE(
+        "under an open sky a lone plate of reflectance rho gives back rho of the sky's radiosity, and the sun's "
+        "cosine") {
+        Shape s;
+        s.parallelogram({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 0);  // looks up
+        s.parallelogram({0, -1, 0}, {0, 0, 0.1f}, {0.1f, 0, 0}, 1);
+        const Patches patches = patches_of(s, std::vector<Material>(2, {glm::vec3(0.0f), glm::vec3(0.5f)}));
+        SolverOptions options = quick();
+        options.outside.sky = {1.0f, 2.0f, 3.0f};
+        auto sky = Solver::create(patches, options);
+        REQUIRE(sky.has_value());
+        sky->run();
+        CHECK(sky->radiosity()[0].z == doctest::Approx(1.5).epsilon(1e-6));
+        options.outside = {glm::vec3(0.0f), glm::vec3(2.0f), {1.0, 1.0, 0.0}};
+        options.first_shot = 1 << 17;
+        auto sun = Solver::create(patches, options);
+        REQUIRE(sun.has_value());
+        for (int run = 0; run < 4; ++run) sun->run();
+        CHECK(sun->radiosity()[0].x == doctest::Approx(0.5 * 2.0 * std::sqrt(0.5)).epsilon(0.01));
+    }
+
+    TEST_CASE("the estimated error is the true one's size, and four times the runs halve it") {
+        const Box box = lit_box(3);
+        const Patches patches = patches_of(box.shape, box.materials);
+        auto solver = Solver::create(patches, quick());
+        REQUIRE(solver.has_value());
+        CHECK(std::isinf(solver->relative_error()));
+        for (int run = 0; run < 16; ++run) solver->run();
+        const double early = solver->relative_error();
+        for (int run = 16; run < 64; ++run) solver->run();
+        CHECK(early / solver->relative_error() == doctest::Approx(2.0).epsilon(0.2));
+    }
+
+    TEST_CASE("the same bits for any number of threads, and after a checkpoint") {
+        const Box box = lit_box(3);
+        const Patches patches = patches_of(box.shape, box.materials);
+        ThreadPool pool(4);
+        for (const Transport transport : {Transport::global, Transport::local}) {
+            SolverOptions options = quick();
+            options.transport = transport;
+            auto serial = Solver::create(patches, options), parallel = Solver::create(patches, options),
+                 resumed = Solver::create(patches, options);
+            serial->run();
+            const auto saved = serial->checkpoint();
+            serial->run();
+            parallel->run(pool);
+            parallel->run(pool);
+            REQUIRE(resumed->resume(saved).has_value());
+            resumed->run();
+            CHECK(same(serial->radiosity(), parallel->radiosity()));
+            CHECK(same(serial->radiosity(), resumed->radiosity()));
+            CHECK(resumed->runs() == 2);
+        }
+    }
+
+    TEST_CASE("damaged checkpoints, and those of other options, are refused") {
+        const Box box = lit_box(2);
+        const Patches patches = patches_of(box.shape, box.materials);
+        auto solver = Solver::create(patches, quick());
+        solver->run();
+        const auto saved = solver->checkpoint();
+        for (std::size_t size : {std::size_t{0}, std::size_t{10}, saved.size() - 1})
+            CHECK(solver->resume(std::span(saved).first(size)).error().code == ErrorCode::parse);
+        auto damaged = saved;
+        for (std::size_t i = 0; i < damaged.size(); i += 37) {
+            damaged[i] ^= std::byte{16};
+            CHECK_FALSE(solver->resume(damaged).has_value());
+            damaged[i] ^= std::byte{16};
+        }
+        SolverOptions other = quick();
+        other.seed = 2;
+        CHECK(Solver::create(patches, other)->resume(saved).error().code == ErrorCode::invalid_argument);
+        CHECK(solver->resume(saved).has_value());
+    }
+}
