@@ -50,7 +50,6 @@ const Builder::Ground& Builder::ground(const Block& b, bool courtyard) {
     g.paving = library_.add_polygon({rectangle(hx, hz), court}, {}, u, v, srgb(168, 162, 152), "parcel");
     g.lawn = library_.add_polygon({court, plaza}, {}, u, v, srgb(104, 128, 66), "lawn");
     g.setts = library_.add_polygon({court, plaza}, {}, u, v, srgb(150, 143, 134), "setts");
-    if (!courtyard) g.yard = library_.add_polygon({court, plaza}, {}, u, v, srgb(150, 138, 122), "yard");
     g.gravel = courtyard ? library_.add_polygon({plaza}, {}, u, v, srgb(196, 180, 148), "court")
                          : library_.add_polygon({plaza, circle(2.8, 16)}, {}, u, v, srgb(196, 180, 148), "plaza");
     MeshBuilder kerb;
