@@ -3,6 +3,7 @@
 #include <OgreCamera.h>
 #include <OgreEntity.h>
 #include <OgreRenderQueue.h>
+#include <OgreRenderQueueSortingGrouping.h>
 
 #include <chrono>
 #include <crofton/scene/transform.hpp>
@@ -140,10 +141,30 @@ Frustum SceneManager::frustum_of(const Ogre::Camera& camera) {
     return frustum;
 }
 
+// What RenderQueue::processVisibleObject does, with the world box that the object has kept since its node moved instead
+// of one computed anew for every view.
+void SceneManager::queue_object(Ogre::MovableObject& object, Ogre::Camera* camera,
+                                Ogre::VisibleObjectsBoundsInfo* bounds, bool only_shadow_casters) {
+    object._notifyCurrentCamera(camera);
+    if (!object.isVisible()) return;
+    Ogre::RenderQueue* queue = getRenderQueue();
+    const bool receives =
+        object.getReceivesShadows() && queue->getQueueGroup(object.getRenderQueueGroup())->getShadowsEnabled();
+    const bool is_queued = !only_shadow_casters || object.getCastShadows();
+    if (is_queued) object._updateRenderQueue(queue);
+    if (!bounds || !(is_queued || receives)) return;
+    const Ogre::AxisAlignedBox& box = object.getWorldBoundingBox(false);
+    const Ogre::Sphere& sphere = object.getWorldBoundingSphere(true);
+    if (is_queued)
+        bounds->merge(box, sphere, camera, receives);
+    else
+        bounds->mergeNonRenderedButInFrustum(box, sphere, camera);
+}
+
 void SceneManager::queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                                  bool only_shadow_casters) {
     for (Ogre::MovableObject* object : node.getAttachedObjects())
-        getRenderQueue()->processVisibleObject(object, camera, only_shadow_casters, bounds);
+        queue_object(*object, camera, bounds, only_shadow_casters);
     if (Ogre::DebugDrawer* drawer = getDebugDrawer()) drawer->drawSceneNode(&node);
 }
 

@@ -58,6 +58,8 @@ class SceneManager final : public Ogre::SceneManager {
     Ogre::SceneNode* createSceneNodeImpl(const Ogre::String& name) override;
     void bounds_changed(SceneNode& node);
     void forget(SceneNode& node);
+    void queue_object(Ogre::MovableObject& object, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
+                      bool only_shadow_casters);
     void queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                        bool only_shadow_casters);
 

@@ -103,4 +103,46 @@ TEST_SUITE("capi/cull") {
         REQUIRE(crofton_visible_set_statistics(visible.get(), &statistics) == CROFTON_OK);
         if (crofton::cull::kCountStatistics) CHECK(statistics.nodes_tested > 0);
     }
+
+    TEST_CASE("a tree changes: items come, move and go; wrong ids and boxes change nothing") {
+        const crofton_box seen = box_at(0, 0, -5), behind = box_at(0, 0, 50);
+        const std::vector<crofton_box> boxes{seen, behind};
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(boxes.data(), nullptr, 2, nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        const VisibleSet visible = make_visible_set();
+        const crofton_view view = default_view();
+        const auto ids = [&] {
+            REQUIRE(crofton_tree_refit(tree) == CROFTON_OK);
+            REQUIRE(crofton_tree_maintain(tree, 100) == CROFTON_OK);
+            REQUIRE(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+            const uint32_t* found = nullptr;
+            std::size_t count = 0;
+            REQUIRE(crofton_visible_set_items(visible.get(), &found, nullptr, &count) == CROFTON_OK);
+            return std::vector<uint32_t>(found, found + count);
+        };
+        crofton_box bad = seen;
+        bad.half_extents[0] = -1.0f;
+        uint32_t item = 77;
+        const uint32_t one = 1, nine = 9;
+        CHECK(crofton_tree_move(tree, &nine, &seen, 1) != CROFTON_OK);
+        CHECK(crofton_last_error_item() == 9);
+        CHECK(crofton_tree_move(tree, &one, &bad, 1) != CROFTON_OK);
+        CHECK(crofton_tree_move(tree, nullptr, &seen, 1) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_insert(tree, &bad, 1, &item) != CROFTON_OK);
+        CHECK(crofton_tree_insert(tree, nullptr, 1, &item) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_remove(tree, 9) != CROFTON_OK);
+        CHECK(crofton_tree_refit(nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(item == 77);
+        CHECK(ids() == std::vector<uint32_t>{0});
+        CHECK(crofton_tree_move(tree, &one, &seen, 1) == CROFTON_OK);
+        CHECK(ids() == std::vector<uint32_t>{0, 1});
+        CHECK(crofton_tree_remove(tree, 0) == CROFTON_OK);
+        CHECK(ids() == std::vector<uint32_t>{1});
+        CHECK(crofton_tree_insert(tree, &seen, 1, &item) == CROFTON_OK);
+        CHECK(item == 0);
+        CHECK(ids() == std::vector<uint32_t>{0, 1});
+        CHECK(crofton_tree_set_layer_mask(tree, 1, 0) == CROFTON_OK);
+        CHECK(ids() == std::vector<uint32_t>{0});
+    }
 }

@@ -1,13 +1,32 @@
-// A program outside the project that links the package: it must compile, link and answer.
+// A program outside the project that links the package: it must compile, link and answer, from every module.
+#include <crofton/bake/checksum.hpp>
+#include <crofton/collide/obb_obb.hpp>
 #include <crofton/core/version.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/cull/cull.hpp>
+#include <crofton/fit/fit.hpp>
 #include <crofton/measure/criterion.hpp>
+#include <crofton/scene/scene.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <cstdio>
 
 int main() {
     crofton::Obb box;
     box.half_extents = {1.0f, 2.0f, 3.0f};
     const double edges = crofton::measure::minimal_perimeter()(crofton::measure::of_box(box));
-    std::printf("crofton %s: edge sum %g\n", crofton::version_string(), edges);
-    return crofton::contains(box, {1.0, 2.0, 3.0}) && edges > 11.999 && edges < 12.001 ? 0 : 1;
+    bool good = edges > 11.999 && edges < 12.001 && crofton::contains(box, {1.0, 2.0, 3.0});
+    good = good && crofton::collide::intersects(box, box);
+    const glm::vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    good = good && crofton::fit::fit_obb(points).has_value();
+    const crofton::Polygon square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {4}};
+    const auto triangles = crofton::triangulate::triangulate(square);
+    good = good && triangles && triangles->triangles.size() == 2;
+    crofton::scene::Scene scene;
+    good = good && scene.update().nodes_updated == 0;
+    crofton::cull::VisibleSet visible;
+    const auto frustum = crofton::frustum_of(crofton::Camera{});
+    if (frustum) crofton::cull::cull({&box, 1}, {}, {.frustum = *frustum}, visible);
+    good = good && visible.size() == 1;
+    good = good && crofton::bake::checksum({}) != 0;
+    std::printf("crofton %s: edge sum %g, %zu box in view\n", crofton::version_string(), edges, visible.size());
+    return good ? 0 : 1;
 }

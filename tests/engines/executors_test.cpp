@@ -1,6 +1,7 @@
 #include "../../samples/executors/tbb_executor.hpp"
 
 #include <doctest/doctest.h>
+#include <tbb/global_control.h>
 
 #include <atomic>
 #include <crofton/collide/broadphase.hpp>
@@ -67,6 +68,7 @@ TEST_SUITE("engines/executors") {
         CHECK(expected.pairs.size() > 1000);
         crofton::ThreadPool pool(4);
         CHECK(answers(boxes, pool) == expected);
+        const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
         for (const int threads : {1, 2, 5}) {
             crofton::samples::TbbExecutor tbb(threads);
             CHECK(answers(boxes, tbb) == expected);

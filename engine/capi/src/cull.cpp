@@ -69,6 +69,51 @@ crofton_status crofton_tree_destroy(crofton_tree* tree) {
     return destroy(tree, __func__);
 }
 
+crofton_status crofton_tree_move(crofton_tree* tree, const uint32_t* items, const crofton_box* boxes, size_t count) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(items, count, __func__));
+    CROFTON_CHECK(check_array(boxes, count, __func__));
+    return status_of(tree->tree.move(std::span(items, count), to_boxes(boxes, count)), __func__);
+}
+
+crofton_status crofton_tree_insert(crofton_tree* tree, const crofton_box* box, uint32_t layer_mask, uint32_t* item) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(box, __func__));
+    CROFTON_CHECK(check_pointer(item, __func__));
+    const auto inserted = tree->tree.insert(to_box(box), layer_mask);
+    if (!inserted) return report(inserted.error(), __func__);
+    *item = *inserted;
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_remove(crofton_tree* tree, uint32_t item) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    return status_of(tree->tree.remove(item), __func__);
+}
+
+crofton_status crofton_tree_set_layer_mask(crofton_tree* tree, uint32_t item, uint32_t layer_mask) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    return status_of(tree->tree.set_layer_mask(item, layer_mask), __func__);
+}
+
+crofton_status crofton_tree_refit(crofton_tree* tree) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    tree->tree.refit();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_tree_maintain(crofton_tree* tree, size_t budget) {
+    const ExclusiveUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    tree->tree.maintain(budget);
+    return CROFTON_OK;
+}
+
 crofton_status crofton_visible_set_create(crofton_visible_set** visible) {
     CROFTON_CHECK(check_pointer(visible, __func__));
     *visible = create<crofton_visible_set>();

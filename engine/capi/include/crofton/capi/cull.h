@@ -36,6 +36,19 @@ CROFTON_API crofton_status crofton_tree_create(const crofton_box* boxes, const u
                                                const crofton_jobs* jobs, crofton_tree** tree);
 CROFTON_API crofton_status crofton_tree_destroy(crofton_tree* tree);
 
+/* Changes: all of a call's items, or none. After moves and removals call crofton_tree_refit before the next query. */
+CROFTON_API crofton_status crofton_tree_move(crofton_tree* tree, const uint32_t* items, const crofton_box* boxes,
+                                             size_t count);
+CROFTON_API crofton_status crofton_tree_insert(crofton_tree* tree, const crofton_box* box, uint32_t layer_mask,
+                                               uint32_t* item);
+/* The item's id is given to a later insert. */
+CROFTON_API crofton_status crofton_tree_remove(crofton_tree* tree, uint32_t item);
+CROFTON_API crofton_status crofton_tree_set_layer_mask(crofton_tree* tree, uint32_t item, uint32_t layer_mask);
+CROFTON_API crofton_status crofton_tree_refit(crofton_tree* tree);
+/* Rebuilds in the background, `budget` items' worth of work a call: once a frame, after refit, where items move for
+ * long. */
+CROFTON_API crofton_status crofton_tree_maintain(crofton_tree* tree, size_t budget);
+
 CROFTON_API crofton_status crofton_visible_set_create(crofton_visible_set** visible);
 CROFTON_API crofton_status crofton_visible_set_destroy(crofton_visible_set* visible);
 

@@ -1,0 +1,10 @@
+# A C11 program built with nothing but a compiler and pkg-config: PREFIX, LIBDIR, COMPILER, SOURCE, OUTPUT.
+set(ENV{PKG_CONFIG_PATH} ${PREFIX}/${LIBDIR}/pkgconfig)
+execute_process(COMMAND pkg-config --cflags --libs --static crofton OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+execute_process(COMMAND ${COMPILER} -std=c11 -Wall -Wextra -Wpedantic -Werror ${SOURCE} ${flags} -o ${OUTPUT} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${PREFIX}/${LIBDIR} ${OUTPUT} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND pkg-config --modversion crofton OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+if(NOT version STREQUAL VERSION)
+    message(FATAL_ERROR "pkg-config says ${version}, not ${VERSION}")
+endif()
