@@ -41,7 +41,7 @@ TEST_SUITE("bake/checksum") {
     TEST_CASE("words that change places are seen, near and far") {
         auto bytes = random_bytes(4096);
         const std::uint64_t sound = checksum(bytes);
-        for (const std::size_t distance : {8, 64, 128, 1024})
+        for (const std::size_t distance : {8u, 64u, 128u, 1024u})
             for (std::size_t i = 0; i + distance + 8 <= bytes.size(); i += 8) {
                 std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(i),
                                  bytes.begin() + static_cast<std::ptrdiff_t>(i + 8),

@@ -26,7 +26,8 @@ TEST_SUITE("bake/mapped_file") {
         REQUIRE(mapped);
         MappedFile moved = std::move(*mapped);
         CHECK(mapped->bytes().empty());
-        moved = std::move(moved);
+        MappedFile again = std::move(moved);
+        moved = std::move(again);
         REQUIRE(moved.bytes().size() == contents.size());
         CHECK(moved.bytes()[99'999] == std::byte{7});
     }

@@ -1,4 +1,5 @@
-#Makes the Debian package, installs it into an empty root, looks, removes it : BUILD, ROOT, VERSION.
+# Makes the Debian package, installs it into an empty root, looks, removes it: CPACK, BUILD, ROOT, VERSION.
+cmake_minimum_required(VERSION 3.24)
 file(REMOVE_RECURSE ${ROOT})
 file(MAKE_DIRECTORY ${ROOT}/var/lib/dpkg/updates ${ROOT}/var/lib/dpkg/info ${ROOT}/var/lib/dpkg/triggers)
 file(WRITE ${ROOT}/var/lib/dpkg/status "")
@@ -7,27 +8,25 @@ file(GLOB package ${ROOT}/packages/libcrofton-dev_${VERSION}_*.deb)
 if(NOT package)
     message(FATAL_ERROR "no libcrofton-dev_${VERSION}_*.deb was made")
 endif()
-#Other packages are not in this root : that they are named is checked, not that they are there.
-set(dpkg dpkg --root=${
-    ROOT} --log=/dev/null --force-depends --force-not-root --force-bad-path)
 execute_process(COMMAND dpkg-deb --field ${package} Depends OUTPUT_VARIABLE depends COMMAND_ERROR_IS_FATAL ANY)
-foreach(needed libglm-dev libexpected-dev)
+foreach(needed libglm-dev libexpected-dev libhwy-dev libqhull-dev)
     if(NOT depends MATCHES ${needed})
         message(FATAL_ERROR "the package does not depend on ${needed}: ${depends}")
     endif()
 endforeach()
-execute_process(COMMAND ${
-    dpkg} --install ${package} OUTPUT_QUIET ERROR_VARIABLE said RESULT_VARIABLE failed)
+# The packages it depends on are not in this root: that they are named is checked above, not that they are there.
+set(dpkg dpkg --root=${ROOT} --log=/dev/null --force-depends --force-not-root --force-bad-path --force-architecture)
+execute_process(COMMAND ${dpkg} --install ${package} OUTPUT_QUIET ERROR_VARIABLE said RESULT_VARIABLE failed)
 if(failed)
     message(FATAL_ERROR "dpkg --install: ${said}")
 endif()
-foreach(file usr/include/crofton/cull/cull.hpp usr/include/crofton/capi/crofton.h usr/share/doc/crofton/LICENSE usr/share/doc/crofton/integrate.md)
+foreach(file usr/include/crofton/cull/cull.hpp usr/include/crofton/capi/crofton.h usr/share/doc/crofton/LICENSE
+        usr/share/doc/crofton/integrate.md)
     if(NOT EXISTS ${ROOT}/${file})
         message(FATAL_ERROR "the package lacks ${file}")
     endif()
 endforeach()
-execute_process(COMMAND ${
-    dpkg} --purge libcrofton-dev OUTPUT_QUIET ERROR_VARIABLE said RESULT_VARIABLE failed)
+execute_process(COMMAND ${dpkg} --purge libcrofton-dev OUTPUT_QUIET ERROR_VARIABLE said RESULT_VARIABLE failed)
 file(GLOB_RECURSE left ${ROOT}/usr/*)
 if(failed OR left)
     message(FATAL_ERROR "dpkg --purge left ${left} ${said}")

@@ -49,7 +49,7 @@ Answers answers(const std::vector<crofton::Obb>& boxes, crofton::Executor& execu
 TEST_SUITE("engines/executors") {
     TEST_CASE("no items, one item and a last range cut short are each done once on oneTBB") {
         crofton::samples::TbbExecutor executor(3);
-        for (const std::size_t count : {0, 1, 7, 1000, 1001}) {
+        for (const std::size_t count : {0u, 1u, 7u, 1000u, 1001u}) {
             std::vector<std::atomic<int>> done(count);
             executor.parallel_for(count, 7, [&](std::size_t begin, std::size_t end, unsigned worker) {
                 CHECK(begin % 7 == 0);
