@@ -16,7 +16,7 @@ class TemporaryFile {
         path_ = (std::filesystem::temp_directory_path() / "crofton-test-XXXXXX").string();
         const int descriptor = mkstemp(path_.data());
         std::FILE* file = fdopen(descriptor, "wb");
-        std::fwrite(contents.data(), 1, contents.size(), file);
+        if (!contents.empty()) std::fwrite(contents.data(), 1, contents.size(), file);
         std::fclose(file);
     }
     ~TemporaryFile() { std::filesystem::remove(path_); }
