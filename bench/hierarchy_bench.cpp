@@ -5,9 +5,11 @@
 #include <assets/scene_source.hpp>
 #include <cmath>
 #include <crofton/cull/classify.hpp>
+#include <crofton/fit/fit.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/measure/query_sample.hpp>
 #include <crofton/measure/random_motion.hpp>
+#include <crofton/tree/bound_given_ancestors.hpp>
 #include <crofton/tree/visit_tree.hpp>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -16,6 +18,7 @@
 #include <numbers>
 #include <pipeline/camera_path.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -139,7 +142,8 @@ constexpr Strategy kStrategies[] = {
 };
 
 VisitTree build(const World& world, const Strategy& strategy) {
-    tree::VisitOptions options{.criterion = strategy.criterion(world), .oriented = strategy.oriented};
+    const Criterion criterion = strategy.criterion(world);
+    tree::VisitOptions options{.split_criterion = criterion, .criterion = criterion, .oriented = strategy.oriented};
     if (strategy.build == Build::inserted) {
         VisitTree tree = *VisitTree::build({}, options);
         for (const Obb& box : world.boxes) (void)*tree.insert(box);
@@ -227,7 +231,45 @@ void hierarchy(benchmark::State& state, const std::string& world_name, const Str
     state.counters["tests_per_line"] = tests_per_line(world, tree);
 }
 
+// Boxes fitted given one or three ancestors of other orientations, against the plain fit by M: queries that reach the
+// box's children, per query that passes all ancestors.
+void bound_given_ancestors(benchmark::State& state, const measure::QuerySample& queries) {
+    const auto levels = static_cast<std::size_t>(state.range(0));
+    double plain = 0.0, given = 0.0, reaching = 0.0;
+    for (auto _ : state) {
+        measure::Random random(9);
+        plain = given = reaching = 0.0;
+        for (int object = 0; object < 20; ++object) {
+            std::vector<glm::dvec3> points;
+            for (int i = 0; i < 40; ++i)
+                points.push_back(glm::dvec3(1.0, 0.5, 0.25) * measure::ball_point(random.point<3>()));
+            std::vector<Obb> ancestors;
+            for (std::size_t k = 0; k < levels; ++k)
+                ancestors.push_back(*fit::fit_oriented(points, glm::mat3(measure::rotation(random.point<3>()))));
+            const auto found = *tree::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
+            plain += found.plain_hits, given += found.hits, reaching += found.reaching;
+        }
+    }
+    state.counters["plain"] = plain / reaching;
+    state.counters["given_ancestors"] = given / reaching;
+}
+
 const bool kRegistered = [] {
+    const measure::Ball region{glm::dvec3(0.0), 2.5};
+    Camera camera;
+    camera.far = 20.0;
+    const std::pair<const char*, measure::QuerySample> samples[] = {
+        {"planes", *measure::QuerySample::planes(region, 4096, 1)},
+        {"lines", *measure::QuerySample::lines(region, 4096, 1)},
+        {"frusta", *measure::QuerySample::frusta(camera, region, 4096, 1)}};
+    for (const auto& [name, sample] : samples)
+        benchmark::RegisterBenchmark(
+            (std::string("bound_given_ancestors/") + name).c_str(),
+            [queries = sample](benchmark::State& state) { bound_given_ancestors(state, queries); })
+            ->Arg(1)
+            ->Arg(3)
+            ->Unit(benchmark::kMillisecond)
+            ->Iterations(1);
     for (const char* world :
          {"boxes", "needles", "town_street", "town_orbit", "large_town_street", "forest_street", "forest_orbit"})
         for (const Strategy& strategy : kStrategies)

@@ -71,6 +71,7 @@ TEST_SUITE("tree/visit_tree") {
         boxes[1].center.x = std::nan("");
         CHECK(VisitTree::build(boxes).error().item == 1);
         CHECK_FALSE(VisitTree::build({}, {.criterion = {0.0, 0.0, 0.0}}).has_value());
+        CHECK_FALSE(VisitTree::build({}, {.split_criterion = {-1.0, 0.0, 1.0}}).has_value());
         CHECK(VisitTree::build({}, {.split = Split::sampled}).error().code == ErrorCode::invalid_argument);
         VisitTree tree = *VisitTree::build({});
         CHECK_FALSE(tree.insert(boxes[1]).has_value());

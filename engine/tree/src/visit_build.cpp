@@ -175,7 +175,7 @@ class VisitBuilder {
 
     double chance(const Aabb& box, std::span<const std::uint32_t> alive) const {
         if (options_.split != Split::sampled || alive.size() < options_.min_queries)
-            return value(options_.criterion, box);
+            return value(options_.split_criterion, box);
         const Obb bound = obb_of(box);
         std::size_t hits = 0;
         for (const std::uint32_t q : alive) hits += options_.queries->straddles(q, bound);
@@ -193,6 +193,7 @@ class VisitBuilder {
 Result<VisitTree> VisitTree::build(std::span<const Obb> boxes, const VisitOptions& options) {
     if (boxes.size() > kMaxItems) return fail(ErrorCode::out_of_range, kMaxItems, "visit tree: more than 2^30 boxes");
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+    if (auto valid = measure::validate(options.split_criterion); !valid) return tl::unexpected(valid.error());
     if (options.split == Split::sampled && options.queries == nullptr)
         return fail(ErrorCode::invalid_argument, kNoItem, "visit tree: to split by sampled queries it needs some");
     for (std::size_t i = 0; i < boxes.size(); ++i)

@@ -19,8 +19,11 @@ enum class Split : std::uint8_t {
 
 struct VisitOptions {
     Split split = Split::nested;
-    // What chooses sides (nested) and, for insertion, places; and among bounds. With (2) for the frustum in use the
-    // cost is the true chance of a visit for nested boxes.
+    // What Split::nested weighs sides by. The area wins there even for frusta: items(side) overrates what is below a
+    // side, and more so for M, which shrinks more slowly on the way down (docs/hierarchies.md).
+    measure::Criterion split_criterion = measure::minimal_area();
+    // What chooses places for insertion, and among bounds: here the cost is the expected number of visits itself, and
+    // with (2) for the frustum in use it is exact for nested boxes.
     measure::Criterion criterion = measure::minimal_perimeter();
     // false: axis-aligned bounds, nested by nature. true: oriented ones, which need not lie within their parent's; the
     // best of a few fits by the criterion (nested, median) or by the queries that straddle all ancestors (sampled).
