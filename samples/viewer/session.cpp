@@ -42,7 +42,7 @@ Camera from_outside(const Camera& camera, double reach) {
 bool Session::running() const {
     if (quit_ || (window_ && window_->should_close())) return false;
     if (options_.frames > 0) return frame_index_ < options_.frames;
-    return window_ != nullptr || !script_.empty();
+    return options_.script.empty() ? window_ != nullptr : !script_.empty();
 }
 
 Result<void> Session::turn() {

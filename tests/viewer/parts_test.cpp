@@ -1,0 +1,179 @@
+// The viewer's parts that need no window: picking, views, journal, shapes.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "viewer/eye.hpp"
+#include "viewer/journal.hpp"
+#include "viewer/overlay.hpp"
+#include "viewer/picking.hpp"
+#include "viewer/shape_colors.hpp"
+
+using namespace crofton;
+using namespace crofton::viewer;
+
+namespace {
+
+// Squares across the z axis at the given depths, one instance each.
+scene::Scene squares(std::initializer_list<double> depths) {
+    scene::Scene result;
+    TriangleMesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    const auto id = result.add_mesh(mesh);
+    REQUIRE(id);
+    for (const double z : depths) {
+        scene::Transform place;
+        place.translation.z = z;
+        const auto node = result.add_node(scene::kNone, place);
+        REQUIRE(node);
+        REQUIRE(result.add_instance(*node, *id));
+    }
+    result.update();
+    return result;
+}
+
+}  // namespace
+
+TEST_SUITE("viewer/picking") {
+    TEST_CASE("nothing is picked from an empty list, behind the camera or beside the square") {
+        const scene::Scene scene = squares({-5.0, 5.0});
+        const Camera camera;
+        CHECK_FALSE(pick(scene, {}, camera, {0.0, 0.0}));
+        const scene::InstanceId behind[] = {1}, ahead[] = {0};
+        CHECK_FALSE(pick(scene, behind, camera, {0.0, 0.0}));
+        CHECK_FALSE(pick(scene, ahead, camera, {0.9, 0.9}));
+    }
+    TEST_CASE("the nearest of several is picked, with its triangle, its distance and the place") {
+        const scene::Scene scene = squares({-9.0, -4.0, -6.0});
+        const Camera camera;
+        const scene::InstanceId all[] = {0, 1, 2};
+        const auto hit = pick(scene, all, camera, {0.01, -0.05});
+        REQUIRE(hit);
+        CHECK(hit->instance == 1);
+        CHECK(hit->triangle == 0);  // below the diagonal
+        CHECK(hit->at.z == doctest::Approx(-4.0));
+        CHECK(hit->distance == doctest::Approx(glm::length(hit->at)));
+        // The cursor's tangent, times the depth.
+        CHECK(hit->at.y == doctest::Approx(-0.05 * std::tan(0.5 * camera.fov_y) * 4.0));
+    }
+}
+
+TEST_SUITE("viewer/overlay") {
+    TEST_CASE("the views of a split cover the whole depth range without gaps") {
+        Camera camera;
+        camera.far = 300.0;
+        const auto views = split_view(camera, 4, 1e9);
+        REQUIRE(views.size() == 4);
+        CHECK(views.front().camera.near == doctest::Approx(camera.near));
+        CHECK(views.back().camera.far == doctest::Approx(camera.far));
+        for (std::size_t i = 1; i < views.size(); ++i) CHECK(views[i].camera.near == views[i - 1].camera.far);
+        camera.far = std::numeric_limits<double>::infinity();
+        CHECK(split_view(camera, 3, 50.0).back().camera.far == doctest::Approx(50.0));
+    }
+    TEST_CASE("a frustum's corners lie where its camera says") {
+        Camera camera;
+        camera.position = {1e6, 0.0, 0.0};
+        camera.far = 10.0;
+        camera.aspect = 2.0;
+        const auto corner = view_corners(camera, 1e9);
+        CHECK(corner[7].z == doctest::Approx(-10.0));
+        CHECK(corner[7].y == doctest::Approx(10.0 * std::tan(0.5 * camera.fov_y)));
+        CHECK(corner[7].x - 1e6 == doctest::Approx(2.0 * corner[7].y));
+        CHECK(corner[0].z == doctest::Approx(-camera.near));
+    }
+}
+
+TEST_SUITE("viewer/shape_colors") {
+    TEST_CASE("quality is 0 without area, 1 when equilateral, and √3/2 for a half square") {
+        CHECK(shape_quality({0, 0, 0}, {0, 0, 0}, {0, 0, 0}) == 0.0f);
+        CHECK(shape_quality({0, 0, 0}, {1, 0, 0}, {2, 0, 0}) == doctest::Approx(0.0));
+        CHECK(shape_quality({0, 0, 0}, {1, 0, 0}, {0.5f, std::sqrt(0.75f), 0}) == doctest::Approx(1.0));
+        CHECK(shape_quality({0, 0, 0}, {1, 0, 0}, {0, 1, 0}) == doctest::Approx(std::sqrt(3.0) / 2.0));
+    }
+    TEST_CASE("colouring keeps the triangles, their order and their bits") {
+        const render::Vertex vertices[] = {{{0, 0, 0}, {0, 0, 1}, {1, 1, 1}},
+                                           {{1, 0, 0}, {0, 0, 1}, {1, 1, 1}},
+                                           {{0, 1, 0}, {0, 0, 1}, {1, 1, 1}},
+                                           {{9, 1, 0}, {0, 0, 1}, {1, 1, 1}}};
+        const std::uint32_t indices[] = {0, 1, 2, 2, 1, 3};
+        const ShapeColored colored = color_by_shape(vertices, indices);
+        REQUIRE(colored.indices.size() == 6);
+        for (std::size_t i = 0; i < 6; ++i)
+            CHECK(colored.vertices[colored.indices[i]].position == vertices[indices[i]].position);
+    }
+}
+
+TEST_SUITE("viewer/eye") {
+    TEST_CASE("frame-all sees the whole focus, and keys move the camera by speed times time") {
+        Eye eye;
+        eye.frame_all({}, {});  // empty: nothing happens
+        const Aabb box{{-10, 0, -10}, {30, 20, 50}};
+        eye.frame_all(box, box);
+        const glm::dvec3 to_center = box.center() - eye.camera.position;
+        CHECK(glm::length(glm::cross(glm::normalize(to_center), eye.camera.forward)) < 1e-12);
+        CHECK(eye.camera.far > glm::length(to_center));
+        const glm::dvec3 before = eye.camera.position;
+        eye.handle({Event::Kind::key_down, "W", 0, {}});
+        eye.advance(0.5);
+        eye.handle({Event::Kind::key_up, "W", 0, {}});
+        eye.advance(0.5);
+        CHECK(glm::distance(eye.camera.position, before + eye.camera.forward * (0.5 * eye.speed)) < 1e-9);
+    }
+    TEST_CASE("a bookmark brings the camera back, and an empty one changes nothing") {
+        Eye eye;
+        eye.camera.position = {1, 2, 3};
+        eye.store_bookmark(4);
+        eye.camera.position = {7, 7, 7};
+        CHECK_FALSE(eye.recall_bookmark(5));
+        CHECK(eye.camera.position.x == 7.0);
+        CHECK(eye.recall_bookmark(4));
+        CHECK(eye.camera.position.x == 1.0);
+    }
+    TEST_CASE("orbiting keeps the distance from its centre") {
+        Eye eye;
+        const Aabb box{{-1, -1, -1}, {1, 1, 1}};
+        eye.frame_all(box, box);
+        eye.mode = EyeMode::orbit;
+        const double distance = glm::length(eye.camera.position);
+        eye.handle({Event::Kind::button_down, "", 1, {100, 100}});
+        eye.handle({Event::Kind::cursor, "", 0, {180, 130}});
+        eye.handle({Event::Kind::button_up, "", 1, {180, 130}});
+        CHECK(glm::length(eye.camera.position) == doctest::Approx(distance));
+        CHECK(glm::dot(glm::normalize(-eye.camera.position), eye.camera.forward) == doctest::Approx(1.0));
+    }
+}
+
+TEST_SUITE("viewer/journal") {
+    TEST_CASE("an empty journal has no history, and exports valid files all the same") {
+        const Journal journal;
+        CHECK(journal.history([](const JournalEntry& e) { return e.frame_us; }).empty());
+        CHECK(journal.json()["frames"].empty());
+        CHECK(nlohmann::json::parse(journal.chrome_trace())["traceEvents"].empty());
+    }
+    TEST_CASE("history keeps the last frames, bins count them, and the trace's spans do not overlap") {
+        Journal journal;
+        for (int i = 0; i < 300; ++i) {
+            JournalEntry entry;
+            entry.frame_us = 1000.0 * i;
+            entry.frame.cull_us = 10.0;
+            journal.add(entry);
+        }
+        const auto history = journal.history([](const JournalEntry& e) { return e.frame_us * 1e-3; });
+        REQUIRE(history.size() == Journal::kHistory);
+        CHECK(history.front() == 60.0f);
+        CHECK(history.back() == 299.0f);
+        const auto bins = journal.frame_time_histogram();
+        CHECK(bins[12] == 5.0f);            // 60 to 64 ms
+        CHECK(bins[19] == 300.0f - 95.0f);  // 95 ms and more
+        const auto trace = nlohmann::json::parse(journal.chrome_trace());
+        double end = 0.0;
+        for (const auto& event : trace["traceEvents"]) {
+            if (event["name"] != "frame") continue;
+            CHECK(event["ts"].get<double>() >= end);
+            end = event["ts"].get<double>() + event["dur"].get<double>();
+        }
+    }
+}

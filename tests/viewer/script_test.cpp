@@ -1,0 +1,69 @@
+// Scripts and switches: what is refused, and by which name.
+#include <doctest/doctest.h>
+
+#include "viewer/script.hpp"
+#include "viewer/settings.hpp"
+
+using namespace crofton;
+using namespace crofton::viewer;
+
+TEST_SUITE("viewer/script") {
+    TEST_CASE("damaged scripts are refused, naming the event") {
+        CHECK_FALSE(parse_script("{"));
+        CHECK_FALSE(parse_script("[]"));
+        CHECK_FALSE(parse_script(R"({"events": 3})"));
+        const char* bad[] = {R"({"frame": -1, "key": "F"})",
+                             R"({"frame": 1})",
+                             R"({"frame": 1, "key": "F", "set": {}})",
+                             R"({"frame": 1, "key": 7})",
+                             R"({"frame": 1, "jump": true})",
+                             R"({"frame": 1, "set": {"coloring": "plaid"}})",
+                             R"({"frame": 1, "set": {"no such switch": true}})",
+                             R"({"frame": 1, "click": [1]})",
+                             R"({"frame": 1, "resize": [0, 5]})",
+                             R"({"frame": 1, "camera": {"fov_y": -3}})"};
+        for (const char* event : bad) {
+            CAPTURE(event);
+            const auto refused = parse_script(R"({"events": [{"frame": 0, "key": "H"}, )" + std::string(event) + "]}");
+            REQUIRE_FALSE(refused);
+            CHECK(refused.error().item == 1);
+            CHECK(refused.error().message.find("event 1") != std::string::npos);
+        }
+        CHECK_FALSE(parse_script(R"({"events": [{"frame": 5, "key": "H"}, {"frame": 4, "key": "H"}]})"));
+        CHECK(load_script("no/such/file.json").error().message.find("no/such/file.json") != std::string::npos);
+    }
+    TEST_CASE("a key is pressed and let go, held keys are held") {
+        const auto actions = parse_script(R"({"events": [{"frame": 2, "key": "F"}, {"frame": 3, "key_down": "W"}]})");
+        REQUIRE(actions);
+        REQUIRE(actions->size() == 3);
+        CHECK((*actions)[0].event.kind == Event::Kind::key_down);
+        CHECK((*actions)[1].event.kind == Event::Kind::key_up);
+        CHECK((*actions)[2].frame == 3);
+    }
+}
+
+TEST_SUITE("viewer/settings") {
+    TEST_CASE("values of the wrong kind or range change nothing") {
+        Settings settings;
+        CHECK_FALSE(set_switch(settings, "freeze", 1));
+        CHECK_FALSE(set_switch(settings, "cascades", 9));
+        CHECK_FALSE(set_switch(settings, "cascades", 2.5));
+        CHECK_FALSE(set_switch(settings, "time_scale", -1.0));
+        CHECK_FALSE(set_switch(settings, "cull", "octree"));
+        CHECK_FALSE(set_switch(settings, "bounds_kind", "capsule"));
+        CHECK(to_json(settings) == to_json(Settings{}));
+    }
+    TEST_CASE("every switch that is written can be read back") {
+        Settings settings;
+        settings.coloring = Coloring::improper;
+        settings.freeze = settings.compare = settings.outside = true;
+        settings.tree_level = 2;
+        settings.cascades = 3;
+        settings.method = {pipeline::BoundsKind::sphere, pipeline::CullMode::flat};
+        settings.other = {pipeline::BoundsKind::aabb, pipeline::CullMode::none};
+        Settings copy;
+        const nlohmann::json written = to_json(settings);
+        for (const auto& [name, value] : written.items()) CHECK(set_switch(copy, name, value));
+        CHECK(to_json(copy) == to_json(settings));
+    }
+}
