@@ -14,6 +14,7 @@
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "frames_output.hpp"
+#include "html_report.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
 #include "pipeline/pipeline.hpp"
@@ -35,7 +36,11 @@ struct FramesOptions {
     unsigned threads = 1;
     bool draw = false, no_draw = false, verify = false;
     FramesOutput output;
+    std::string report;  // a file of HTML; empty: not wanted
 };
+
+// As many pictures as a reader looks at.
+constexpr std::uint32_t kReportPictures = 6;
 
 double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -95,6 +100,8 @@ class FramesRun {
         const SceneFacts facts{source_->name, source_->scene.node_count(), source_->scene.instance_count(),
                                triangles_of(source_->scene)};
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
+            return tl::unexpected(written.error());
+        if (auto written = write_report(facts, frames, verification); !written)
             return tl::unexpected(written.error());
         if (verification)
             for (const std::string& message : verification->messages)
@@ -192,9 +199,29 @@ class FramesRun {
     }
 
     Result<void> save_picture(std::uint32_t index) {
-        if (!drawing_ || options_.output.png.empty()) return {};
+        const std::uint32_t step = std::max<std::uint32_t>(1, options_.frames / kReportPictures);
+        const bool report = !options_.report.empty() && index % step == 0 && report_pictures_.size() < kReportPictures;
+        if (!drawing_ || (options_.output.png.empty() && !report)) return {};
         if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return read;
-        return write_picture(options_.output.png, index, drawing_->image);
+        if (report) report_pictures_.push_back({index, drawing_->image});
+        return options_.output.png.empty() ? Result<void>{}
+                                           : write_picture(options_.output.png, index, drawing_->image);
+    }
+
+    Result<void> write_report(const SceneFacts& facts, std::span<const FrameStatistics> frames,
+                              const std::optional<pipeline::Verification>& verification) {
+        if (options_.report.empty()) return {};
+        ReportContents contents{facts, {}, frames, verification, std::move(report_pictures_)};
+        contents.settings = {{"scene", options_.scene},
+                             {"map", options_.map},
+                             {"camera", options_.camera},
+                             {"frames", std::to_string(frames.size())},
+                             {"seed", std::to_string(options_.seed)},
+                             {"size", options_.size},
+                             {"bounds", options_.bounds},
+                             {"cull", options_.cull},
+                             {"device", drawing_ ? drawing_->device.name() : "none: not drawn"}};
+        return write_file(options_.report, html_report(contents));
     }
 
     Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
@@ -208,6 +235,7 @@ class FramesRun {
     std::optional<pipeline::Pipeline> pipeline_;
     std::optional<pipeline::DrawList> list_;
     std::unique_ptr<Drawing> drawing_;
+    std::vector<ReportPicture> report_pictures_;
 };
 
 constexpr const char* kExamples =
@@ -217,6 +245,7 @@ constexpr const char* kExamples =
     "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
     "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
     "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
+    "  crofton frames town --report town.html             one page with pictures and charts\n"
     "  crofton frames town --json run.json && crofton frames town --camera run.json   the same path again\n";
 
 }  // namespace
@@ -247,6 +276,7 @@ void add_frames_command(CLI::App& app, Outcome& outcome) {
     command->add_option("--json", options->output.json, "Write everything as JSON; - for stdout");
     command->add_option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout");
     command->add_option("--png", options->output.png, "Write a picture per frame into this folder");
+    command->add_option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary");
     command->callback([options, &outcome] {
         const auto status = FramesRun(*options).run();
         outcome.status = status ? *status : report_error("", status.error());

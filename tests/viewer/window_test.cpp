@@ -15,7 +15,7 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wpedantic"
-#include <stb_image.h>
+#include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
 using namespace crofton::test;

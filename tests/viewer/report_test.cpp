@@ -1,0 +1,60 @@
+// The HTML report: complete in itself, and, where Chromium is installed, what a browser makes of it.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "../cli/run_cli.hpp"
+#include "cli/html_chart.hpp"
+
+using namespace crofton::test;
+
+namespace {
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+}  // namespace
+
+TEST_SUITE("cli/html_report") {
+    TEST_CASE("text that looks like markup stays text, numbers are grouped, and a chart of nothing is a chart") {
+        using namespace crofton::cli;
+        CHECK(html_escape("<a href=\"x\">&'</a>") == "&lt;a href=&quot;x&quot;&gt;&amp;&#39;&lt;/a&gt;");
+        CHECK(readable(1234567.0) == "1&#8239;234&#8239;567");
+        CHECK(readable(0.12345) == "0.123");
+        const std::string empty = svg_chart("id", "title", "unit", {});
+        CHECK(empty.find("nan") == std::string::npos);
+        CHECK(svg_chart("id", "t", "u", {{"a", {0.0, 0.0}}}).find("nan") == std::string::npos);
+        CHECK(count_of(svg_chart("id", "t", "u", {{"a", {1.0, 2.0, 3.0}}, {"b", {3.0, 2.0, 1.0}}}), "<polyline") == 2);
+    }
+    TEST_CASE("a report holds charts, pictures, settings and the verdict, and loads nothing") {
+        const std::string file = scratch().file("report.html");
+        const CliRun run = run_cli("frames --instances 300 --frames 5 --size 160x90 --verify --report '" + file + "'");
+        CHECK(run.status == 0);
+        const std::string page = contents_of(file);
+        REQUIRE(page.size() > 1000);
+        CHECK(count_of(page, "<svg ") >= 5);
+        CHECK(page.find("id=\"verification\"") != std::string::npos);
+        CHECK(page.find("0 mismatches") != std::string::npos);
+        CHECK(count_of(page, "http://") + count_of(page, "https://") + count_of(page, "<script") == 0);
+        CHECK(page.find("nan") == std::string::npos);
+        if (run.err.find("not drawing") == std::string::npos) CHECK(count_of(page, "data:image/png;base64,") >= 1);
+        if (std::system("command -v chromium >/dev/null 2>&1") != 0) {
+            MESSAGE("skipped in part: chromium is not installed");
+            return;
+        }
+        // The page as the browser has parsed it.
+        const std::string dom = scratch().file("dom.html");
+        const std::string command = "chromium --headless --no-sandbox --disable-gpu --user-data-dir='" +
+                                    scratch().file("chromium") + "' --dump-dom 'file://" + file + "' >'" + dom +
+                                    "' 2>/dev/null";
+        REQUIRE(std::system(command.c_str()) == 0);
+        const std::string parsed = contents_of(dom);
+        for (const char* id : {"chart-instances", "chart-triangles", "chart-time", "chart-pairs", "chart-nodes"})
+            CHECK(parsed.find("id=\"" + std::string(id) + "\"") != std::string::npos);
+        CHECK(count_of(parsed, "<polyline") == count_of(page, "<polyline"));
+    }
+}
