@@ -68,11 +68,10 @@ class Search {
 
     void set_best(const glm::dmat3& axes, double value, const glm::dvec3& w) {
         result_.best = {axes, value};
-        // Widths of coordinates up to 1 carry a few units of 1e-16; what that does to the value cannot be told from the
-        // gap.
+        // Thinner than 1e-13 of the size is noise of the coordinates; what that does to the value is left unproved.
         const double slopes = weights_.product * (w.x * w.y + w.y * w.z + w.z * w.x) +
                               2.0 * weights_.pairs * (w.x + w.y + w.z) + 3.0 * weights_.sum;
-        target_ = std::max(0.0, value * (1.0 - limits_.gap) - 2e-15 * slopes);
+        target_ = std::max(0.0, value * (1.0 - limits_.gap) - 1e-13 * slopes);
     }
 
     bool ask() {

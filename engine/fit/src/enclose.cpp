@@ -82,8 +82,36 @@ Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
     return box;
 }
 
-glm::mat3 rounded(const glm::dmat3& axes) {
-    return glm::mat3(axes);
+glm::mat3 rounded(const glm::dmat3& axes, const glm::dvec3& edges, const Weights& weights, double tolerance) {
+    constexpr int kUnits = 4;
+    constexpr float kUnitInLast = 0x1p-24f;
+    glm::mat3 result(axes);
+    const double value = weights(edges.x, edges.y, edges.z);
+    for (int i = 0; i < 3; ++i) {
+        // What the criterion gains by a tilt of axis i towards the others: edge i, times the tilt, widens them.
+        const auto cost = [&](const glm::vec3& a) {
+            double sum = 0.0;
+            for (int k = 0; k < 3; ++k)
+                if (k != i)
+                    sum += weights.slope(edges[(k + 1) % 3], edges[(k + 2) % 3]) *
+                           std::abs(glm::dot(axes[k], glm::dvec3(a)));
+            return sum * edges[i];
+        };
+        const glm::vec3 nearest = result[i];
+        double best = cost(nearest);
+        if (best <= tolerance * value) continue;
+        for (int x = -kUnits; x <= kUnits; ++x)
+            for (int y = -kUnits; y <= kUnits; ++y)
+                for (int z = -kUnits; z <= kUnits; ++z) {
+                    const glm::vec3 a = nearest + kUnitInLast * glm::vec3(static_cast<float>(x), static_cast<float>(y),
+                                                                          static_cast<float>(z));
+                    if (const double tilted = cost(a); tilted < best) {
+                        best = tilted;
+                        result[i] = a;
+                    }
+                }
+    }
+    return result;
 }
 
 }  // namespace crofton::fit

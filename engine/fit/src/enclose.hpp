@@ -3,6 +3,7 @@
 #include <crofton/geometry/obb.hpp>
 
 #include "point_cloud.hpp"
+#include "weights.hpp"
 
 namespace crofton::fit {
 
@@ -10,7 +11,10 @@ namespace crofton::fit {
 // contains(box, p) holds for all points of the cloud.
 [[nodiscard]] Obb enclose(PointCloud& cloud, const glm::mat3& axes);
 
-// Orthonormal axes rounded to float; exact where the axes are the coordinate axes.
-[[nodiscard]] glm::mat3 rounded(const glm::dmat3& axes);
+// Orthonormal axes rounded to float, for a box of these edges. A rounded axis is tilted by up to 6e-8, which widens the
+// box across it, much where it is long and the box thin there: where that costs the criterion more than `tolerance`,
+// relatively, floats within a few units are tried for a smaller tilt. Exact where the axes are coordinate axes.
+[[nodiscard]] glm::mat3 rounded(const glm::dmat3& axes, const glm::dvec3& edges, const Weights& weights,
+                                double tolerance);
 
 }  // namespace crofton::fit

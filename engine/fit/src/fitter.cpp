@@ -101,6 +101,11 @@ SearchResult Fitter::global(const Weights& weights, const SearchLimits& limits) 
     return branch_and_bound(cloud_, weights, subset_, candidates_[0].axes, limits, buffers_);
 }
 
+Obb Fitter::box_of(const glm::dmat3& axes, const Weights& weights, double tolerance) {
+    const Supports supports = cloud_.supports(axes);
+    return enclose(cloud_, rounded(axes, widths(supports, axes), weights, tolerance));
+}
+
 template <class Point>
 Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (options.quality == Quality::exact) {
@@ -112,7 +117,7 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights weights = effective(normalised_weights(options.criterion, cloud_.unit()).weights);
     const Effort& effort = options.quality == Quality::fast ? kFast : points.size() <= kFew ? kTightFew : kTight;
-    return enclose(cloud_, rounded(local(weights, effort).axes));
+    return box_of(local(weights, effort).axes, weights, 1e-5);
 }
 
 template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const Options&);
@@ -143,7 +148,7 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     const SearchResult found = global(weights, limits);
 
     ExactFit fit;
-    fit.box = enclose(cloud_, rounded(found.best.axes));
+    fit.box = box_of(found.best.axes, weights, 3e-7);
     fit.value = options.criterion(measure::of_box(fit.box));
     fit.lower_bound = flat ? 0.0 : std::min(found.lower_bound * normalised.scale, fit.value);
     fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;

@@ -29,6 +29,7 @@ class Fitter {
     void gather(const Weights& weights, std::size_t frames, std::size_t directions = 5);
     [[nodiscard]] Candidate local(const Weights& weights, const Effort& effort);
     [[nodiscard]] SearchResult global(const Weights& weights, const SearchLimits& limits);
+    [[nodiscard]] Obb box_of(const glm::dmat3& axes, const Weights& weights, double tolerance);
     [[nodiscard]] Weights effective(const Weights& weights);
 
     PointCloud cloud_;

@@ -12,6 +12,8 @@ struct Weights {
     [[nodiscard]] double operator()(double a, double b, double c) const {
         return product * (a * b * c) + pairs * (a * b + b * c + c * a) + sum * (a + b + c);
     }
+    // The derivative by one edge, at the other two.
+    [[nodiscard]] double slope(double b, double c) const { return product * b * c + pairs * (b + c) + sum; }
 };
 
 struct NormalisedWeights {

@@ -1,0 +1,248 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/fit/exact.hpp>
+#include <crofton/fit/fit.hpp>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "oracle/box_search.hpp"
+
+using namespace crofton;
+
+namespace {
+
+using Points = std::vector<glm::dvec3>;
+
+std::span<const glm::dvec3> view(const Points& points) {
+    return points;
+}
+
+bool contains_all(const Obb& box, const Points& points) {
+    return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) { return contains(box, p); });
+}
+
+glm::dvec3 random_point(std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    const double x = normal(random), y = normal(random), z = normal(random);
+    return {x, y, z};
+}
+
+Points random_polytope(std::mt19937& random, int corners) {
+    Points points;
+    const glm::dvec3 shape = glm::abs(random_point(random)) + 0.2;
+    for (int i = 0; i < corners; ++i) points.push_back(shape * glm::normalize(random_point(random)));
+    return points;
+}
+
+measure::Criterion random_criterion(std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    switch (random() % 6) {
+        case 0:
+            return measure::minimal_volume();
+        case 1:
+            return measure::minimal_area();
+        case 2:
+            return measure::minimal_perimeter();
+        default:
+            return {unit(random), unit(random), unit(random)};
+    }
+}
+
+glm::dmat3 random_rotation(std::mt19937& random) {
+    const glm::dvec3 a = glm::normalize(random_point(random)), b = glm::normalize(glm::cross(a, random_point(random)));
+    return {a, b, glm::cross(a, b)};
+}
+
+}  // namespace
+
+TEST_SUITE("fit/exact") {
+    TEST_CASE("a gap or a time budget out of range is refused, bad points as in fit_obb") {
+        const Points points(4, glm::dvec3(1.0));
+        CHECK(fit::fit_exact(view(points), {.gap = 0.0}).error().code == ErrorCode::invalid_argument);
+        CHECK(!fit::fit_exact(view(points), {.gap = std::numeric_limits<double>::quiet_NaN()}));
+        CHECK(!fit::fit_exact(view(points), {.time_budget_seconds = -1.0}));
+        Points bad = points;
+        bad[2].x = std::numeric_limits<double>::infinity();
+        CHECK(fit::fit_exact(view(bad)).error().item == 2);
+        CHECK(fit::fit_exact(view({})).error().code == ErrorCode::empty);
+    }
+
+    TEST_CASE("points, segments and flat sets are proved as quickly as others") {
+        std::mt19937 random(1);
+        for (int run = 0; run < 40; ++run)
+            for (int rank = 0; rank < 3; ++rank)
+                for (const auto& criterion :
+                     {measure::minimal_volume(), measure::minimal_area(), measure::minimal_perimeter()}) {
+                    const glm::dvec3 origin = random_point(random) * 10.0;
+                    const glm::dvec3 u = rank > 0 ? random_point(random) : glm::dvec3(0.0);
+                    const glm::dvec3 v = rank > 1 ? random_point(random) : glm::dvec3(0.0);
+                    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+                    Points points;
+                    for (int i = 0; i < 12; ++i) points.push_back(origin + unit(random) * u + unit(random) * v);
+                    const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+                    CHECK(fitted.complete);
+                    CHECK(contains_all(fitted.box, points));
+                    CHECK(fitted.lower_bound <= fitted.value);
+                    if (criterion.volume_weight == 0.0 && rank > 0 && !(criterion.area_weight > 0.0 && rank == 1))
+                        CHECK(fitted.gap <= 1e-6);
+                    // No thicker than float axes make it.
+                    const float thin =
+                        std::min({fitted.box.half_extents.x, fitted.box.half_extents.y, fitted.box.half_extents.z});
+                    CHECK(static_cast<double>(thin) <= 1e-6 * edge_sum(fitted.box));
+                }
+    }
+
+    TEST_CASE("a box, turned, is its own best box") {
+        std::mt19937 random(2);
+        for (int run = 0; run < 60; ++run) {
+            const glm::dvec3 half = glm::abs(random_point(random)) + 0.05;
+            const glm::dmat3 turn = random_rotation(random);
+            Points points;
+            for (unsigned i = 0; i < 8; ++i)
+                points.push_back(turn *
+                                 (half * glm::dvec3(i & 1u ? 1.0 : -1.0, i & 2u ? 1.0 : -1.0, i & 4u ? 1.0 : -1.0)));
+            const measure::Criterion criterion = random_criterion(random);
+            const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+            CHECK(fitted.value == doctest::Approx(criterion(2.0 * half.x, 2.0 * half.y, 2.0 * half.z)).epsilon(1e-6));
+            CHECK(fitted.gap <= 1e-6);
+        }
+    }
+
+    TEST_CASE("a regular tetrahedron fits best into the cube of which its edges are diagonals") {
+        const Points points = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+        const auto fitted = fit::fit_exact(view(points), {.criterion = measure::minimal_volume()}).value();
+        CHECK(fitted.value == doctest::Approx(8.0).epsilon(1e-6));
+        CHECK(fitted.lower_bound <= 8.0);
+    }
+
+    TEST_CASE("no orientation that brute force tries is better than the proved bound, for any weights") {
+        std::mt19937 random(3);
+        for (int run = 0; run < 60; ++run) {
+            const Points points = random_polytope(random, 4 + run % 14);
+            const measure::Criterion criterion = random_criterion(random);
+            const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+            const auto searched = oracle::search_boxes(points, criterion, 14, 4000);
+            CHECK(fitted.complete);
+            CHECK(fitted.gap <= 1e-6);
+            CHECK(contains_all(fitted.box, points));
+            CHECK(searched.value >= fitted.lower_bound * (1.0 - 1e-12));
+            CHECK(searched.value >= fitted.value * (1.0 - 1e-6));
+        }
+    }
+
+    TEST_CASE("two adjacent faces of the optimum hold an edge each, for any weights") {
+        std::mt19937 random(4);
+        for (int run = 0; run < 200; ++run) {
+            const Points points = random_polytope(random, 5 + run % 20);
+            const auto fitted =
+                fit::fit_exact(view(points), {.criterion = random_criterion(random), .gap = 1e-10}).value();
+            REQUIRE(fitted.complete);
+            // An axis is flush if one of its two faces touches two points or more.
+            int flush_axes = 0;
+            for (int k = 0; k < 3; ++k) {
+                int touching[2] = {0, 0};
+                for (const glm::dvec3& p : points) {
+                    const double t = glm::dot(p - fitted.box.center, glm::dvec3(fitted.box.axes[k]));
+                    const double half = static_cast<double>(fitted.box.half_extents[k]);
+                    if (t >= half - 2e-6) ++touching[0];
+                    if (t <= -half + 2e-6) ++touching[1];
+                }
+                CHECK(touching[0] >= 1);
+                CHECK(touching[1] >= 1);
+                flush_axes += touching[0] >= 2 || touching[1] >= 2;
+            }
+            CHECK(flush_axes >= 2);
+        }
+    }
+
+    TEST_CASE("turning the points does not change the value, doubling them scales the box to the bit") {
+        std::mt19937 random(5);
+        for (int run = 0; run < 30; ++run) {
+            const Points points = random_polytope(random, 30);
+            const auto criterion = measure::minimal_area();
+            const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+            const glm::dmat3 turn = random_rotation(random);
+            Points turned, doubled;
+            for (const glm::dvec3& p : points) {
+                turned.push_back(turn * p);
+                doubled.push_back(p * 1024.0);
+            }
+            CHECK(fit::fit_exact(view(turned), {.criterion = criterion})->value ==
+                  doctest::Approx(fitted.value).epsilon(1e-6));
+            const auto scaled = fit::fit_exact(view(doubled), {.criterion = criterion}).value();
+            CHECK(scaled.box.axes == fitted.box.axes);
+            CHECK(scaled.box.center == fitted.box.center * 1024.0);
+            CHECK(scaled.box.half_extents == fitted.box.half_extents * 1024.0f);
+        }
+    }
+
+    TEST_CASE("a spent budget or a callback that says stop leaves the best so far, with a bound that holds") {
+        std::mt19937 random(6);
+        Points points;
+        for (int i = 0; i < 1000; ++i) points.push_back(glm::normalize(random_point(random)));
+        const auto full = fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .gap = 1e-3}).value();
+        CHECK(full.complete);
+        CHECK(full.gap <= 1.001e-3);
+        for (const std::uint64_t cells : {0u, 100u, 3000u}) {
+            const auto cut =
+                fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .max_cells = cells}).value();
+            CHECK(!cut.complete);
+            CHECK(contains_all(cut.box, points));
+            CHECK(cut.lower_bound <= full.value);
+            CHECK(cut.value >= full.lower_bound);
+            CHECK(cut.gap == doctest::Approx((cut.value - cut.lower_bound) / cut.value));
+        }
+        int calls = 0;
+        const auto stop = [&](const fit::Progress& progress) {
+            CHECK(progress.lower_bound <= progress.value);
+            return ++calls < 3;
+        };
+        const FunctionRef<bool(const fit::Progress&)> callback(stop);
+        CHECK(!fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .progress = &callback})->complete);
+        CHECK(calls == 3);
+        CHECK(!fit::fit_exact(view(points), {.criterion = measure::minimal_area(), .time_budget_seconds = 0.0})
+                   ->complete);
+    }
+
+    TEST_CASE("the best known boxes of real meshes are matched within 1e-6") {
+        const std::string folder = std::string(CROFTON_SHARED_DATA) + "/meshes/";
+        std::ifstream table(folder + "reference.csv");
+        if (!table) {
+            MESSAGE("skipped: no shared data");
+            return;
+        }
+        std::string line;
+        std::getline(table, line);
+        while (std::getline(table, line)) {
+            std::replace(line.begin(), line.end(), ',', ' ');
+            char name[64];
+            double vertices = 0.0, hull = 0.0, known[3] = {};
+            REQUIRE(std::sscanf(line.c_str(), "%63s %lf %lf %lf %lf %lf", name, &vertices, &hull, &known[0], &known[1],
+                                &known[2]) == 6);
+            std::ifstream file(folder + name + ".obj");
+            Points points;
+            for (std::string text; std::getline(file, text);) {
+                glm::dvec3 p;
+                if (std::sscanf(text.c_str(), "v %lf %lf %lf", &p.x, &p.y, &p.z) == 3) points.push_back(p);
+            }
+            REQUIRE(static_cast<double>(points.size()) == vertices);
+            INFO(std::string(name));
+            for (int c = 0; c < 3; ++c) {
+                const auto criterion = c == 0   ? measure::minimal_volume()
+                                       : c == 1 ? measure::minimal_area()
+                                                : measure::minimal_perimeter();
+                const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+                CHECK(fitted.complete);
+                CHECK(fitted.gap <= 1e-6);
+                CHECK(fitted.value <= known[c] * (1.0 + 1e-6));
+                CHECK(fitted.lower_bound <= known[c] * (1.0 + 1e-8));
+                if (points.size() < 4000) CHECK(contains_all(fitted.box, points));
+            }
+        }
+    }
+}
