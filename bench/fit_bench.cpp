@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
@@ -25,19 +24,6 @@ measure::Criterion criterion_of(std::int64_t index) {
     return index == 0 ? measure::minimal_volume() : index == 1 ? measure::minimal_area() : measure::minimal_perimeter();
 }
 
-// The shortest of a few runs, in milliseconds: the machine's other work can only add.
-template <class Work>
-double best_milliseconds(int repetitions, const Work& work) {
-    double best = 1e300;
-    for (int i = 0; i < repetitions; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        best =
-            std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    }
-    return best;
-}
-
 double optimum(const Points& points, const measure::Criterion& criterion) {
     return fit::fit_exact(std::span<const glm::vec3>(points), {.criterion = criterion}).value().value;
 }
@@ -49,14 +35,14 @@ void exact(benchmark::State& state, const std::string& mesh) {
     double ours = 1e300, gap = 0.0;
     for (auto _ : state)
         ours = std::min(
-            ours, best_milliseconds(20, [&] {
+            ours, bench::best_milliseconds(20, [&] {
                 gap = fit::fit_exact(std::span<const glm::vec3>(*points), {.criterion = criterion}).value().gap;
             }));
     state.SetLabel(kCriterionNames[state.range(0)]);
     state.counters["vertices"] = static_cast<double>(points->size());
     state.counters["ms"] = ours;
     state.counters["gap"] = gap;
-    if (const std::optional<double> cgal = bench::cgal_milliseconds(*points, 3)) {
+    if (const std::optional<double> cgal = bench::cgal_milliseconds(*points, points->size() > 100000 ? 3 : 8)) {
         state.counters["cgal_ms"] = *cgal;
         state.counters["ratio"] = *cgal / ours;
     }
@@ -69,8 +55,9 @@ void fast(benchmark::State& state, const std::string& mesh) {
     const measure::Criterion criterion = criterion_of(state.range(0));
     double ours = 1e300, dito = 1e300;
     for (auto _ : state) {
-        dito = std::min(dito, best_milliseconds(20, [&] { benchmark::DoNotOptimize(bench::dito14_pass(*points)); }));
-        ours = std::min(ours, best_milliseconds(20, [&] {
+        dito = std::min(dito,
+                        bench::best_milliseconds(20, [&] { benchmark::DoNotOptimize(bench::dito14_pass(*points)); }));
+        ours = std::min(ours, bench::best_milliseconds(20, [&] {
                             benchmark::DoNotOptimize(
                                 fit::fit_obb(std::span<const glm::vec3>(*points), {criterion, fit::Quality::fast}));
                         }));

@@ -1,7 +1,6 @@
 #include "fit_inputs.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -158,15 +157,10 @@ std::optional<double> cgal_milliseconds([[maybe_unused]] const Points& points, [
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     std::vector<Kernel::Point_3> input;
     for (const glm::vec3& p : points) input.emplace_back(p.x, p.y, p.z);
-    double best = 1e300;
-    for (int i = 0; i < repetitions; ++i) {
+    return best_milliseconds(repetitions, [&] {
         std::array<Kernel::Point_3, 8> corners;
-        const auto start = std::chrono::steady_clock::now();
         CGAL::oriented_bounding_box(input, corners, CGAL::parameters::use_convex_hull(true));
-        best =
-            std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    }
-    return best;
+    });
 #else
     return std::nullopt;
 #endif

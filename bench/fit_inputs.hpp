@@ -1,7 +1,9 @@
 // Points, clusters and peers for fit_bench.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <ctime>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -19,6 +21,18 @@ inline const std::vector<std::string> kMeshes = {"suzanne",   "spider",  "wuson"
 
 [[nodiscard]] std::optional<Points> load_points(const std::string& mesh);
 [[nodiscard]] Points turned(const Points& points, std::uint32_t seed);
+
+// The shortest of a few runs, in milliseconds of processor time: the machine's other work can only add.
+template <class Work>
+double best_milliseconds(int repetitions, const Work& work) {
+    double best = 1e300;
+    for (int i = 0; i < repetitions; ++i) {
+        const std::clock_t start = std::clock();
+        work();
+        best = std::min(best, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    }
+    return best;
+}
 
 // Triangles split at the median of the longest side of their centres' bounds until a cluster has at most `triangles`.
 struct ClusteredMesh {
