@@ -40,7 +40,7 @@ Calipers minimal_rectangle(std::span<const glm::dvec2> hull, double product_weig
     std::size_t right = 1, top = 1, left = 1;
     for (std::size_t i = 0; i < n; ++i) {
         const glm::dvec2 edge = hull[next(i)] - hull[i];
-        const double length = std::hypot(edge.x, edge.y);
+        const double length = std::sqrt(glm::dot(edge, edge));
         if (length == 0.0) continue;
         const glm::dvec2 along = edge / length, up(-along.y, along.x);
         const auto advance = [&](std::size_t& k, const glm::dvec2& direction) {

@@ -21,7 +21,7 @@ const glm::dmat3 kDirections[] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
 // Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
 constexpr double kFlat = 1e-13;
 
-constexpr Effort kFast{3, 3, 4, false}, kTight{5, 4, 40, true}, kTightFew{5, 2, 40, true};
+constexpr Effort kFast{3, 3, 4, false}, kTight{5, 4, 40, true}, kTightFew{5, 3, 40, true};
 constexpr std::size_t kFew = 512;  // points of a cluster; more may have more local optima
 
 class Deadline {
@@ -69,19 +69,26 @@ Candidate Fitter::local(const Weights& weights, const Effort& effort) {
     gather(weights, effort.starts, effort.directions);
     Candidate best;
     best.value = std::numeric_limits<double>::infinity();
-    // How many points the subset had when each candidate was last searched from.
+    // How many points the subset had when each candidate was last searched from, and whether it has been polished: that
+    // is worth its time only where turning about the axes has come to rest.
     fresh_.assign(candidates_.size(), 0);
+    polished_.assign(candidates_.size(), 0);
     for (Candidate& candidate : candidates_) candidate.value = 0.0;
     for (int queries = 0; queries < effort.queries;) {
         std::size_t i = 0;
         for (std::size_t j = 1; j < candidates_.size(); ++j)
             if (candidates_[j].value < candidates_[i].value) i = j;
         Candidate& candidate = candidates_[i];
-        if (candidate.value >= best.value * (1.0 - 1e-12)) break;
+        if (candidate.value >= best.value * (1.0 - 1e-12) && (!effort.slide || polished_[i] != 0)) break;
         if (fresh_[i] != subset_.size()) {
             fresh_[i] = subset_.size();
             descend(weights, subset_, candidate, buffers_);
-            if (effort.slide) polish(weights, subset_, candidate, buffers_);
+            if (polished_[i] != 0) polish(weights, subset_, candidate, buffers_, kCoarseSteps);
+            continue;
+        }
+        if (effort.slide && polished_[i] == 0 && candidate.value >= best.value * (1.0 - 1e-12)) {
+            polished_[i] = 1;
+            polish(weights, subset_, candidate, buffers_, kCoarseSteps);
             continue;
         }
         ++queries;
@@ -91,7 +98,7 @@ Candidate Fitter::local(const Weights& weights, const Effort& effort) {
         const std::size_t before = subset_.size();
         subset_.insert(subset_.end(), supports.begin(), supports.end());
         make_canonical(subset_);
-        if (subset_.size() == before) break;
+        if (subset_.size() == before && (!effort.slide || polished_[i] != 0)) break;
     }
     return best;
 }

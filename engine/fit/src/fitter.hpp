@@ -38,6 +38,7 @@ class Fitter {
     Vector<glm::dmat3> frames_;
     Vector<Candidate> candidates_;
     Vector<std::size_t> fresh_;
+    Vector<unsigned char> polished_;
 };
 
 }  // namespace crofton::fit

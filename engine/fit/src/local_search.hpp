@@ -15,10 +15,17 @@ struct Candidate {
     double value = 0.0;
 };
 
+// An edge that lies in a face of the box: the face's axis and the edge's direction.
+struct FlushEdge {
+    int axis;
+    glm::dvec3 direction;
+};
+
 // Scratch memory for the searches; grows once, then is reused.
 struct SearchBuffers {
     Vector<glm::dvec2> flat, hull;
     Vector<glm::dvec3> near;
+    Vector<FlushEdge> edges;
 };
 
 [[nodiscard]] glm::dvec3 widths(std::span<const glm::dvec3> points, const glm::dmat3& axes);

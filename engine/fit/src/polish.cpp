@@ -11,15 +11,10 @@ namespace {
 constexpr double kReach = 0.04;   // radians a slide may go
 constexpr double kFlush = 1e-10;  // points this near a face lie on it (normalised coordinates)
 
-struct Edge {
-    int axis;  // of the face it lies in
-    glm::dvec3 direction;
-};
-
 // Frames with axis `first.axis` perpendicular to one edge and axis `second.axis` to another, by the angle of the first.
 struct Slide {
     glm::dmat3 frame;
-    Edge first, second;
+    FlushEdge first, second;
 
     [[nodiscard]] bool at(double angle, glm::dmat3& out) const {
         const glm::dvec3 start = frame[first.axis];
@@ -62,7 +57,7 @@ void collect_near(std::span<const glm::dvec3> points, const glm::dmat3& frame, V
         }
 }
 
-void collect_edges(std::span<const glm::dvec3> points, const glm::dmat3& frame, Vector<Edge>& edges) {
+void collect_edges(std::span<const glm::dvec3> points, const glm::dmat3& frame, Vector<FlushEdge>& edges) {
     edges.clear();
     for (int side = 0; side < 6; ++side) {
         const int axis = side / 2;
@@ -86,13 +81,13 @@ void collect_edges(std::span<const glm::dvec3> points, const glm::dmat3& frame, 
 // The least value along a slide in the direction of `sign`, by doubling steps and golden section; false if none is
 // lower.
 bool minimise(const Weights& weights, std::span<const glm::dvec3> points, const Slide& slide, double sign,
-              Candidate& best) {
+              const Steps& steps, Candidate& best) {
     glm::dmat3 frame;
     const auto value = [&](double angle) {
         return slide.at(sign * angle, frame) ? value_of(weights, points, frame) : 1e300;
     };
     const double enough = best.value * (1.0 - 1e-12);
-    double a = 0.0, b = 1e-6, at_b = value(b);
+    double a = 0.0, b = steps.first, at_b = value(b);
     if (!(at_b < enough)) return false;
     double c = 2.0 * b, at_c = value(c);
     while (at_c < at_b && c < kReach) {
@@ -103,7 +98,7 @@ bool minimise(const Weights& weights, std::span<const glm::dvec3> points, const 
         at_c = value(c);
     }
     constexpr double kGolden = 0.3819660112501051;
-    for (int step = 0; step < 60 && c - a > 1e-11; ++step) {
+    for (int step = 0; step < 60 && c - a > steps.last; ++step) {
         const bool right = c - b > b - a;
         const double x = right ? b + kGolden * (c - b) : b - kGolden * (b - a);
         const double at_x = value(x);
@@ -122,19 +117,19 @@ bool minimise(const Weights& weights, std::span<const glm::dvec3> points, const 
 
 }  // namespace
 
-void polish(const Weights& weights, std::span<const glm::dvec3> points, Candidate& candidate, SearchBuffers& buffers) {
+void polish(const Weights& weights, std::span<const glm::dvec3> points, Candidate& candidate, SearchBuffers& buffers,
+            const Steps& steps) {
     for (int round = 0; round < 12; ++round) {
         collect_near(points, candidate.axes, buffers.near);
-        Vector<Edge> edges;
-        collect_edges(buffers.near, candidate.axes, edges);
+        collect_edges(buffers.near, candidate.axes, buffers.edges);
         Candidate best{candidate.axes, value_of(weights, buffers.near, candidate.axes)};
         const double start = best.value;
-        for (const Edge& first : edges)
-            for (const Edge& second : edges) {
+        for (const FlushEdge& first : buffers.edges)
+            for (const FlushEdge& second : buffers.edges) {
                 if (first.axis >= second.axis) continue;
                 const Slide slide{candidate.axes, first, second};
-                if (!minimise(weights, buffers.near, slide, 1.0, best))
-                    (void)minimise(weights, buffers.near, slide, -1.0, best);
+                if (!minimise(weights, buffers.near, slide, 1.0, steps, best))
+                    (void)minimise(weights, buffers.near, slide, -1.0, steps, best);
             }
         if (!(best.value < start)) return;
         const double value = value_of(weights, points, best.axes);
