@@ -8,7 +8,7 @@ namespace crofton::fit {
 struct Steps {
     double first, last;
 };
-inline constexpr Steps kFineSteps{1e-6, 1e-11}, kCoarseSteps{1e-4, 1e-6};
+inline constexpr Steps kFineSteps{1e-6, 1e-11}, kCoarseSteps{1e-5, 1e-9};
 
 // Slides along the one-parameter families of frames that keep two adjacent faces flush with their edges (O'Rourke 1985,
 // THEORY.md section 3) while that lowers the value, a few degrees at most each time. The value never rises.
