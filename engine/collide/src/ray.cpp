@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/collide/ray.hpp>
+#include <crofton/geometry/expansion.hpp>
+#include <glm/geometric.hpp>
+
+#include "posed_mesh.hpp"
+#include "ray_mesh.hpp"
+
+namespace crofton::collide {
+namespace {
+
+bool is_usable(const Ray& ray) {
+    const glm::dvec3 sum = ray.origin + ray.direction;
+    return std::isfinite(sum.x + sum.y + sum.z) && ray.max_t >= 0.0 && glm::dot(ray.direction, ray.direction) > 0.0;
+}
+
+// Sign of det(direction, a − origin, b − origin), exactly.
+int side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
+    std::array<Expansion<2>, 3> u, v;
+    for (int i = 0; i < 3; ++i) {
+        u[static_cast<std::size_t>(i)] = exact_difference(a[i], ray.origin[i]);
+        v[static_cast<std::size_t>(i)] = exact_difference(b[i], ray.origin[i]);
+    }
+    const auto term = [&](std::size_t i, std::size_t j, double d) { return (u[i] * v[j] - u[j] * v[i]) * d; };
+    return (term(1, 2, ray.direction.x) + term(2, 0, ray.direction.y) + term(0, 1, ray.direction.z)).sign();
+}
+
+bool line_meets(const Ray& ray, const Triangle& t) {
+    int low = 1, high = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int side = side_of_edge(ray, t[k], t[(k + 1) % 3]);
+        low = std::min(low, side);
+        high = std::max(high, side);
+    }
+    return (low >= 0 && high > 0) || (high <= 0 && low < 0);  // all zero: in the plane
+}
+
+RayAnswer trace(const Ray& ray, const tree::MeshTree& mesh, bool any) {
+    RayQuery query{};
+    const double length = glm::length(ray.direction);
+    double far = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        query.origin[i] = ray.origin[i];
+        query.direction[i] = ray.direction[i];
+        query.start[i] = static_cast<float>(ray.origin[i]);
+        query.unit[i] = static_cast<float>(ray.direction[i] / length);
+        far = std::max(far, std::abs(ray.origin[i]));
+    }
+    query.max_t = ray.max_t;
+    query.length = static_cast<float>(length);
+    // Rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any point the mesh can
+    // reach.
+    query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
+    query.nodes = mesh.nodes().data();
+    query.leaves = mesh.leaves().data();
+    query.any = any;
+    return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) {
+        return line_meets(ray, triangle_of(mesh.leaves()[leaf], lane));
+    });
+}
+
+}  // namespace
+
+std::optional<double> raycast(const Ray& ray, const Obb& box) {
+    if (!is_usable(ray) || !validate(box)) return std::nullopt;
+    const glm::dvec3 offset = ray.origin - box.center;
+    double first = 0.0, last = ray.max_t;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 n = glm::cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
+        const double reach = static_cast<double>(box.half_extents[k]) * std::abs(glm::dot(n, glm::dvec3(box.axes[k])));
+        const double at = glm::dot(n, offset), speed = glm::dot(n, ray.direction);
+        if (speed == 0.0) {
+            if (std::abs(at) > reach) return std::nullopt;
+            continue;
+        }
+        const double t0 = (-reach - at) / speed, t1 = (reach - at) / speed;
+        first = std::max(first, std::min(t0, t1));
+        last = std::min(last, std::max(t0, t1));
+    }
+    if (!(first <= last)) return std::nullopt;
+    return first;
+}
+
+std::optional<RayHit> raycast(const Ray& ray, const tree::MeshTree& mesh) {
+    if (!is_usable(ray)) return std::nullopt;
+    const RayAnswer answer = trace(ray, mesh, false);
+    if (!answer.hit) return std::nullopt;
+    return RayHit{answer.t, answer.triangle};
+}
+
+bool hits_any(const Ray& ray, const tree::MeshTree& mesh) {
+    return is_usable(ray) && trace(ray, mesh, true).hit;
+}
+
+}  // namespace crofton::collide

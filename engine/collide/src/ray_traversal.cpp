@@ -1,0 +1,181 @@
+// A ray through a mesh tree, compiled for each instruction set and chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ray_traversal.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include <hwy/highway.h>
+
+#include "ray_mesh.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::collide::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, tree::kMeshWidth>;
+using V = hn::Vec<D>;
+using DD = hn::CappedTag<double, tree::kMeshWidth>;
+using VD = hn::Vec<DD>;
+using MD = hn::Mask<DD>;
+
+// Shewchuk's bound for a 3 × 3 determinant of rounded differences, times the product of the rows' sums of magnitudes.
+constexpr double kDeterminantError = 0x1.d0p-51;
+
+// Slabs of eight boxes, grown by the slop: entry distance of each lane that is met before `limit`.
+HWY_INLINE std::uint32_t box_entries(const tree::MeshNode& node, const RayQuery& q, float limit, float* entry) {
+    const D d;
+    std::uint32_t lanes = 0;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        V offset[3], first = hn::Zero(d), last = hn::Set(d, limit);
+        for (int i = 0; i < 3; ++i) offset[i] = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, q.start[i]));
+        for (int k = 0; k < 3; ++k) {
+            V along = hn::Zero(d), speed = hn::Zero(d);
+            for (int i = 0; i < 3; ++i) {
+                const V axis = hn::Load(d, node.axes[k][i] + l);
+                along = hn::MulAdd(axis, offset[i], along);
+                speed = hn::MulAdd(axis, hn::Set(d, q.unit[i]), speed);
+            }
+            const V half = hn::Add(hn::Load(d, node.half[k] + l), hn::Set(d, q.slop));
+            // Parallel to the slab: a tiny speed keeps the bounds finite and on the right sides.
+            const V least = hn::Set(d, 1e-18f);
+            speed = hn::IfThenElse(hn::Lt(hn::Abs(speed), least), least, speed);
+            const V inverse = hn::Div(hn::Set(d, 1.0f), speed);
+            const V t0 = hn::Mul(hn::Sub(along, half), inverse), t1 = hn::Mul(hn::Add(along, half), inverse);
+            first = hn::Max(first, hn::Min(t0, t1));
+            last = hn::Min(last, hn::Max(t0, t1));
+        }
+        // 2^-20 covers the divisions.
+        first = hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f));
+        last = hn::Mul(last, hn::Set(d, 1.0f + 0x1p-20f));
+        hn::Store(first, d, entry + l);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::Le(first, last), bits);
+        lanes |= static_cast<std::uint32_t>(bits[0]) << l;
+    }
+    return lanes & ((1u << node.count) - 1u);
+}
+
+HWY_INLINE VD sum_abs(const VD* v) {
+    return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
+}
+
+HWY_INLINE void cross(const VD* u, const VD* v, VD* out) {
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = hn::NegMulAdd(u[k], v[j], hn::Mul(u[j], v[k]));
+    }
+}
+
+HWY_INLINE VD dot(const VD* u, const VD* v) {
+    return hn::MulAdd(u[0], v[0], hn::MulAdd(u[1], v[1], hn::Mul(u[2], v[2])));
+}
+
+HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return static_cast<std::uint32_t>(bits[0]) << l;
+}
+
+// The line passes through a triangle iff its three determinants with the edges do not differ in sign. `open`: lanes
+// where a sign is uncertain; t of each lane by the plane.
+HWY_INLINE std::uint32_t triangle_hits(const tree::MeshLeaf& leaf, const RayQuery& q, double* t, std::uint32_t& open) {
+    const DD d;
+    const hn::Rebind<float, DD> df;
+    std::uint32_t hits = 0;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        VD p[3][3], direction[3];
+        for (int i = 0; i < 3; ++i) {
+            direction[i] = hn::Set(d, q.direction[i]);
+            for (int v = 0; v < 3; ++v)
+                p[v][i] = hn::Sub(hn::PromoteTo(d, hn::Load(df, leaf.vertex[v][i] + l)), hn::Set(d, q.origin[i]));
+        }
+        const VD scale = hn::Mul(sum_abs(direction), hn::Set(d, kDeterminantError));
+        const VD size[3] = {sum_abs(p[0]), sum_abs(p[1]), sum_abs(p[2])};
+        MD positive = hn::Lt(hn::Zero(d), hn::Zero(d)), negative = positive, unknown = positive;
+        for (int v = 0; v < 3; ++v) {
+            const int w = (v + 1) % 3;
+            VD n[3];
+            cross(p[v], p[w], n);
+            const VD value = dot(direction, n);
+            const VD error = hn::MulAdd(hn::Mul(size[v], size[w]), scale, hn::Set(d, 1e-280));
+            const MD up = hn::Gt(value, error), down = hn::Lt(value, hn::Neg(error));
+            positive = hn::Or(positive, up);
+            negative = hn::Or(negative, down);
+            unknown = hn::Or(unknown, hn::Not(hn::Or(up, down)));
+        }
+        VD u[3], v[3], n[3];
+        for (int i = 0; i < 3; ++i) {
+            u[i] = hn::Sub(p[1][i], p[0][i]);
+            v[i] = hn::Sub(p[2][i], p[0][i]);
+        }
+        cross(u, v, n);
+        hn::Store(hn::Div(dot(n, p[0]), dot(n, direction)), d, t + l);
+        const MD agree = hn::Not(hn::And(positive, negative));
+        hits |= bits_of(d, hn::AndNot(unknown, agree), l);
+        open |= bits_of(d, hn::And(unknown, agree), l);
+    }
+    return hits;
+}
+
+HWY_INLINE void trace_leaf(const RayQuery& q, std::uint32_t index, LineTest line_meets, RayAnswer& answer) {
+    const tree::MeshLeaf& leaf = q.leaves[index];
+    HWY_ALIGN double t[tree::kMeshWidth];
+    std::uint32_t open = 0;
+    std::uint32_t lanes = triangle_hits(leaf, q, t, open);
+    lanes = (lanes | open) & ((1u << leaf.count) - 1u);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+        if (!(t[lane] >= 0.0 && t[lane] <= answer.t)) continue;
+        if (answer.hit && t[lane] == answer.t && leaf.triangle[lane] > answer.triangle) continue;
+        if ((open >> lane & 1u) && !line_meets(index, lane)) continue;
+        answer = {t[lane], leaf.triangle[lane], true};
+        if (q.any) return;
+    }
+}
+
+RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
+    struct Step {
+        std::uint32_t child;
+        float entry;
+    };
+    Step stack[256];
+    std::uint32_t height = 0;
+    RayAnswer answer{q.max_t, 0, false};
+    stack[height++] = {0, 0.0f};
+    while (height > 0) {
+        const Step step = stack[--height];
+        const double reached = answer.t * static_cast<double>(q.length) * (1.0 + 1e-6);
+        if (static_cast<double>(step.entry) > reached) continue;
+        if (step.child & tree::kMeshLeaf) {
+            trace_leaf(q, step.child & ~tree::kMeshLeaf, line_meets, answer);
+            if (q.any && answer.hit) break;
+            continue;
+        }
+        const tree::MeshNode& node = q.nodes[step.child];
+        HWY_ALIGN float entry[tree::kMeshWidth];
+        const float limit = reached < 1e37 ? static_cast<float>(reached) * 1.000001f + q.slop : 1e37f;
+        // The nearest child goes on top.
+        const std::uint32_t base = height;
+        for (std::uint32_t lanes = box_entries(node, q, limit, entry); lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+            std::uint32_t place = height++;
+            for (; place > base && stack[place - 1].entry < entry[lane]; --place) stack[place] = stack[place - 1];
+            stack[place] = {node.child[lane], entry[lane]};
+        }
+    }
+    return answer;
+}
+
+}  // namespace crofton::collide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::collide {
+
+HWY_EXPORT(Trace);
+
+RayAnswer trace(const RayQuery& query, LineTest line_meets) {
+    return HWY_DYNAMIC_DISPATCH(Trace)(query, line_meets);
+}
+
+}  // namespace crofton::collide
+#endif

@@ -1,0 +1,99 @@
+#include <doctest/doctest.h>
+#include <crofton/collide/ray.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "meshes.hpp"
+#include "oracle/exact_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+// The first crossing of the line with any triangle, in rational arithmetic.
+std::optional<double> oracle_hit(const Ray& ray, const TriangleMesh& mesh) {
+    using namespace oracle;
+    std::optional<Rational> best;
+    const Vec3q o = rational(ray.origin), d = rational(ray.direction);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+        const Vec3q a = minus(rational(vertex(mesh, t, 0)), o), b = minus(rational(vertex(mesh, t, 1)), o),
+                    c = minus(rational(vertex(mesh, t, 2)), o);
+        const Rational u = dot(d, cross(a, b)), v = dot(d, cross(b, c)), w = dot(d, cross(c, a));
+        if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) continue;
+        const Vec3q n = cross(minus(b, a), minus(c, a));
+        const Rational speed = dot(n, d);
+        if (speed == 0) continue;
+        const Rational at = dot(n, a) / speed;
+        if (at >= 0 && (!best || at < *best)) best = at;
+    }
+    if (!best) return std::nullopt;
+    return best->get_d();
+}
+
+}  // namespace
+
+TEST_SUITE("collide/ray") {
+    TEST_CASE("rays that are not finite or have no direction hit nothing") {
+        const auto mesh = tree::MeshTree::build(wavy_torus(1.0, 0.4, 0.0));
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        CHECK_FALSE(raycast(Ray{{nan, 0.0, 0.0}}, *mesh).has_value());
+        CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 0.0}}, *mesh).has_value());
+        CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, -1.0}, *mesh).has_value());
+        CHECK(raycast(Ray{{1.0, 0.0, -5.0}}, *mesh).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, nan, 1.0}}, Obb{}).has_value());
+    }
+
+    TEST_CASE("a box is entered where it should be") {
+        const Obb box{{10.0, 0.0, 0.0}, glm::mat3(1.0f), glm::vec3(1.0f, 2.0f, 0.0f)};
+        CHECK(raycast(Ray{{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}, box) == 4.5);
+        CHECK(raycast(Ray{{10.0, 0.0, 0.0}, {1.0, 1.0, 0.0}}, box) == 0.0);
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.1}, {1.0, 0.0, 0.0}}, box).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 8.9}, box).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}}, box).has_value());
+    }
+
+    TEST_CASE("segments end where they end, and the nearest of equal hits has the lowest index") {
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 1}, {4, 0, 1}, {0, 4, 1}};
+        mesh.indices = {0, 1, 2, 0, 1, 2, 0, 2, 1};
+        const auto tree = tree::MeshTree::build(mesh);
+        const auto hit = raycast(Ray{{1, 1, 0}, {0, 0, 1}, 1.0}, *tree);
+        REQUIRE(hit.has_value());
+        CHECK(hit->t == 1.0);
+        CHECK(hit->triangle == 0);
+        CHECK_FALSE(raycast(Ray{{1, 1, 0}, {0, 0, 1}, std::nextafter(1.0, 0.0)}, *tree).has_value());
+        CHECK(hits_any(Ray{{1, 1, 0}, {0, 0, 1}, 1.0}, *tree));
+        CHECK(raycast(Ray{{0, 0, 0}}, *tree).has_value());  // through a corner
+        CHECK(raycast(Ray{{2, 0, 0}}, *tree).has_value());  // through an edge
+        CHECK_FALSE(raycast(Ray{{std::nextafter(0.0, -1.0), 1, 0}}, *tree).has_value());
+    }
+
+    TEST_CASE("random rays, rays at vertices and at edges: as rational arithmetic says") {
+        std::mt19937_64 random(3);
+        const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 12, 8);
+        const auto tree = tree::MeshTree::build(mesh);
+        int hits = 0;
+        for (int trial = 0; trial < 600; ++trial) {
+            Ray ray{3.0 * random_vector(random), random_vector(random)};
+            const std::size_t t = random() % mesh.triangle_count();
+            if (trial % 3 == 1) ray.direction = vertex(mesh, t, 0) - ray.origin;
+            if (trial % 3 == 2) ray.direction = 0.5 * (vertex(mesh, t, 0) + vertex(mesh, t, 1)) - ray.origin;
+            if (trial % 5 == 0) ray.origin = glm::dvec3(glm::ivec3(ray.origin));
+            const auto truth = oracle_hit(ray, mesh);
+            const auto hit = raycast(ray, *tree);
+            CHECK(hit.has_value() == truth.has_value());
+            CHECK(hits_any(ray, *tree) == truth.has_value());
+            if (hit && truth) CHECK(hit->t == doctest::Approx(*truth).epsilon(1e-9));
+            hits += truth.has_value();
+        }
+        CHECK(hits > 200);
+    }
+
+    TEST_CASE("a closed mesh has no leaks: rays from inside always hit") {
+        std::mt19937_64 random(4);
+        const auto tree = tree::MeshTree::build(wavy_torus(0.6, 0.59, 0.0, 16, 16));
+        for (int trial = 0; trial < 20000; ++trial) CHECK(hits_any(Ray{{0.6, 0.0, 0.0}, random_vector(random)}, *tree));
+    }
+}
