@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     Outcome outcome;
     add_fit_command(app, outcome);
     add_bake_command(app, outcome);
+    add_collide_command(app, outcome);
     add_frames_command(app, outcome);
     add_verify_command(app, outcome);
 #if defined(CROFTON_VIEWER)

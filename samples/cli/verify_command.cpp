@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "report.hpp"
+#include "verify_collide.hpp"
 #include "verify_cull.hpp"
 #include "verify_rows.hpp"
 #include "verify_topics.hpp"
@@ -22,6 +23,7 @@ constexpr Topic kTopics[] = {
     {"paper", verify_paper},
     {"lines", verify_lines},
     {"cull", verify_cull},
+    {"collide", verify_collide},
 };
 
 struct Request {

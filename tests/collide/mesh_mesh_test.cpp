@@ -126,6 +126,15 @@ TEST_SUITE("collide/mesh_mesh") {
         CHECK_FALSE(contains(outer, {-1.0, -1.0, -2.0}));
     }
 
+    TEST_CASE("the depth is the shortest way out, of the directions tried") {
+        const auto a = tree_of(cube(1.0)), b = tree_of(cube(0.5));
+        const MeshDepth side = penetration(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});
+        CHECK(side.depth == doctest::Approx(0.2).epsilon(1e-4));
+        CHECK(side.direction.x == doctest::Approx(1.0));
+        CHECK(penetration(a, b, {glm::dmat3(1.0), {0.1, 0.0, 0.0}}, {}).depth == doctest::Approx(1.4).epsilon(1e-4));
+        CHECK(penetration(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
+    }
+
     TEST_CASE("distance and tolerance agree with known gaps and with each other") {
         const auto a = tree_of(cube(1.0)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
         const MeshDistance apart = distance(a, a, {glm::dmat3(1.0), {5.0, 6.0, 0.5}});

@@ -7,6 +7,7 @@
 #include <crofton/tree/mesh_tree.hpp>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace crofton::collide {
 
@@ -39,6 +40,16 @@ struct MeshContact {
 // As intersecting_triangles, with the place of each.
 void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, Vector<MeshContact>& found,
               MeshStatistics* statistics = nullptr);
+
+// A motion of b that ends the contact, containment included: `depth` along the unit vector `direction`. The shortest of
+// those along the axes of both meshes' frames and boxes, the mean normal of the contacts and the line of centres, to
+// 1e-6 of the meshes' size: an upper bound of the penetration depth, 0 where they do not meet.
+struct MeshDepth {
+    double depth = 0.0;
+    glm::dvec3 direction{0.0};
+};
+[[nodiscard]] MeshDepth penetration(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
+                                    std::span<const MeshContact> contacts);
 
 enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a };
 

@@ -1,0 +1,128 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/collide/world.hpp>
+#include <crofton/core/thread_pool.hpp>
+
+#include "meshes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+struct Stage {
+    scene::Scene scene;
+    std::vector<scene::NodeId> nodes;
+
+    scene::InstanceId add(scene::MeshId mesh, const scene::Transform& place, std::uint32_t layers = ~0u) {
+        nodes.push_back(*scene.add_node(scene::kNone, place, layers));
+        return *scene.add_instance(nodes.back(), mesh);
+    }
+};
+
+scene::Transform at(const glm::dvec3& place, const glm::dmat3& linear = glm::dmat3(1.0)) {
+    return {linear, place};
+}
+
+bool same(std::span<const InstancePair> a, std::span<const InstancePair> b) {
+    return std::ranges::equal(a, b, [](const InstancePair& x, const InstancePair& y) {
+        return x.instances == y.instances && x.inside == y.inside && x.contact_count == y.contact_count &&
+               x.first_contact == y.first_contact;
+    });
+}
+
+}  // namespace
+
+TEST_SUITE("collide/world") {
+    TEST_CASE("an empty scene, removed instances and wrong filters") {
+        Stage stage;
+        World world;
+        stage.scene.update();
+        REQUIRE(world.update(stage.scene).has_value());
+        CHECK(world.pairs().empty());
+        const auto mesh = *stage.scene.add_mesh(wavy_torus(1.0, 0.4, 0.0));
+        const auto a = stage.add(mesh, at({0.0, 0.0, 0.0}));
+        stage.add(mesh, at({0.5, 0.0, 0.0}));
+        stage.scene.update();
+        CHECK(world.update(stage.scene, std::vector<Filter>(7)).error().code == ErrorCode::invalid_argument);
+        REQUIRE(world.update(stage.scene).has_value());
+        CHECK(world.pairs().size() == 1);
+        REQUIRE(stage.scene.remove_instance(a).has_value());
+        stage.scene.update();
+        REQUIRE(world.update(stage.scene).has_value());
+        CHECK(world.pairs().empty());
+        CHECK(world.ended().size() == 1);
+    }
+
+    TEST_CASE("rings through each other meet, a ring through a hole does not, a ball in a ball is inside") {
+        Stage stage;
+        const auto ring = *stage.scene.add_mesh(wavy_torus(1.0, 0.3, 0.0)),
+                   ball = *stage.scene.add_mesh(wavy_torus(0.2, 0.21, 0.0));
+        stage.add(ring, at({0.0, 0.0, 0.0}));
+        stage.add(ring, at({2.0, 0.0, 0.0}));                    // overlaps 0
+        stage.add(ball, at({0.0, 0.0, 0.0}));                    // in the hole of 0
+        stage.add(ball, at({10.0, 0.0, 0.0}, glm::dmat3(8.0)));  // large, scaled
+        stage.add(ball, at({10.5, 1.2, 0.3}, glm::dmat3(0.5)));  // inside it
+        stage.scene.update();
+        World world;
+        REQUIRE(world.update(stage.scene).has_value());
+        REQUIRE(world.pairs().size() == 2);
+        CHECK(world.pairs()[0].instances == Pair{0, 1});
+        CHECK(world.pairs()[0].contact_count > 0);
+        for (const MeshContact& contact : world.contacts()) {
+            CHECK(glm::length(contact.normal) == doctest::Approx(1.0));
+            CHECK(std::abs(contact.segment.begin.x - 1.0) < 0.4);
+        }
+        CHECK(world.pairs()[1].instances == Pair{3, 4});
+        CHECK(world.pairs()[1].inside == Containment::b_inside_a);
+        CHECK(world.statistics().trees_built == 4);
+        CHECK(world.statistics().mesh_pairs_hit == 2);
+        REQUIRE(world.update(stage.scene).has_value());
+        CHECK(world.statistics().trees_built == 0);
+        CHECK(world.stayed().size() == 2);
+        CHECK(world.began().empty());
+    }
+
+    TEST_CASE("layers and filters keep instances apart") {
+        Stage stage;
+        const auto ring = *stage.scene.add_mesh(wavy_torus(1.0, 0.3, 0.0));
+        for (const std::uint32_t layers : {1u, 2u, 3u}) stage.add(ring, at({0.1 * layers, 0.0, 0.0}), layers);
+        stage.scene.update();
+        World world;
+        REQUIRE(world.update(stage.scene).has_value());
+        CHECK(world.pairs().size() == 2);  // not 0 with 1
+        std::vector<Filter> filters(3);
+        filters[0].collides_with = 2;
+        REQUIRE(world.update(stage.scene, filters).has_value());
+        CHECK(world.pairs().empty());
+    }
+
+    TEST_CASE("a moving scene gives the same pairs and contacts with any number of threads") {
+        std::mt19937_64 random(8);
+        Stage stage;
+        const auto ring = *stage.scene.add_mesh(wavy_torus(1.0, 0.3, 0.2, 16, 8)),
+                   ball = *stage.scene.add_mesh(wavy_torus(0.2, 0.3, 0.1, 10, 6));
+        for (int i = 0; i < 60; ++i)
+            stage.add(i % 2 ? ring : ball,
+                      at(4.0 * random_vector(random), glm::mat3_cast(random_rotation(random)) * (i % 3 ? 1.0 : 0.7)));
+        World serial, parallel;
+        ThreadPool pool(3);
+        for (int frame = 0; frame < 5; ++frame) {
+            stage.scene.update();
+            REQUIRE(serial.update(stage.scene).has_value());
+            REQUIRE(parallel.update(stage.scene, {}, pool).has_value());
+            CHECK(serial.pairs().size() > 5);
+            CHECK(same(serial.pairs(), parallel.pairs()));
+            CHECK(std::ranges::equal(
+                serial.contacts(), parallel.contacts(), [](const MeshContact& x, const MeshContact& y) {
+                    return x.triangles == y.triangles && x.segment.begin == y.segment.begin && x.normal == y.normal;
+                }));
+            for (const scene::NodeId node : stage.nodes) {
+                scene::Transform place = stage.scene.local(node);
+                place.translation += 0.1 * random_vector(random);
+                REQUIRE(stage.scene.set_local(node, place).has_value());
+            }
+        }
+    }
+}
