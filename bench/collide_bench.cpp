@@ -5,6 +5,7 @@
 #include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/ray.hpp>
 
 #include "collide_inputs.hpp"
 
@@ -126,6 +127,19 @@ void mesh_build(benchmark::State& state, const char* name) {
     for (auto _ : state) benchmark::DoNotOptimize(tree::MeshTree::build(input->mesh));
 }
 
+void mesh_rays(benchmark::State& state) {
+    const MeshCase* input = mesh_case("bunny", state);
+    if (input == nullptr) return;
+    const auto rays = random_rays(input->mesh, 10000);
+    int hits = 0;
+    for (auto _ : state) {
+        hits = 0;
+        for (const collide::Ray& ray : rays) hits += collide::raycast(ray, input->tree).has_value();
+    }
+    state.counters["hits"] = hits;
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
+}
+
 BENCHMARK(box_pairs_streaming)->Name("sat/1M pairs from boxes/crofton")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(packed_pairs, streaming, 1'000'000)
     ->Name("sat/1M pairs packed/crofton")
@@ -137,16 +151,19 @@ BENCHMARK_CAPTURE(all_pairs, bounds, false)
     ->Arg(1000)
     ->Arg(10000)
     ->Arg(100000)
+    ->Arg(1000000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(all_pairs, boxes, true)
     ->Name("broadphase/boxes/crofton")
     ->Arg(1000)
     ->Arg(10000)
     ->Arg(100000)
+    ->Arg(1000000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(mesh_any, bunny, "bunny")->Name("mesh/bunny any/crofton")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh_all, bunny, "bunny")->Name("mesh/bunny all/crofton")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh_build, bunny, "bunny")->Name("mesh/bunny build/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK(mesh_rays)->Name("rays/bunny nearest/crofton")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh_any, cow, "cow")->Name("mesh/cow any/crofton")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(mesh_all, cow, "cow")->Name("mesh/cow all/crofton")->Unit(benchmark::kMillisecond);
 

@@ -84,6 +84,20 @@ TriangleMesh shared_mesh(const std::string& name) {
     return mesh;
 }
 
+std::vector<collide::Ray> random_rays(const TriangleMesh& mesh, std::size_t count) {
+    Random random(11);
+    Aabb bound;
+    for (const glm::vec3& p : mesh.positions) bound.include(glm::dvec3(p));
+    std::vector<collide::Ray> rays;
+    while (rays.size() < count) {
+        const glm::dvec3 way = glm::normalize(glm::dvec3(0.001) + uniform_vector(random, -1.0, 1.0));
+        const glm::dvec3 target = bound.center() + bound.half_extents() * uniform_vector(random, -1.0, 1.0);
+        const glm::dvec3 from = bound.center() + 2.0 * glm::length(bound.half_extents()) * way;
+        rays.push_back({from, glm::normalize(target - from)});
+    }
+    return rays;
+}
+
 std::vector<collide::Pose> close_poses(const tree::MeshTree& tree, std::size_t count) {
     Random random(3);
     const tree::MeshBox& box = tree.root_box();

@@ -1,6 +1,7 @@
 // What Crofton and the peers are measured on: the same boxes, meshes and poses for all.
 #pragma once
 #include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/collide/ray.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <string>
@@ -22,6 +23,9 @@ void move(std::vector<Obb>& boxes, int frame);
 
 // A mesh of the shared data, or nothing where that is absent. Polygons are cut into fans.
 [[nodiscard]] TriangleMesh shared_mesh(const std::string& name);
+
+// From a sphere around the mesh to points within its bound.
+[[nodiscard]] std::vector<collide::Ray> random_rays(const TriangleMesh& mesh, std::size_t count);
 
 // Poses of a mesh relative to a copy of itself: random rotation and direction, moved from first contact by −5 to +2 %
 // of the mesh's size.
