@@ -33,12 +33,13 @@ struct SceneSource {
     }
 };
 
-// "town", or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the item in it and the reason:
-// missing or damaged file, unknown extension, unknown map, NaN or singular matrices, indices out of range, nothing to
-// draw.
+// "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
+// item in it and the reason: missing or damaged file, unknown extension, unknown map, NaN or singular matrices, indices
+// out of range, nothing to draw.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 
 [[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> make_room(const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options);
 [[nodiscard]] Result<SceneSource> load_wad(const std::string& path, const LoadOptions& options);

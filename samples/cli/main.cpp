@@ -16,6 +16,8 @@ int main(int argc, char** argv) {
     add_bake_command(app, outcome);
     add_collide_command(app, outcome);
     add_frames_command(app, outcome);
+    add_lines_command(app, outcome);
+    add_radiosity_command(app, outcome);
     add_verify_command(app, outcome);
 #if defined(CROFTON_VIEWER)
     add_view_command(app, outcome);
