@@ -99,7 +99,9 @@ Result<void> write_glb(const std::string& path, const TriangleMesh& mesh) {
 
 Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh, const Camera& camera,
                                std::uint32_t width, std::uint32_t height) {
-    auto device = render::Device::create({.kind = render::DeviceKind::any, .name = {}});
+    render::DeviceOptions wanted;
+    wanted.kind = render::DeviceKind::any;
+    auto device = render::Device::create(wanted);
     if (!device) return tl::unexpected(device.error());
     auto rasterizer = render::Rasterizer::create(*device, {.width = width, .height = height, .cull_back_faces = false});
     if (!rasterizer) return tl::unexpected(rasterizer.error());
