@@ -21,6 +21,7 @@ void add_collide_command(CLI::App& app, Outcome& outcome);
 void add_frames_command(CLI::App& app, Outcome& outcome);
 void add_lines_command(CLI::App& app, Outcome& outcome);
 void add_radiosity_command(CLI::App& app, Outcome& outcome);
+void add_triangulate_command(CLI::App& app, Outcome& outcome);
 void add_verify_command(CLI::App& app, Outcome& outcome);
 void add_view_command(CLI::App& app, Outcome& outcome);  // where GLFW and Dear ImGui are installed
 

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
     add_frames_command(app, outcome);
     add_lines_command(app, outcome);
     add_radiosity_command(app, outcome);
+    add_triangulate_command(app, outcome);
     add_verify_command(app, outcome);
 #if defined(CROFTON_VIEWER)
     add_view_command(app, outcome);

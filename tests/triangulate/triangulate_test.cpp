@@ -192,6 +192,22 @@ TEST_SUITE("triangulate/triangulate") {
         }
     }
 
+    TEST_CASE("a polygon that is refused leaves nothing behind for the next one") {
+        triangulate::Triangulator triangulator;
+        triangulate::Triangulation result;
+        std::mt19937_64 random(8);
+        for (int trial = 0; trial < 40; ++trial) {
+            Polygon bad, good;
+            add_star(bad, random, {0, 0}, 5.0, 10.0, 40, 0.0);
+            add_star(bad, random, {trial % 4 * 5.0, 0}, 2.0, 4.0, 20, 0.0);
+            add_star(bad, random, {trial % 3 * 5.0, 0.5}, 1.0, 3.0, 20, 0.0);
+            (void)triangulator.triangulate(bad, {}, result);
+            add_star(good, random, {0, 0}, 5.0, 10.0, 30, 0.0);
+            REQUIRE(triangulator.triangulate(good, {}, result).has_value());
+            CHECK(oracle::check_triangulation(good, result.triangles) == "");
+        }
+    }
+
     TEST_CASE("real polygons: level sectors, glyphs, counties") {
         const std::string folder = std::string(CROFTON_SHARED_DATA) + "/polygons/";
         if (!std::filesystem::exists(folder)) return;

@@ -46,6 +46,7 @@ class Sweep {
         mesh_.origin.clear();
         mesh_.twin.clear();
         mesh_.mark.clear();
+        scratch_.stack.clear();
         mesh_.vertex_edge.assign(count, kNone);
         scratch_.hull_next.resize(count);
         scratch_.hull_previous.resize(count);

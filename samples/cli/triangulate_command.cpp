@@ -1,0 +1,184 @@
+// `crofton triangulate`: polygons with holes, or the planar patches of meshes, to triangles.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <crofton/triangulate/triangulate.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "assets/file.hpp"
+#include "commands.hpp"
+#include "polygon_files.hpp"
+#include "polygon_svg.hpp"
+#include "progress_bar.hpp"
+#include "report.hpp"
+#include "triangulate_meshes.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using nlohmann::json;
+using triangulate::Method;
+using triangulate::Triangulation;
+using Clock = std::chrono::steady_clock;
+
+struct TriangulateOptions {
+    std::string file, method = "minimum-weight", map, json, svg, out;
+    double seconds = 10.0, tolerance = -1.0;
+    bool no_indices = false;
+};
+
+Result<Method> method_from(const std::string& name) {
+    if (name == "ear") return Method::ear;
+    if (name == "delaunay") return Method::delaunay;
+    if (name == "minimum-weight") return Method::minimum_weight;
+    return fail(ErrorCode::invalid_argument, kNoItem,
+                "--method must be ear, delaunay or minimum-weight, not '" + name + "'");
+}
+
+json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds, bool no_indices) {
+    json entry{{"name", named.name},
+               {"vertices", named.polygon.points.size()},
+               {"holes", named.polygon.ring_count() - 1},
+               {"triangle_count", result.triangles.size()},
+               {"weight", result.weight},
+               {"optimal", result.optimal},
+               {"gap", std::isfinite(result.gap) ? json(result.gap) : json(nullptr)},
+               {"microseconds", microseconds}};
+    if (!no_indices) entry["triangles"] = result.triangles;
+    return entry;
+}
+
+struct Totals {
+    std::size_t polygons = 0, refused = 0, vertices = 0, holes = 0, triangles = 0, optimal = 0;
+    double weight = 0.0, microseconds = 0.0;
+
+    void add(const Polygon& polygon, const Triangulation& result, double time) {
+        ++polygons;
+        vertices += polygon.points.size();
+        holes += polygon.ring_count() - 1;
+        triangles += result.triangles.size();
+        optimal += result.optimal;
+        weight += result.weight;
+        microseconds += time;
+    }
+};
+
+void print_table(const TriangulateOptions& options, const Totals& t) {
+    std::printf("%-16s %10s %10s %8s %10s %16s %10s %12s\n", "method", "polygons", "vertices", "holes", "triangles",
+                "weight", "optimal", "us/vertex");
+    std::printf("%-16s %10zu %10zu %8zu %10zu %16.8g %10zu %12.3f\n", options.method.c_str(), t.polygons, t.vertices,
+                t.holes, t.triangles, t.weight, t.optimal,
+                t.vertices ? t.microseconds / static_cast<double>(t.vertices) : 0.0);
+    if (t.refused) std::printf("%zu polygons were refused\n", t.refused);
+}
+
+Result<int> run_polygons(const TriangulateOptions& options, Method method) {
+    const auto file = read_polygons(options.file, options.map);
+    if (!file) return tl::unexpected(file.error());
+    for (const auto& warning : file->warnings) std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+    const auto& polygons = file->polygons;
+    std::vector<Triangulation> results(polygons.size());
+    json entries = json::array();
+    Totals totals;
+    triangulate::Triangulator triangulator;
+    {
+        ProgressBar bar("triangulate", polygons.size());
+        for (std::size_t i = 0; i < polygons.size(); ++i) {
+            const auto start = Clock::now();
+            const auto done = triangulator.triangulate(polygons[i].polygon,
+                                                       {.method = method, .seconds = options.seconds}, results[i]);
+            const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+            if (done) {
+                totals.add(polygons[i].polygon, results[i], time);
+                entries.push_back(to_json(polygons[i], results[i], time, options.no_indices));
+            } else {
+                ++totals.refused;
+                std::fprintf(stderr, "crofton: %s: %s: %s\n", options.file.c_str(), polygons[i].name.c_str(),
+                             done.error().message.c_str());
+                entries.push_back(
+                    {{"name", polygons[i].name},
+                     {"error", {{"code", to_string(done.error().code)}, {"message", done.error().message}}}});
+            }
+            bar.set(i + 1);
+        }
+    }
+    if (!options.svg.empty()) {
+        if (auto written = write_file(options.svg, draw_svg(polygons, results, file->one_plane)); !written)
+            return tl::unexpected(written.error());
+    }
+    if (!options.json.empty()) {
+        const json document{{"file", assets::file_name(options.file)},
+                            {"method", options.method},
+                            {"polygons", std::move(entries)},
+                            {"summary",
+                             {{"polygons", totals.polygons},
+                              {"refused", totals.refused},
+                              {"vertices", totals.vertices},
+                              {"holes", totals.holes},
+                              {"triangles", totals.triangles},
+                              {"optimal", totals.optimal},
+                              {"weight", totals.weight},
+                              {"microseconds", totals.microseconds}}}};
+        if (auto written = write_json(options.json, document); !written) return tl::unexpected(written.error());
+    }
+    if (options.json != "-" && options.svg != "-") print_table(options, totals);
+    return totals.refused ? kBadInput : kSuccess;
+}
+
+Result<int> run(const TriangulateOptions& options) {
+    const auto method = method_from(options.method);
+    if (!method) return tl::unexpected(method.error());
+    if (options.json == "-" && options.svg == "-") {
+        return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --svg can go to stdout");
+    }
+    if (!(options.seconds >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--seconds must not be negative");
+    if (is_polygon_file(options.file)) {
+        if (!options.out.empty())
+            return fail(ErrorCode::invalid_argument, kNoItem, "--out is for meshes: .obj, .glb, .gltf");
+        return run_polygons(options, *method);
+    }
+    if (!options.svg.empty())
+        return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
+    return run_meshes(
+        {options.file, options.method, *method, options.json, options.out, options.seconds, options.tolerance});
+}
+
+constexpr const char* kExamples =
+    "Polygons: .poly, .json (earcut's rings or GeoJSON), .geojson, .wad. Meshes, whose planar patches are triangulated "
+    "anew:\n"
+    ".obj, .glb, .gltf. Indices count a polygon's points ring by ring. A polygon that is refused is named on stderr, "
+    "has an\n"
+    "`error` in the JSON, and makes the exit status 2; the others are done all the same.\n"
+    "Examples:\n"
+    "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
+    "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
+    "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
+    "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n";
+
+}  // namespace
+
+void add_triangulate_command(CLI::App& app, Outcome& outcome) {
+    auto options = std::make_shared<TriangulateOptions>();
+    CLI::App* command =
+        app.add_subcommand("triangulate", "Polygons with holes, or the planar patches of meshes, to triangles");
+    command->footer(kExamples);
+    command->add_option("file", options->file, "What to triangulate")->required();
+    command->add_option("--method", options->method, "ear, delaunay or minimum-weight")->capture_default_str();
+    command->add_option("--map", options->map, "Only this level of a .wad");
+    command->add_option("--seconds", options->seconds, "Time allowed per polygon; then the best so far, with its gap")
+        ->capture_default_str();
+    command->add_option(
+        "--tolerance", options->tolerance,
+        "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
+    command->add_flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
+    command->add_option("--json", options->json, "Write results as JSON; - for stdout");
+    command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout");
+    command->add_option("--out", options->out, "Write the retriangulated meshes as .glb");
+    command->callback([options, &outcome] {
+        const auto status = run(*options);
+        outcome.status = status ? *status : report_error("", status.error());
+    });
+}
+
+}  // namespace crofton::cli
