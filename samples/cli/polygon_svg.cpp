@@ -39,7 +39,8 @@ void move_to(std::string& path, const glm::dvec2& p, char command) {
     path += text;
 }
 
-void draw(const Polygon& polygon, const triangulate::Triangulation& result, const Frame& frame, std::string& svg) {
+void draw(const Polygon& polygon, const triangulate::Triangulation& result, const Frame& frame, double width,
+          std::string& svg) {
     std::string rings, diagonals;
     std::set<std::pair<std::uint32_t, std::uint32_t>> boundary, drawn;
     for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
@@ -61,8 +62,11 @@ void draw(const Polygon& polygon, const triangulate::Triangulation& result, cons
             move_to(diagonals, frame.place(polygon.points[b]), 'L');
         }
     }
-    svg += "<path class='p' d='" + rings + "'/>\n";
-    if (!diagonals.empty()) svg += "<path class='d' d='" + diagonals + "'/>\n";
+    char style[128];
+    std::snprintf(style, sizeof style, "<path fill='#e8eef7' stroke='#1b2a41' stroke-width='%.3g' d='", 1.5 * width);
+    svg += style + rings + "'/>\n";
+    std::snprintf(style, sizeof style, "<path fill='none' stroke='#c8553d' stroke-width='%.3g' d='", 0.8 * width);
+    if (!diagonals.empty()) svg += style + diagonals + "'/>\n";
 }
 
 }  // namespace
@@ -76,12 +80,10 @@ std::string draw_svg(std::span<const NamedPolygon> polygons, std::span<const tri
     const auto columns = one_plane ? 1.0 : std::max(1.0, std::ceil(std::sqrt(static_cast<double>(shown.size()))));
     const double width = std::clamp(1.6 / columns, 0.25, 1.2);
     char head[512];
-    std::snprintf(
-        head, sizeof head,
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %g' width='%g' height='%g'>\n"
-        "<style>.p{fill:#e8eef7;fill-rule:evenodd;stroke:#1b2a41;stroke-width:%g;stroke-linejoin:round}"
-        ".d{fill:none;stroke:#c8553d;stroke-width:%g}</style>\n<rect width='100%%' height='100%%' fill='white'/>\n",
-        kSize, kSize, kSize, kSize, 1.5 * width, 0.8 * width);
+    std::snprintf(head, sizeof head,
+                  "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %g' width='%g' height='%g'>\n"
+                  "<rect width='%g' height='%g' fill='white'/>\n<g stroke-linejoin='round' fill-rule='evenodd'>\n",
+                  kSize, kSize, kSize, kSize, kSize, kSize);
     std::string svg = head;
     Frame frame;
     if (one_plane) {
@@ -96,9 +98,9 @@ std::string draw_svg(std::span<const NamedPolygon> polygons, std::span<const tri
             frame.corner = frame.cell * glm::dvec2(std::fmod(static_cast<double>(n), columns),
                                                    std::floor(static_cast<double>(n) / columns));
         }
-        draw(polygon, results[shown[n]], frame, svg);
+        draw(polygon, results[shown[n]], frame, width, svg);
     }
-    return svg + "</svg>\n";
+    return svg + "</g>\n</svg>\n";
 }
 
 }  // namespace crofton::cli

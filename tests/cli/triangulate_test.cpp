@@ -1,0 +1,99 @@
+#include <doctest/doctest.h>
+#include <cmath>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+
+TEST_SUITE("cli/triangulate") {
+    TEST_CASE("missing, damaged and unknown files, and wrong options, are refused and leave no output behind") {
+        write_contents(scratch().file("broken.poly"), "P a 1\n3 0 0 1 0 x");
+        write_contents(scratch().file("broken.json"), "[[[0,0],[1,");
+        write_contents(scratch().file("odd.json"), "[[[0,0],[1,0],7]]");
+        write_contents(scratch().file("empty.geojson"), R"({"type": "FeatureCollection", "features": []})");
+        write_contents(scratch().file("broken.wad"), "PWAD????");
+        const std::string out = scratch().file("out.json");
+        for (const char* name :
+             {"missing.poly", "broken.poly", "broken.json", "odd.json", "empty.geojson", "broken.wad", "what.xyz"}) {
+            const CliRun run = run_cli("triangulate '" + scratch().file(name) + "' --json '" + out + "'");
+            CHECK(run.status == 2);
+            CHECK(run.err.find(name) != std::string::npos);
+            CHECK_FALSE(std::filesystem::exists(out));
+        }
+        write_contents(scratch().file("good.poly"), "P a 1\n3 0 0 1 0 0 1\n");
+        const std::string good = "triangulate '" + scratch().file("good.poly") + "' ";
+        CHECK(run_cli(good + "--method best").status == 2);
+        CHECK(run_cli(good + "--json - --svg -").status == 2);
+        CHECK(run_cli(good + "--out x.glb").status == 2);
+        CHECK(run_cli(good + "--json /no/such/folder/a.json").status == 2);
+        CHECK(run_cli("triangulate").status == 2);
+    }
+
+    TEST_CASE("an invalid polygon is named with ring, point and position; the others are done") {
+        write_contents(scratch().file("two.poly"), "P bow 1\n4 0 0 2 2 2 0 0 2\nP square 1\n4 0 0 2 0 2 2 0 2\n");
+        const CliRun run = run_cli("triangulate '" + scratch().file("two.poly") + "' --json -");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("bow: ring 0, point") != std::string::npos);
+        const auto polygons = run.json()["polygons"];
+        REQUIRE(polygons.size() == 2);
+        CHECK(polygons[0].contains("error"));
+        CHECK(polygons[1]["triangles"].size() == 2);
+        CHECK(polygons[1]["weight"].get<double>() == std::sqrt(8.0));
+        CHECK(polygons[1]["optimal"] == true);
+        CHECK(polygons[1]["gap"] == 0.0);
+        for (const char* key : {"name", "vertices", "holes", "microseconds"}) CHECK(polygons[1].contains(key));
+    }
+
+    TEST_CASE(
+        "GeoJSON: features, collections, multi-polygons, closing points left out, points skipped with a warning") {
+        write_contents(scratch().file("map.geojson"), R"({"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {"name": "lake"}, "geometry": {"type": "MultiPolygon", "coordinates": [
+                [[[0,0],[4,0],[4,4],[0,4],[0,0]], [[1,1],[2,1],[2,2],[1,1]]], [[[9,9],[10,9],[9,10],[9,9]]]]}},
+            {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+            {"type": "Feature", "geometry": null}]})");
+        const CliRun run =
+            run_cli("triangulate '" + scratch().file("map.geojson") + "' --json - --no-indices --method delaunay");
+        CHECK(run.status == 0);
+        CHECK(run.err.find("Point") != std::string::npos);
+        const auto polygons = run.json()["polygons"];
+        REQUIRE(polygons.size() == 2);
+        CHECK(polygons[0]["name"] == "lake_0");
+        CHECK(polygons[0]["vertices"] == 7);
+        CHECK(polygons[0]["holes"] == 1);
+        CHECK(polygons[0]["optimal"] == false);
+        CHECK(polygons[0]["gap"].is_null());
+        CHECK_FALSE(polygons[0].contains("triangles"));
+        CHECK(polygons[1]["vertices"] == 3);
+    }
+
+    TEST_CASE("SVG goes to a file or stdout") {
+        write_contents(scratch().file("hole.json"), "[[[0,0],[4,0],[4,4],[0,4]],[[1,1],[2,1],[2,2]]]");
+        const CliRun run = run_cli("triangulate '" + scratch().file("hole.json") + "' --svg -");
+        CHECK(run.status == 0);
+        CHECK(run.out.rfind("<svg", 0) == 0);
+        CHECK(run.out.find("</svg>") != std::string::npos);
+    }
+
+    TEST_CASE("a mesh is written as GLB with its patches lighter, and reads back") {
+        // A flat strip as a fan from one corner.
+        std::string obj;
+        for (int i = 0; i <= 8; ++i) obj += "v " + std::to_string(i) + " 0 0\n";
+        for (int i = 8; i >= 0; --i) obj += "v " + std::to_string(i) + " 1 0\n";
+        for (int i = 10; i < 18; ++i) obj += "f 1 " + std::to_string(i) + " " + std::to_string(i + 1) + "\n";
+        for (int i = 1; i < 9; ++i) obj += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " 10\n";
+        write_contents(scratch().file("strip.obj"), obj);
+        const std::string glb = scratch().file("strip.glb");
+        const CliRun run = run_cli("triangulate '" + scratch().file("strip.obj") + "' --out '" + glb + "' --json -");
+        CHECK(run.status == 0);
+        const auto before = run.json()["summary"];
+        CHECK(before["patches"] == 1);
+        CHECK(before["improved"] == 1);
+        // Eight unit squares: seven uprights of length 1 and eight diagonals of length √2.
+        CHECK(before["weight_after"].get<double>() == doctest::Approx(7.0 + 8.0 * std::sqrt(2.0)));
+        const CliRun again = run_cli("triangulate '" + glb + "' --json -");
+        CHECK(again.status == 0);
+        CHECK(again.json()["summary"]["improved"] == 0);
+        CHECK(again.json()["summary"]["weight_before"].get<double>() ==
+              doctest::Approx(before["weight_after"].get<double>()).epsilon(1e-6));
+    }
+}
