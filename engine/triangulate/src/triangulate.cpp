@@ -4,6 +4,7 @@
 #include <new>
 
 #include "domain.hpp"
+#include "ear_clipping.hpp"
 #include "minimum_weight.hpp"
 
 namespace crofton::triangulate {
@@ -11,6 +12,8 @@ namespace crofton::triangulate {
 struct Triangulator::Workspace {
     Domain domain;
     MinimumWeight minimum_weight;
+    EarClipping ear_clipping;
+    Vector<std::array<Index, 3>> corners;
 };
 
 Triangulator::Triangulator() : workspace_(new (Allocator<Workspace>().allocate(1)) Workspace) {}
@@ -55,6 +58,17 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
         const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, result);
         if (!solved) return tl::unexpected<Error>(solved.error());
         if (*solved) return {};
+    }
+    if (options.method == Method::ear) {
+        auto& corners = workspace_->corners;
+        corners.clear();
+        const Domain& domain = workspace_->domain;
+        result.weight = workspace_->ear_clipping.run(domain, corners) * domain.scale();
+        for (const auto& c : corners) {
+            result.triangles.push_back({domain.input_index(c[0]), domain.input_index(c[1]), domain.input_index(c[2])});
+        }
+        if (corners.size() != domain.inside_count()) return fail(ErrorCode::internal, kNoItem, "a walk without ears");
+        return {};
     }
     write(workspace_->domain, result);
     if (options.method == Method::minimum_weight) result.gap = workspace_->minimum_weight.gap_of(result.weight);
