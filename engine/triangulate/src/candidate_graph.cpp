@@ -13,6 +13,7 @@ namespace {
 // only keep more edges.
 constexpr double kTangent = 0.8134;
 constexpr double kCotangent = 1.0 / kTangent;
+constexpr double kRoundingUp = 1.0 + 1e-12;
 // How many neighbours in angular order are tried as witnesses on each side: pruning less is never wrong.
 constexpr std::size_t kNeighbours = 8;
 
@@ -23,11 +24,15 @@ double dot(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.x + a.y * b.y;
 }
 
-// Whether y lies in the isosceles triangle over the segment from 0 to q, on the side where `turn` = ±cross(q, y) is
-// positive.
-bool kills(const glm::dvec2& q, const glm::dvec2& y, double turn) {
+// A vertex y seen from the end 0 of the segment to q, `turn` = cross(q, y) signed so that y's side is positive.
+enum class Witness : std::uint8_t { none, kills, beyond };
+
+// Whether y lies in the isosceles triangle over the segment; `beyond` if its angle is too large, and so is every later
+// one's.
+Witness test_witness(const glm::dvec2& q, double q_square, const glm::dvec2& y, double turn) {
     const double along = dot(q, y);
-    return turn > 0.0 && turn <= kTangent * std::min(along, dot(q, q) - along);
+    if (turn > kTangent * along) return Witness::beyond;
+    return turn > 0.0 && turn <= kTangent * (q_square - along) ? Witness::kills : Witness::none;
 }
 
 }  // namespace
@@ -135,28 +140,24 @@ void CandidateFinder::look_through(Index edge, Index right, Index left) {
 bool CandidateFinder::is_dark(View& view) const {
     const auto& points = mesh_->points;
     const glm::dvec2 right = points[view.right] - eye_, left = points[view.left] - eye_;
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    // The distance from which on y kills up to the direction of `far`, times |far|.
-    const auto reach = [](const glm::dvec2& y, const glm::dvec2& far, double side) {
-        const double along = dot(y, far), across = side * cross(y, far);
-        return across <= kTangent * along ? (along + across * kCotangent) * (1.0 + 1e-12) : kNever;
+    // Both ends' reach times the length of the other, while the view is at most α wide; else no witness reaches across.
+    const double along = dot(right, left), across = cross(right, left);
+    if (across > kTangent * along) return false;
+    double right_reach = along + across * kCotangent, left_reach = right_reach;
+    const auto inherit = [&](Index& witness, Index end, const glm::dvec2& far, double side, double& reach) {
+        if (witness == end) return;
+        const glm::dvec2 y = points[witness] - eye_;
+        const double y_along = dot(y, far), y_across = side * cross(y, far);
+        const double y_reach = y_along + y_across * kCotangent;
+        if (y_across <= kTangent * y_along && y_reach < reach)
+            reach = y_reach;
+        else
+            witness = end;
     };
-    double right_reach = reach(right, left, 1.0), left_reach = reach(left, right, -1.0);
-    if (view.right_witness != view.right) {
-        const double inherited = reach(points[view.right_witness] - eye_, left, 1.0);
-        if (inherited < right_reach)
-            right_reach = inherited;
-        else if (right_reach < kNever)
-            view.right_witness = view.right;
-    }
-    if (view.left_witness != view.left) {
-        const double inherited = reach(points[view.left_witness] - eye_, right, -1.0);
-        if (inherited < left_reach)
-            left_reach = inherited;
-        else if (left_reach < kNever)
-            view.left_witness = view.left;
-    }
-    if (right_reach == kNever || left_reach == kNever) return false;
+    inherit(view.right_witness, view.right, left, 1.0, right_reach);
+    inherit(view.left_witness, view.left, right, -1.0, left_reach);
+    right_reach *= kRoundingUp;
+    left_reach *= kRoundingUp;
     const glm::dvec2 a = points[mesh_->origin[view.edge]] - eye_, b = points[mesh_->destination(view.edge)] - eye_;
     const double area = cross(a, b), area2 = area * area;
     const double side2 = dot(a - b, a - b);
@@ -176,12 +177,18 @@ void CandidateFinder::filter(std::size_t begin, std::size_t end) {
         bool keep = i + 1 == count || (seen_[begin + i].flags & CandidateGraph::kConstraint) != 0;
         if (!keep) {
             const glm::dvec2 q = vectors_[i];
-            bool right = false, left = false;
+            const double q_square = dot(q, q);
             const std::size_t low = i > kNeighbours ? i - kNeighbours : 0, high = std::min(count, i + kNeighbours + 1);
-            for (std::size_t j = i; j-- > low && !right;) right = kills(q, vectors_[j], -cross(q, vectors_[j]));
-            for (std::size_t j = i + 1; right && j < high && !left; ++j)
-                left = kills(q, vectors_[j], cross(q, vectors_[j]));
-            keep = !(right && left);
+            Witness right = Witness::none, left = Witness::none;
+            for (std::size_t j = i; j-- > low && right == Witness::none;) {
+                right = test_witness(q, q_square, vectors_[j], cross(vectors_[j], q));
+            }
+            if (right == Witness::kills) {
+                for (std::size_t j = i + 1; j < high && left == Witness::none; ++j) {
+                    left = test_witness(q, q_square, vectors_[j], cross(q, vectors_[j]));
+                }
+            }
+            keep = left != Witness::kills;
         }
         if (keep) seen_[kept++] = seen_[begin + i];
     }
