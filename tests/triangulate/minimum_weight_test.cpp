@@ -81,6 +81,27 @@ TEST_SUITE("triangulate/minimum_weight") {
         }
     }
 
+    TEST_CASE("vertices hidden behind walls kill nothing: an S whose arms have vertices beside the middle one") {
+        // Every long diagonal of the middle arm has (10, 1) and (10, 3) in its diamond, behind the walls; one of them
+        // is needed.
+        const auto s = polygon({{{0, 0},
+                                 {21, 0},
+                                 {21, 2.5},
+                                 {1, 2.5},
+                                 {1, 3},
+                                 {10, 3},
+                                 {21, 3},
+                                 {21, 4},
+                                 {0, 4},
+                                 {0, 1.5},
+                                 {20, 1.5},
+                                 {20, 1},
+                                 {10, 1},
+                                 {0, 1}}});
+        triangulate::Triangulator triangulator;
+        CHECK(compare(s, triangulator) == "");
+    }
+
     TEST_CASE("agrees with the unpruned programme on random simple polygons, on and off grids") {
         std::mt19937_64 random(21);
         triangulate::Triangulator triangulator;
