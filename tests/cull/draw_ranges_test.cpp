@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <crofton/cull/draw_ranges.hpp>
 #include <random>
 #include <vector>

@@ -5,8 +5,9 @@
 
 namespace crofton::cull {
 
-void cull(const tree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options, Executor&) {
-    Query(view, visible, options).run(tree);
+void cull(const tree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options,
+          Executor& executor) {
+    Query(view, visible, options).run(tree, executor);
 }
 
 void cull(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view, VisibleSet& visible,

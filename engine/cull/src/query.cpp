@@ -11,6 +11,10 @@ namespace {
 
 // Vector stores run past the end of what they mean to write.
 constexpr std::size_t kPadding = tree::kWidth;
+// Below this a query is over before another thread has woken.
+constexpr std::size_t kParallelItems = 65536;
+// Beside an item's id, which is below 2^30.
+constexpr std::uint32_t kInside = 0x80000000u;
 
 template <class T>
 void grow(Vector<T>& buffer, std::size_t size) {
@@ -55,15 +59,16 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
     finish(inside, straddling, boxes.size());
 }
 
-void Query::run(const tree::BoxTree& tree) {
+void Query::run(const tree::BoxTree& tree, Executor& executor) {
     start(tree.boxes().size());
     if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
-    grow(visible_.stack_, (tree.height() + 1) * tree::kWidth);
     const KernelView view = kernel_view_of(view_);
     const TreeKernelInput input{tree.nodes().data(),         tree.leaves().data(),     tree.leaf_ranges().data(),
                                 tree.leaf_counts().data(),   tree.slot_items().data(), &view,
                                 options_.mode == Mode::exact};
+    if (executor.concurrency() > 1 && tree.item_count() >= kParallelItems) return run_parallel(tree, input, executor);
+    grow(visible_.stack_, (tree.height() + 1) * tree::kWidth);
     TreeKernelOutput output{};
     output.inside = visible_.ids_.data();
     output.straddling = visible_.straddling_.data();
@@ -71,8 +76,68 @@ void Query::run(const tree::BoxTree& tree) {
     output.stack = visible_.stack_.data();
     output.stack[0] = (1u << view.plane_count) - 1;
     run_tree_kernel(input, 1, output);
-    decide(tree, output);
-    finish(output.inside_count, output.straddling_count, tree.boxes().size());
+    std::size_t inside = output.inside_count, straddling = output.straddling_count;
+    append_decided(output, decide(tree, output), inside, straddling);
+    finish(inside, straddling, tree.boxes().size());
+}
+
+// The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers; the parts are
+// then put together in order, so that the answer does not depend on who did what.
+void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, Executor& executor) {
+    constexpr std::size_t kTasks = std::size_t{tree::kWidth} * tree::kWidth, kGrain = 8, kParts = kTasks / kGrain;
+    std::uint64_t level[tree::kWidth], tasks[kTasks];
+    std::size_t task_count = 0;
+    const std::size_t first_count = expand_tree_kernel(input, (1u << input.view->plane_count) - 1, level);
+    for (std::size_t i = 0; i < first_count; ++i) task_count += expand_tree_kernel(input, level[i], tasks + task_count);
+    // What each part can hold at most; 16 more for what vectors write past the end.
+    const auto most = [&](std::uint64_t entry) {
+        const auto child = static_cast<std::uint32_t>(entry >> 32);
+        if (child & tree::kLeafBit) return std::size_t{tree::kWidth};
+        const std::size_t leaves = tree.leaf_ranges()[child].count;
+        return tree::kWidth * (leaves > 0 ? leaves : tree.leaves().size());
+    };
+    std::size_t starts[kParts + 1] = {};
+    const std::size_t parts = (task_count + kGrain - 1) / kGrain;
+    for (std::size_t p = 0; p < parts; ++p) {
+        starts[p + 1] = starts[p] + kPadding;
+        for (std::size_t i = p * kGrain; i < std::min(task_count, (p + 1) * kGrain); ++i)
+            starts[p + 1] += most(tasks[i]);
+    }
+    const std::size_t stack = (tree.height() + 1) * tree::kWidth + kGrain;
+    grow(visible_.part_inside_, starts[parts]);
+    grow(visible_.part_straddling_, starts[parts]);
+    grow(visible_.undecided_, starts[parts]);
+    grow(visible_.stack_, stack * kParts);
+    TreeKernelOutput outputs[kParts] = {};
+    std::size_t kept[kParts] = {};
+    executor.parallel_for(task_count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
+        const std::size_t p = begin / kGrain;
+        TreeKernelOutput& output = outputs[p];
+        output.inside = visible_.part_inside_.data() + starts[p];
+        output.straddling = visible_.part_straddling_.data() + starts[p];
+        output.undecided = visible_.undecided_.data() + starts[p];
+        output.stack = visible_.stack_.data() + stack * p;
+        // Last in, first out.
+        for (std::size_t i = begin; i < end; ++i) output.stack[end - 1 - i] = tasks[i];
+        run_tree_kernel(input, end - begin, output);
+        kept[p] = decide(tree, output);
+    });
+    std::size_t inside = 0, straddling = 0, inside_at[kParts], straddling_at[kParts];
+    for (std::size_t p = 0; p < parts; ++p) {
+        inside_at[p] = inside;
+        straddling_at[p] = straddling;
+        inside += outputs[p].inside_count;
+        straddling += outputs[p].straddling_count;
+    }
+    executor.parallel_for(parts, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t p = begin; p < end; ++p) {
+            std::copy_n(outputs[p].inside, outputs[p].inside_count, visible_.ids_.data() + inside_at[p]);
+            std::copy_n(outputs[p].straddling, outputs[p].straddling_count,
+                        visible_.straddling_.data() + straddling_at[p]);
+        }
+    });
+    for (std::size_t p = 0; p < parts; ++p) append_decided(outputs[p], kept[p], inside, straddling);
+    finish(inside, straddling, tree.boxes().size());
 }
 
 // A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
@@ -89,8 +154,10 @@ void Query::run_all(const tree::BoxTree& tree) {
     finish(inside, straddling, tree.boxes().size());
 }
 
-void Query::decide(const tree::BoxTree& tree, TreeKernelOutput& output) {
-    Statistics& statistics = visible_.statistics_;
+// Replaces the undecided slots by the items that are visible after all, with kInside where that is so; the others are
+// improper.
+std::size_t Query::decide(const tree::BoxTree& tree, TreeKernelOutput& output) const {
+    std::size_t kept = 0;
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
         // The boxes lie in the order of their ids, far from each other: ask for them ahead.
         constexpr std::size_t kAhead = 8;
@@ -98,15 +165,28 @@ void Query::decide(const tree::BoxTree& tree, TreeKernelOutput& output) {
             hwy::Prefetch(&tree.boxes()[tree.slot_items()[output.undecided[i + kAhead]]]);
         const ItemId item = tree.slot_items()[output.undecided[i]];
         const Verdict verdict = classify_usable(view_.frustum, tree.boxes()[item], options_.mode);
-        if (verdict == Verdict::inside) output.inside[output.inside_count++] = item;
-        if (verdict == Verdict::straddling) output.straddling[output.straddling_count++] = item;
-        if (kCountStatistics) statistics.improper += verdict == Verdict::outside;
+        if (verdict != Verdict::outside) output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;
+    }
+    return kept;
+}
+
+// Behind the items that the kernel decided, so that the order is the same however the work was shared.
+void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside,
+                           std::size_t& straddling) {
+    for (std::size_t i = 0; i < kept; ++i) {
+        const std::uint32_t item = output.undecided[i];
+        if (item & kInside)
+            visible_.ids_[inside++] = item & ~kInside;
+        else
+            visible_.straddling_[straddling++] = item;
     }
     if (!kCountStatistics) return;
-    statistics.nodes_tested = output.nodes_tested;
-    statistics.boxes_tested = output.boxes_tested;
-    statistics.accepted_whole = output.accepted_whole;
-    statistics.exact_tests = output.undecided_count;
+    Statistics& statistics = visible_.statistics_;
+    statistics.nodes_tested += output.nodes_tested;
+    statistics.boxes_tested += output.boxes_tested;
+    statistics.accepted_whole += output.accepted_whole;
+    statistics.exact_tests += output.undecided_count;
+    statistics.improper += output.undecided_count - kept;
 }
 
 void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items) {

@@ -14,12 +14,14 @@ class Query {
         : view_(view), visible_(visible), options_(options) {}
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
-    void run(const tree::BoxTree& tree);
+    void run(const tree::BoxTree& tree, Executor& executor);
 
   private:
     void start(std::size_t items);
     void run_all(const tree::BoxTree& tree);
-    void decide(const tree::BoxTree& tree, TreeKernelOutput& output);
+    void run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, Executor& executor);
+    [[nodiscard]] std::size_t decide(const tree::BoxTree& tree, TreeKernelOutput& output) const;
+    void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     void sort(std::size_t inside, std::size_t straddling, std::size_t items);
 

@@ -28,6 +28,25 @@ class Walk {
     // A copy of the output travels with the walk, so that the compiler keeps it in registers.
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
 
+    // One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
+    HWY_INLINE std::size_t expand(std::uint64_t entry, std::uint64_t* entries) {
+        const auto child = static_cast<std::uint32_t>(entry >> 32);
+        const auto planes = static_cast<std::uint32_t>(entry);
+        if (child & tree::kLeafBit || planes & kWhole) {
+            entries[0] = entry;
+            return 1;
+        }
+        const tree::Node& node = in_.nodes[child];
+        const NodeTest test = test_node(*in_.view, node, planes);
+        std::size_t count = 0;
+        for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
+            const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
+            const bool whole = test.planes[lane] == 0 && (node.layers_all[lane] & in_.view->layer_mask);
+            entries[count++] = std::uint64_t{node.child[lane]} << 32 | (whole ? kWhole : test.planes[lane]);
+        }
+        return count;
+    }
+
     HWY_INLINE void run(std::size_t stack_size) {
         while (stack_size > 0) {
             const std::uint64_t entry = out_.stack[--stack_size];
@@ -148,6 +167,10 @@ void RunTree(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOut
     output = walk.result();
 }
 
+std::size_t ExpandTree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
+    return Walk(input, TreeKernelOutput{}).expand(entry, entries);
+}
+
 }  // namespace
 }  // namespace crofton::cull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -156,6 +179,11 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::cull {
 
 HWY_EXPORT(RunTree);
+HWY_EXPORT(ExpandTree);
+
+std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
+    return HWY_DYNAMIC_DISPATCH(ExpandTree)(input, entry, entries);
+}
 
 void run_tree_kernel(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {
     HWY_DYNAMIC_DISPATCH(RunTree)(input, stack_size, output);

@@ -26,6 +26,10 @@ struct TreeKernelOutput {
     std::uint64_t nodes_tested, boxes_tested, accepted_whole;
 };
 
+// The children of `entry` that are not certainly outside, in the order of their lanes, as entries; returns how many (≤
+// 16).
+std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries);
+
 // Handles the children that `stack_size` entries name, and all below them.
 void run_tree_kernel(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output);
 

@@ -27,6 +27,7 @@ class VisibleSet {
     friend class Query;
     Vector<tree::ItemId> ids_;  // as long as its largest use so far
     Vector<tree::ItemId> straddling_;
+    Vector<tree::ItemId> part_inside_, part_straddling_;
     Vector<std::uint32_t> undecided_;
     Vector<Verdict> verdicts_;
     Vector<std::uint64_t> bits_;

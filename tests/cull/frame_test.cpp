@@ -1,0 +1,172 @@
+// What must hold over many frames: no allocation, no rot, the same bits for any number of threads and any instruction
+// set.
+#include <doctest/doctest.h>
+#include <hwy/targets.h>
+#include <algorithm>
+#include <crofton/core/memory.hpp>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/cull/box_set.hpp>
+#include <crofton/cull/many_views.hpp>
+#include <cstdlib>
+#include <oracle/random_boxes.hpp>
+#include <vector>
+
+using namespace crofton;
+
+namespace {
+
+std::vector<cull::View> flight(std::size_t frames) {
+    std::vector<cull::View> views;
+    for (std::size_t f = 0; f < frames; ++f) {
+        Camera camera;
+        const double angle = 0.1 * static_cast<double>(f);
+        camera.position = {30.0 * std::cos(angle), 5.0 * std::sin(2.0 * angle), 30.0 * std::sin(angle)};
+        camera.forward = {-std::cos(angle + 0.5), 0.1, -std::sin(angle + 0.5)};
+        camera.far = 70.0;
+        views.push_back({*frustum_of(camera)});
+    }
+    return views;
+}
+
+std::size_t allocations = 0;
+void* count_and_allocate(void*, std::size_t bytes, std::size_t alignment) {
+    ++allocations;
+    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+}
+void release(void*, void* memory, std::size_t, std::size_t) {
+    std::free(memory);
+}
+
+struct CountingMemory {
+    CountingMemory() { set_memory_hooks({count_and_allocate, release, nullptr}); }
+    ~CountingMemory() { reset_memory_hooks(); }
+};
+
+}  // namespace
+
+TEST_SUITE("cull/frame") {
+    TEST_CASE("after the first frame nothing is allocated, moves and refits included") {
+        const CountingMemory counting;
+        oracle::NearMisses random(3);
+        const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 2);
+        tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
+        cull::BoxSet set;
+        set.assign(crowd.boxes);
+        cull::VisibleSet visible;
+        cull::ManyVisible many;
+        cull::VerdictBits bits;
+        const std::vector<cull::View> views = flight(40);
+        std::size_t warm = 0;
+        for (std::size_t f = 0; f < 2 * views.size(); ++f) {
+            for (tree::ItemId i = 0; i < 500; ++i)
+                REQUIRE(tree.move(7 * i, oracle::random_box(random, glm::dvec3(0.0), 40.0)).has_value());
+            tree.refit();
+            const std::size_t at = f % views.size();
+            cull::cull(tree, views[at], visible,
+                       {cull::Mode::exact, f % 2 ? cull::Order::ascending : cull::Order::tree});
+            cull::cull(tree, std::span(views).subspan(at / 2, 4), many);
+            cull::cull(set, crowd.boxes, views[at], bits);
+            if (f == views.size()) warm = allocations;
+        }
+        CHECK(warm > 0);
+        CHECK(allocations == warm);
+    }
+
+    TEST_CASE("any number of threads gives the same ids in the same order, and the same statistics") {
+        const oracle::Crowd crowd = oracle::random_crowd(100000, 0.0, 4);
+        ThreadPool three(3);
+        const tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
+        const tree::BoxTree tree_of_three = *tree::BoxTree::build(crowd.boxes, crowd.layers, {}, three);
+        CHECK(std::ranges::equal(tree.slot_items(), tree_of_three.slot_items()));
+        cull::BoxSet set;
+        set.assign(crowd.boxes, three);
+        cull::VisibleSet one, many;
+        cull::VerdictBits one_bits, many_bits;
+        for (const cull::View& view : flight(20))
+            for (const cull::Order order : {cull::Order::tree, cull::Order::ascending}) {
+                cull::cull(tree, view, one, {cull::Mode::exact, order});
+                cull::cull(tree, view, many, {cull::Mode::exact, order}, three);
+                CHECK(one.inside_count() == many.inside_count());
+                REQUIRE(one.size() == many.size());
+                CHECK(std::ranges::equal(one.ids(), many.ids()));
+                CHECK(std::ranges::equal(one.verdicts(), many.verdicts()));
+                CHECK(one.statistics().boxes_tested == many.statistics().boxes_tested);
+                CHECK(one.statistics().improper == many.statistics().improper);
+                cull::cull(set, crowd.boxes, view, one_bits);
+                cull::cull(set, crowd.boxes, view, many_bits, cull::Mode::exact, three);
+                CHECK(one_bits.visible == many_bits.visible);
+                CHECK(one_bits.inside == many_bits.inside);
+            }
+    }
+
+    TEST_CASE("every instruction set that this machine has gives the same verdicts") {
+        const oracle::Crowd crowd = oracle::random_crowd(20000, 1e6, 5);
+        const tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
+        cull::BoxSet set;
+        set.assign(crowd.boxes);
+        std::vector<cull::View> views = flight(6);
+        for (cull::View& view : views) view.frustum.origin += 1e6 * glm::dvec3(1.0, -0.7, 0.3);
+        struct Answer {
+            std::vector<cull::ItemId> ids;
+            std::vector<cull::Verdict> verdicts;
+            Vector<std::uint64_t> visible, inside;
+            bool operator==(const Answer&) const = default;
+        };
+        const auto answer = [&] {
+            std::vector<Answer> answers;
+            for (const cull::View& view : views)
+                for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
+                    cull::VisibleSet visible;
+                    cull::VerdictBits bits;
+                    cull::cull(tree, view, visible, {mode});
+                    cull::cull(set, crowd.boxes, view, bits, mode);
+                    answers.push_back({{visible.ids().begin(), visible.ids().end()},
+                                       {visible.verdicts().begin(), visible.verdicts().end()},
+                                       bits.visible,
+                                       bits.inside});
+                }
+            return answers;
+        };
+        const std::vector<Answer> best = answer();
+        CHECK(best[0].ids.size() > 100);
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            CHECK(answer() == best);
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+
+    TEST_CASE("after long random motion a query tests hardly more than in a fresh tree, if rebuilt in the background") {
+        oracle::NearMisses random(6);
+        oracle::Crowd crowd = oracle::random_crowd(4000, 0.0, 6);
+        tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes);
+        tree::BoxTree neglected = *tree::BoxTree::build(crowd.boxes);
+        for (int frame = 0; frame < 3000; ++frame) {
+            for (int n = 0; n < 200; ++n) {
+                const tree::ItemId item = random.index(4000);
+                Obb& box = crowd.boxes[item];
+                box.center = glm::clamp(box.center + 1.0 * random.direction(), glm::dvec3(-40.0), glm::dvec3(40.0));
+                REQUIRE(tree.move(item, box).has_value());
+                REQUIRE(neglected.move(item, box).has_value());
+            }
+            tree.refit();
+            (void)tree.maintain(2000);
+        }
+        neglected.refit();
+        const tree::BoxTree fresh = *tree::BoxTree::build(crowd.boxes);
+        std::uint64_t cost = 0, fresh_cost = 0, neglected_cost = 0;
+        cull::VisibleSet visible;
+        const auto tested = [&](const tree::BoxTree& of, const cull::View& view) {
+            cull::cull(of, view, visible);
+            return visible.statistics().nodes_tested + visible.statistics().boxes_tested;
+        };
+        for (const cull::View& view : flight(40)) {
+            cost += tested(tree, view);
+            fresh_cost += tested(fresh, view);
+            neglected_cost += tested(neglected, view);
+        }
+        if (!cull::kCountStatistics) return;
+        CHECK(static_cast<double>(cost) <= 1.1 * static_cast<double>(fresh_cost));
+        CHECK(static_cast<double>(neglected_cost) > 1.5 * static_cast<double>(fresh_cost));
+    }
+}
