@@ -1,8 +1,10 @@
 // Culling beside Bullet's dynamic AABB tree and beside the plainest loop over AABBs. Compare within one run.
 #include <benchmark/benchmark.h>
 
+#include <crofton/core/thread_pool.hpp>
 #include <crofton/cull/box_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/cull/many_views.hpp>
 #include <crofton/tree/box_tree.hpp>
 #include <map>
 
@@ -86,6 +88,115 @@ void tree_build(benchmark::State& state) {
     report(state, 0);
 }
 BENCHMARK(tree_build)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+// How cost grows with the number of boxes; a fifth of them is visible.
+BENCHMARK_CAPTURE(tree_cull, growth, cull::Mode::exact, cull::Order::tree, 0.2)
+    ->RangeMultiplier(10)
+    ->Range(1000, 10000000);
+BENCHMARK_CAPTURE(flat_cull, growth, cull::Mode::exact, false)->RangeMultiplier(10)->Range(1000, 10000000);
+
+// Two threads beside one, the same query.
+void threads(benchmark::State& state) {
+    ThreadPool pool(static_cast<unsigned>(state.range(1)));
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::cull(set, boxes, view, verdicts, cull::Mode::exact, pool);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+}
+BENCHMARK(threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
+
+void tree_threads(benchmark::State& state) {
+    ThreadPool pool(static_cast<unsigned>(state.range(1)));
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree}, pool);
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+}
+BENCHMARK(tree_threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
+
+// 300 cameras on a way through the crowd, each seeing about 1 % of it.
+void flight(benchmark::State& state, cull::Mode mode) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const double side = std::cbrt(static_cast<double>(state.range(0)));
+    std::vector<cull::View> views;
+    for (int f = 0; f < 300; ++f) {
+        Camera camera;
+        const double angle = 0.02 * f;
+        camera.position = side * glm::dvec3(0.5 + 0.3 * std::cos(angle), 0.5 + 0.1 * std::sin(3.0 * angle),
+                                            0.5 + 0.3 * std::sin(angle));
+        camera.forward = {-std::sin(angle), 0.1, std::cos(angle)};
+        camera.aspect = 1.0;
+        camera.far = 0.31 * side;
+        views.push_back({*frustum_of(camera)});
+    }
+    cull::VisibleSet visible;
+    std::size_t frame = 0, seen = 0;
+    for (auto _ : state) {
+        cull::cull(tree, views[frame++ % views.size()], visible, {mode, cull::Order::tree});
+        seen += visible.size();
+    }
+    report(state, frame ? seen / frame : 0);
+}
+BENCHMARK_CAPTURE(flight, conservative, cull::Mode::conservative)->Arg(1000000);
+BENCHMARK_CAPTURE(flight, exact, cull::Mode::exact)->Arg(1000000);
+
+// A tenth of the boxes moves by a tenth of their spacing, chosen at random or one run of ids; then the tree is refitted
+// and asked.
+void move_and_cull(benchmark::State& state, bool scattered) {
+    std::vector<Obb> boxes = boxes_of(state.range(0));
+    tree::BoxTree tree = *tree::BoxTree::build(boxes);
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    std::mt19937 random(1);
+    std::vector<tree::ItemId> items;
+    for (std::size_t i = 0; i < boxes.size() / 10; ++i)
+        items.push_back(scattered ? static_cast<tree::ItemId>(random() % boxes.size()) : tree.slot_items()[i]);
+    std::vector<Obb> moved(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) moved[i] = boxes[items[i]];
+    cull::VisibleSet visible;
+    double step = 0.1;
+    for (auto _ : state) {
+        for (Obb& box : moved) box.center.x += step;
+        step = -step;
+        if (!tree.move(items, moved)) state.SkipWithError("move failed");
+        tree.refit();
+        cull::cull(tree, view, visible, {cull::Mode::conservative, cull::Order::tree});
+    }
+    report(state, visible.size());
+}
+BENCHMARK_CAPTURE(move_and_cull, scattered, true)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, neighbours, false)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+// Four cascades or cube faces: one pass beside one query each.
+void many_views(benchmark::State& state, bool one_pass) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    std::vector<cull::View> views;
+    for (int v = 0; v < 4; ++v) {
+        Camera camera;
+        camera.position = std::cbrt(static_cast<double>(state.range(0))) * glm::dvec3(0.5);
+        camera.forward = {v == 0 ? 1.0 : v == 1 ? -1.0 : 0.0, 0.05, v == 2 ? 1.0 : v == 3 ? -1.0 : 0.0};
+        camera.fov_y = 1.5708;
+        camera.aspect = 1.0;
+        views.push_back({*frustum_of(camera)});
+    }
+    cull::ManyVisible many;
+    cull::VisibleSet one;
+    for (auto _ : state) {
+        if (one_pass)
+            cull::cull(tree, views, many);
+        else
+            for (const cull::View& view : views) cull::cull(tree, view, one, {cull::Mode::exact, cull::Order::tree});
+    }
+}
+BENCHMARK_CAPTURE(many_views, one_pass, true)->Arg(100000);
+BENCHMARK_CAPTURE(many_views, one_by_one, false)->Arg(100000);
 
 // Axis-aligned boxes around ours, in float arrays, each against the six planes by its nearest corner: what a compiler
 // makes of the plainest loop. Writes one byte per box.
@@ -175,9 +286,25 @@ void bullet_cull(benchmark::State& state, double share) {
     }
     report(state, found.ids.size());
 }
+void bullet_move_and_cull(benchmark::State& state) {
+    std::vector<Obb> boxes = boxes_of(state.range(0));
+    BulletTree bullet(boxes);
+    std::mt19937 random(1);
+    std::vector<std::size_t> items;
+    for (std::size_t i = 0; i < boxes.size() / 10; ++i) items.push_back(random() % boxes.size());
+    double step = 0.1;
+    for (auto _ : state) {
+        for (const std::size_t i : items) {
+            boxes[i].center.x += step;
+            btDbvtVolume volume = BulletTree::volume_of(boxes[i]);
+            bullet.tree.update(bullet.leaves[i], volume);
+        }
+        step = -step;
+    }
+}
+BENCHMARK(bullet_move_and_cull)->Name("bullet_move")->Arg(1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bullet_cull, 20_percent, 0.2)->RangeMultiplier(10)->Range(10000, 1000000);
 BENCHMARK_CAPTURE(bullet_cull, 1_percent, 0.01)->Arg(1000000);
 #endif
 
 }  // namespace
-
