@@ -143,7 +143,7 @@ class ObjReader {
         return {};
     }
 
-    void start_part(std::string name, const glm::vec3& color) {
+    void start_part(std::string name, glm::vec3 color) {
         if (!parts.back().indices.empty()) parts.emplace_back();
         parts.back().name = std::move(name);
         parts.back().color = color;

@@ -42,9 +42,10 @@ HWY_INLINE VF plane_value(const KernelPlane& plane, VF x, VF y, VF z, float offs
         hn::MulAdd(hn::Set(d, plane.normal_f[1]), y, hn::MulAdd(hn::Set(d, plane.normal_f[2]), z, hn::Set(d, offset))));
 }
 
+// Layers and edges follow rows of half the vectors' length in a Leaf: they need not be aligned.
 HWY_INLINE MF shares_layer(const KernelView& view, const std::uint32_t* layers) {
     const DU du;
-    const VU common = hn::And(hn::Load(du, layers), hn::Set(du, view.layer_mask));
+    const VU common = hn::And(hn::LoadU(du, layers), hn::Set(du, view.layer_mask));
     return hn::RebindMask(DF(), hn::Ne(common, hn::Zero(du)));  // empty lanes have no layers
 }
 
@@ -107,7 +108,7 @@ struct LeafBoxes {
         // rounding.
         edge_slack = hn::Mul(unit, hn::Set(d, 6.0f));
         for (unsigned i = 0; i < 9; ++i)
-            edge[i] = hn::ConvertTo(d, hn::PromoteTo(DI(), hn::Load(D16(), leaf.edge[i] + l)));
+            edge[i] = hn::ConvertTo(d, hn::PromoteTo(DI(), hn::LoadU(D16(), leaf.edge[i] + l)));
         present = shares_layer(view, leaf.layers + l);
     }
 
