@@ -1,12 +1,17 @@
-// Files in memory, and errors that say which file.
+// Whole files, read and written, and errors that say which file.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <string>
+#include <string_view>
 
 namespace crofton::assets {
 
 // The whole of a file. Errors name the path and the system's reason.
 [[nodiscard]] Result<std::string> read_file(const std::string& path);
+
+// Writes `contents` to `path` through a temporary file beside it, renamed when complete, so that no partial file is
+// left; "-" writes to stdout. Errors name the path and the system's reason.
+[[nodiscard]] Result<void> write_file(const std::string& path, std::string_view contents);
 
 // The same error with "path: what: " before its message, `what` left out where empty.
 [[nodiscard]] tl::unexpected<Error> in_file(const std::string& path, const std::string& what, Error error);

@@ -11,7 +11,7 @@
 #include "commands.hpp"
 #include "fit_criterion.hpp"
 #include "fit_output.hpp"
-#include "fit_points.hpp"
+#include "mesh_file.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -61,7 +61,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
 Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& criterion, const Request& request) {
     FittedMesh mesh;
     mesh.file = file;
-    const auto points = read_obj_vertices(file);
+    const auto points = load_points(file);
     if (!points) return tl::unexpected(points.error());
     const std::span<const glm::dvec3> span(*points);
     const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
@@ -125,7 +125,7 @@ void add_fit_command(CLI::App& app, Outcome& outcome) {
     auto request = std::make_shared<Request>();
     CLI::App* command =
         app.add_subcommand("fit", "The best oriented box around each mesh, for a criterion of your choice");
-    command->add_option("files", request->files, "Wavefront OBJ files; only their vertices count")->required();
+    command->add_option("files", request->files, "OBJ, glTF, GLB or WAD files; only their vertices count")->required();
     command->add_option("--criterion", request->criterion, kCriterionSyntax)->capture_default_str();
     command
         ->add_option("--quality", request->quality,

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "fit_points.hpp"
+#include "mesh_file.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -34,7 +34,7 @@ std::vector<double> numbers(const std::string& text, std::size_t count) {
 }
 
 Result<measure::Criterion> partner(const std::string& path) {
-    const auto points = read_obj_vertices(path);
+    const auto points = load_points(path);
     if (!points) return tl::unexpected(points.error());
     const std::span<const glm::dvec3> span(*points);
     const auto hull = convex_hull(span);

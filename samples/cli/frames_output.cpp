@@ -8,16 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "../pipeline/png.hpp"
 #include "report.hpp"
-
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace crofton::cli {
 namespace {
@@ -111,13 +103,8 @@ Result<void> check_writable(const FramesOutput& output) {
 }
 
 Result<void> write_picture(const std::string& folder, std::uint32_t index, const render::Image& image) {
-    std::string bytes;
-    const auto append = [](void* context, void* data, int size) {
-        static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
-    };
-    stbi_write_png_to_func(append, &bytes, static_cast<int>(image.width), static_cast<int>(image.height), 4,
-                           image.rgba.data(), static_cast<int>(image.width * 4));
-    return write_file((std::filesystem::path(folder) / format("frame_%04u.png", index)).string(), bytes);
+    return write_file((std::filesystem::path(folder) / format("frame_%04u.png", index)).string(),
+                      pipeline::encode_png(image));
 }
 
 Result<void> write_results(const FramesOutput& output, const SceneFacts& scene, std::span<const FrameStatistics> frames,

@@ -1,16 +1,7 @@
 #include "html_report.hpp"
 
+#include "../pipeline/png.hpp"
 #include "html_chart.hpp"
-
-#define STBI_WRITE_NO_STDIO
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace crofton::cli {
 namespace {
@@ -56,16 +47,6 @@ std::string base64(const std::string& bytes) {
         for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
     }
     return text;
-}
-
-std::string encode_png(const render::Image& image) {
-    std::string bytes;
-    const auto append = [](void* user, void* data, int size) {
-        static_cast<std::string*>(user)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
-    };
-    stbi_write_png_to_func(append, &bytes, static_cast<int>(image.width), static_cast<int>(image.height), 4,
-                           image.rgba.data(), static_cast<int>(4 * image.width));
-    return bytes;
 }
 
 template <class Value>
@@ -143,8 +124,9 @@ std::string pictures(const std::vector<ReportPicture>& list) {
     std::string html = "<h2>Pictures</h2><div class=\"pictures\">\n";
     for (const ReportPicture& picture : list) {
         const std::string name = "frame " + std::to_string(picture.frame);
-        html += "<figure><img alt=\"" + name + "\" src=\"data:image/png;base64," + base64(encode_png(picture.image)) +
-                "\"><figcaption class=\"quiet\">" + name + "</figcaption></figure>\n";
+        html += "<figure><img alt=\"" + name + "\" src=\"data:image/png;base64," +
+                base64(pipeline::encode_png(picture.image)) + "\"><figcaption class=\"quiet\">" + name +
+                "</figcaption></figure>\n";
     }
     return html + "</div>\n";
 }

@@ -1,13 +1,17 @@
-// One mesh from a file, for questions about triangles.
+// One mesh, or one set of points, from any file that scenes come in.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <string>
+#include <vector>
 
 namespace crofton::cli {
 
-// .obj: vertices and faces in the order of the file, polygons cut into fans, everything else left out. Any other format
-// that scenes come in: all instances in one. Errors name the file, the line or item, and the reason.
+// .obj: vertices and faces in the order of the file, polygons cut into fans, everything else left out. Any other
+// format: all instances in one. Errors name the file, the line or item, and the reason.
 [[nodiscard]] Result<TriangleMesh> load_mesh(const std::string& path);
+
+// .obj: the `v` lines in order, used by faces or not. Any other format: the vertices of load_mesh(), in world space.
+[[nodiscard]] Result<std::vector<glm::dvec3>> load_points(const std::string& path);
 
 }  // namespace crofton::cli

@@ -1,7 +1,5 @@
 #include "radiosity_output.hpp"
 
-#include <stb/stb_image_write.h>
-
 #include <algorithm>
 #include <crofton/render/device.hpp>
 #include <crofton/render/rasterizer.hpp>
@@ -11,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "../pipeline/png.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -123,14 +122,7 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     if (auto drawn = rasterizer->draw(frame); !drawn) return tl::unexpected(drawn.error());
     render::Image image;
     if (auto read = rasterizer->read_pixels(image); !read) return read;
-    std::string bytes;
-    stbi_write_png_to_func(
-        [](void* context, void* data, int size) {
-            static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
-        },
-        &bytes, static_cast<int>(image.width), static_cast<int>(image.height), 4, image.rgba.data(),
-        static_cast<int>(4 * image.width));
-    return write_file(path, bytes);
+    return write_file(path, pipeline::encode_png(image));
 }
 
 }  // namespace crofton::cli

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "picture.hpp"
+#include "assets/file.hpp"
 #include "pipeline/camera_path.hpp"
 #include "session.hpp"
 
@@ -159,7 +159,7 @@ void Session::toggle_recording() {
     nlohmann::json cameras = nlohmann::json::array();
     for (const Camera& camera : recording_) cameras.push_back(pipeline::to_json(camera));
     const std::string file = options_.output_folder + "/camera_path.json";
-    const auto written = write_text(file, nlohmann::json{{"cameras", std::move(cameras)}}.dump(1) + "\n");
+    const auto written = assets::write_file(file, nlohmann::json{{"cameras", std::move(cameras)}}.dump(1) + "\n");
     if (!written) return report(written.error());
     replay_ = recording_;
 }
@@ -170,7 +170,7 @@ void Session::export_files() {
          {std::pair<std::string, std::string>{base + ".json", journal_.json().dump(1) + "\n"},
           {base + ".csv", journal_.csv()},
           {base + "_trace.json", journal_.chrome_trace()}})
-        if (auto written = write_text(file, text); !written) report(written.error());
+        if (auto written = assets::write_file(file, text); !written) report(written.error());
 }
 
 void Session::grant(const PanelWish& wish) {

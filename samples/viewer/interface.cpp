@@ -2,7 +2,7 @@
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>
 
-#include "picture.hpp"
+#include "assets/file.hpp"
 #include "session.hpp"
 
 namespace crofton::viewer {
@@ -50,7 +50,8 @@ Result<void> Session::finish() {
         document["validation_messages"].push_back(message);
     document["settings"] = to_json(settings_);
     document["pictures"] = pictures_;
-    return write_text(options_.json, document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    return assets::write_file(options_.json,
+                              document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace crofton::viewer

@@ -5,7 +5,6 @@
 #include <crofton/geometry/clip_space.hpp>
 #include <crofton/render/vertex.hpp>
 
-#include "picture.hpp"
 #include "pipeline/camera_path.hpp"
 #include "session.hpp"
 #include "shape_colors.hpp"

@@ -8,8 +8,9 @@
 #include <glm/geometric.hpp>
 #include <thread>
 
-#include "picture.hpp"
+#include "assets/file.hpp"
 #include "pipeline/camera_path.hpp"
+#include "pipeline/png.hpp"
 
 namespace crofton::viewer {
 namespace {
@@ -168,7 +169,7 @@ Result<void> Session::save_screenshots() {
     if (screenshots_.empty()) return {};
     if (auto read = rasterizer_->read_pixels(image_); !read) return read;
     for (const std::string& file : screenshots_) {
-        if (auto written = write_png(file, image_); !written) return written;
+        if (auto written = assets::write_file(file, pipeline::encode_png(image_)); !written) return written;
         nlohmann::json tints = nlohmann::json::array();
         for (const Painter::Count& tint : painter_.counts())
             tints.push_back({{"name", tint.name}, {"instances", tint.instances}});

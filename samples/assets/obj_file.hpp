@@ -1,0 +1,29 @@
+// Wavefront OBJ: v (with optional colours), f (any polygon, as a fan), o, g, usemtl with Kd of a material library.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace crofton::assets {
+
+struct ObjFile {
+    // The faces between one o, g or usemtl and the next.
+    struct Part {
+        std::string name;
+        glm::vec3 color{0.62f, 0.6f, 0.56f};  // linear
+        std::vector<std::uint32_t> indices;   // three a triangle, into positions
+    };
+    std::vector<glm::dvec3> positions;  // in the file's order, used by faces or not; finite
+    std::vector<glm::vec3> colors;      // one a position; negative red where the file gives none
+    std::vector<Part> parts;            // at least one; any may be without faces
+    std::vector<std::string> warnings;  // material libraries that could not be read
+};
+
+// Errors name the file, the line and the reason: numbers that are none, NaN or beyond ±`largest` (a float's range
+// unless the caller computes in doubles), faces of fewer than three corners or with vertices that are not there.
+[[nodiscard]] Result<ObjFile> read_obj(const std::string& path, double largest = std::numeric_limits<float>::max());
+
+}  // namespace crofton::assets
