@@ -115,7 +115,8 @@ void LmtSkeleton::kill(Index h) {
     }
 }
 
-// Living Delaunay edges cross only others; those walk through the Delaunay triangles and meet each other inside them.
+// Living Delaunay edges cross only others, which are walked through the Delaunay triangles. Almost all of them cross a
+// living Delaunay edge; only triangles with one that does not are searched for crossings inside.
 void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) {
     mesh_ = &mesh;
     graph_ = &graph;
@@ -125,54 +126,78 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) 
     crossed_.assign(count, 0);
     chord_head_.assign(mesh_->triangle_count(), kNone);
     chords_.clear();
+    const auto is_chord = [&](Index h) {
+        return h < g.twin[h] && alive(h) && (g.flags[h] & CandidateGraph::kDelaunay) == 0;
+    };
+    mark_living_delaunay();
     for (Index h = 0; h < count; ++h) {
-        if (h < g.twin[h] && alive(h) && (g.flags[h] & CandidateGraph::kDelaunay) == 0) walk(h);
+        if (is_chord(h)) walk(h, [&](Index, Index crossing) { cross_delaunay(h, crossing); });
     }
-    cross_within_triangles();
+    lonely_.clear();
+    for (Index h = 0; h < count; ++h) {
+        if (is_chord(h) && !crossed_[h]) lonely_.push_back(h);
+    }
+    for (const Index h : lonely_) walk(h, [&](Index triangle, Index) { chord_head_[triangle] = kEmptyList; });
+    for (Index h = 0; h < count && !lonely_.empty(); ++h) {
+        if (!is_chord(h)) continue;
+        walk(h, [&](Index triangle, Index) {
+            if (chord_head_[triangle] == kNone) return;
+            chords_.push_back({h, chord_head_[triangle]});
+            chord_head_[triangle] = static_cast<Index>(chords_.size() - 1);
+        });
+    }
+    for (const Index h : lonely_) {
+        walk(h, [&](Index triangle, Index) {
+            for (Index i = chord_head_[triangle]; i != kEmptyList && !crossed_[h]; i = chords_[i].next) {
+                const Index k = chords_[i].half_edge;
+                if (candidates_cross(points_, origin(h), g.destination[h], origin(k), g.destination[k]))
+                    crossed_[h] = 1;
+            }
+        });
+    }
     for (Index h = 0; h < count; ++h) {
         if (alive(h) && !crossed_[h] && !crossed_[g.twin[h]]) g.flags[h] |= CandidateGraph::kCertain;
     }
 }
 
-void LmtSkeleton::walk(Index h) {
+// graph_edge_[e] is the living half-edge of the graph that is the mesh's e. Both lists ascend counter-clockwise from
+// some start, so a search along the vertex's short list is enough.
+void LmtSkeleton::mark_living_delaunay() {
+    const auto& g = *graph_;
+    graph_edge_.assign(mesh_->origin.size(), kNone);
+    for (Index e = 0; e < mesh_->origin.size(); ++e) {
+        if ((e & 3u) == 3u) continue;
+        const Index u = mesh_->origin[e], w = mesh_->destination(e);
+        for (Index k = g.first[u]; k < g.first[u + 1]; ++k) {
+            if (g.destination[k] == w && (g.flags[k] & CandidateGraph::kDelaunay) != 0 && alive(k)) graph_edge_[e] = k;
+        }
+    }
+}
+
+void LmtSkeleton::cross_delaunay(Index h, Index crossing) {
+    if (crossing == kNone || graph_edge_[crossing] == kNone) return;
+    const Index k = graph_edge_[crossing];
+    crossed_[k] = crossed_[graph_->twin[k]] = crossed_[h] = 1;
+}
+
+// Calls visit(triangle, edge by which the chord leaves it or kNone) from end to end.
+template <class Visit>
+void LmtSkeleton::walk(Index h, Visit visit) const {
     const auto& g = *graph_;
     const Index p = origin(h), q = g.destination[h];
     const auto &from = mesh_->points[p], &to = mesh_->points[q];
-    const auto visit = [&](Index triangle) {
-        chords_.push_back({h, chord_head_[triangle]});
-        chord_head_[triangle] = static_cast<Index>(chords_.size() - 1);
-    };
     Index e = mesh_->vertex_edge[p];
     while (orientation(from, to, mesh_->points[mesh_->destination(e)]) >= 0 ||
            orientation(from, to, mesh_->points[mesh_->apex(e)]) <= 0) {
         e = mesh_->rotate(e);
     }
-    visit(e / 4);
     for (Index crossing = next(e);;) {
-        const Index u = mesh_->origin[crossing], w = mesh_->destination(crossing);
-        for (Index k = g.first[u]; k < g.first[u + 1]; ++k) {
-            if (g.destination[k] == w && alive(k)) crossed_[k] = crossed_[g.twin[k]] = crossed_[h] = 1;
-        }
+        visit(crossing / 4, crossing);
         e = mesh_->twin[crossing];
-        visit(e / 4);
         const Index apex = mesh_->apex(e);
-        if (apex == q) return;
+        if (apex == q) return visit(e / 4, kNone);
         // e runs from the left side to the right one.
         crossing = orientation(from, to, mesh_->points[apex]) > 0 ? next(e) : previous(e);
-    }
-}
-
-void LmtSkeleton::cross_within_triangles() {
-    const auto& g = *graph_;
-    for (const Index head : chord_head_) {
-        for (Index i = head; i != kNone; i = chords_[i].next) {
-            for (Index j = chords_[i].next; j != kNone; j = chords_[j].next) {
-                const Index h = chords_[i].half_edge, k = chords_[j].half_edge;
-                if ((!crossed_[h] || !crossed_[k]) &&
-                    candidates_cross(points_, origin(h), g.destination[h], origin(k), g.destination[k]))
-                    crossed_[h] = crossed_[k] = 1;
-            }
-        }
     }
 }
 

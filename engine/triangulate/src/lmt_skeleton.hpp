@@ -40,8 +40,10 @@ class LmtSkeleton {
     void start(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates);
     void kill(Index h);
     void run(Watch& watch);
-    void walk(Index h);
-    void cross_within_triangles();
+    void mark_living_delaunay();
+    void cross_delaunay(Index h, Index crossing);
+    template <class Visit>
+    void walk(Index h, Visit visit) const;
 
     std::span<const glm::dvec2> points_;
     const HalfEdgeMesh* mesh_ = nullptr;
@@ -49,7 +51,8 @@ class LmtSkeleton {
     Certificates* certificates_ = nullptr;
     Vector<Index> stack_, stamp_, left_, right_;
     Vector<std::uint8_t> queued_, crossed_;
-    Vector<Index> chord_head_;
+    static constexpr Index kEmptyList = kNone - 1;
+    Vector<Index> graph_edge_, lonely_, chord_head_;
     Vector<Chord> chords_;
     Index stamp_value_ = 0;
 };
