@@ -5,11 +5,14 @@
 #include <crofton/geometry/predicates.hpp>
 #include <limits>
 
+#include "local_minimality.hpp"
+
 namespace crofton::triangulate {
 namespace {
 
 constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
 
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 constexpr double kSearching = 0.9;  // the share of the work that is done when searching begins, as told to the caller
 
 double total_length(std::span<const glm::dvec2> points, std::span<const Segment> segments) {
@@ -148,11 +151,10 @@ void FaceSearch::choose(Level& level) {
 
 FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, Watch& watch) {
     Level& level = levels_[depth];
+    if (!support_.build(level.points, level.graph, kNoLimit, unhurried_, level.lists)) return Outcome::infeasible;
     find_faces(level.graph, kFixed, level.faces);
     choose(level);
     level.witness.assign(level.graph.half_edge_count(), kNone);
-    level.pieces = level.faces.component.size();
-    if (level.pieces > 2) skeleton_.prune(level.points, level.graph, level.certificates, watch);
     level.flags = level.graph.flags;
     bool found = false, proven = true;
     double best = 0.0;
@@ -203,12 +205,9 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Wa
     }
     fix(choice);
     fix(g.twin[choice]);
-    // With all pieces joined the interval programme is the quickest.
-    if (level.pieces > 2) {
-        level.working_certificates = level.certificates;
-        skeleton_.prune_after(dead_, level.points, g, level.working_certificates, watch);
-        mark_certain(level);
-    }
+    level.working_lists = level.lists;
+    if (!support_.update(dead_, level.points, g, unhurried_, level.working_lists)) return Outcome::infeasible;
+    mark_certain(level);
     level.triangles.clear();
     level.diagonals.clear();
     for (Index h = 0; h < g.half_edge_count(); ++h) {

@@ -2,7 +2,8 @@
 #pragma once
 #include "faces.hpp"
 #include "interval_program.hpp"
-#include "lmt_skeleton.hpp"
+#include "root_sums.hpp"
+#include "triangle_support.hpp"
 #include "watch.hpp"
 
 namespace crofton::triangulate {
@@ -30,11 +31,10 @@ class FaceSearch {
         CandidateGraph graph;
         Vector<glm::dvec2> points;
         Vector<Index> outer_half_edge, outer_vertex;  // the names one level up
-        LmtSkeleton::Certificates certificates, working_certificates;
+        TriangleSupport::Lists lists, working_lists;
         Vector<Index> witness;       // per half-edge: a candidate that crosses it, if known
         Vector<std::uint8_t> flags;  // of the current branching, before the choice
         Faces faces;
-        std::size_t pieces = 0;
         Vector<Index> choices;
         Vector<std::array<Index, 3>> triangles, best_triangles;
         Vector<Segment> diagonals, best_diagonals;
@@ -51,7 +51,7 @@ class FaceSearch {
     void raise(const Level& level, Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;
 
     Vector<Level> levels_;
-    LmtSkeleton skeleton_;
+    TriangleSupport support_;
     IntervalProgram program_;
     Options no_limits_;
     Watch unhurried_{no_limits_};

@@ -1,25 +1,21 @@
 #include "lmt_skeleton.hpp"
 
 #include <algorithm>
-#include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/predicates.hpp>
+
+#include "local_minimality.hpp"
 
 namespace crofton::triangulate {
 
-void LmtSkeleton::start(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates) {
+void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch) {
     points_ = points;
     graph_ = &graph;
-    certificates_ = &certificates;
-    // Both are clean between runs: nothing is queued, and stamps only grow.
-    if (queued_.size() < graph.half_edge_count()) queued_.resize(graph.half_edge_count(), 0);
-    if (stamp_.size() < graph.vertex_count()) stamp_.resize(graph.vertex_count(), 0);
-}
-
-void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates,
-                        Watch& watch) {
-    start(points, graph, certificates);
     const auto count = static_cast<Index>(graph.half_edge_count());
-    certificates.assign(count, {});
+    // Stamps only grow, so they stay clean between runs.
+    if (stamp_.size() < graph.vertex_count()) stamp_.resize(graph.vertex_count(), 0);
+    queued_.assign(count, 0);
+    stack_.clear();
+    certificates_.assign(count, {});
     for (Index h = 0; h < count; ++h) {
         if (h < graph.twin[h] && (graph.flags[h] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0) {
             stack_.push_back(h);
@@ -29,20 +25,13 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
     run(watch);
 }
 
-void LmtSkeleton::prune_after(std::span<const Index> dead, std::span<const glm::dvec2> points, CandidateGraph& graph,
-                              Certificates& certificates, Watch& watch) {
-    start(points, graph, certificates);
-    for (const Index h : dead) kill(h);
-    run(watch);
-}
-
 void LmtSkeleton::run(Watch& watch) {
     while (!stack_.empty()) {
         const Index h = stack_.back();
         stack_.pop_back();
         queued_[h] = 0;
-        // A stopped watch empties the stack.
-        if (alive(h) && !watch.stopped(0.6) && !certify(h)) kill(h);
+        if (watch.stopped(0.5)) return;
+        if (alive(h) && !certify(h)) kill(h);
     }
 }
 
@@ -66,35 +55,13 @@ bool LmtSkeleton::certify(Index h) {
     }
     for (const Index left : left_) {
         for (const Index right : right_) {
-            if (locally_minimal(p, q, left, right)) {
-                (*certificates_)[h] = {left, right};
+            if (locally_minimal(points_, p, q, left, right)) {
+                certificates_[h] = {left, right};
                 return true;
             }
         }
     }
     return false;
-}
-
-bool LmtSkeleton::locally_minimal(Index p, Index q, Index left, Index right) const {
-    const auto& points = points_;
-    const bool convex = orientation(points[right], points[left], points[p]) > 0 &&
-                        orientation(points[right], points[left], points[q]) < 0;
-    return !convex || !shorter(left, right, p, q);
-}
-
-bool LmtSkeleton::shorter(Index a, Index b, Index p, Index q) const {
-    const auto& points = points_;
-    const glm::dvec2 d = points[a] - points[b], e = points[p] - points[q];
-    const double dd = d.x * d.x + d.y * d.y, ee = e.x * e.x + e.y * e.y;
-    // Each squared length errs by less than 4 units of 2^-53.
-    if (std::fabs(dd - ee) > (dd + ee) * 0x1p-50) return dd < ee;
-    const auto square = [&](Index i, Index j) {
-        const auto x = exact_difference(points[i].x, points[j].x), y = exact_difference(points[i].y, points[j].y);
-        return x * x + y * y;
-    };
-    const int sign = (square(a, b) - square(p, q)).sign();
-    if (sign != 0) return sign < 0;
-    return std::pair(std::min(a, b), std::max(a, b)) < std::pair(std::min(p, q), std::max(p, q));
 }
 
 // Removes an edge and puts those on the stack whose certificate used it.
@@ -105,7 +72,7 @@ void LmtSkeleton::kill(Index h) {
         const Index p = origin(k), q = g.destination[k];
         for (Index e = g.first[p]; e < g.first[p + 1]; ++e) {
             const Index canonical = std::min(e, g.twin[e]);
-            const Certificate& c = (*certificates_)[canonical];
+            const Certificate& c = certificates_[canonical];
             if ((c.left == q || c.right == q) && !queued_[canonical] && alive(canonical) &&
                 (g.flags[canonical] & CandidateGraph::kConstraint) == 0) {
                 queued_[canonical] = 1;
@@ -199,12 +166,6 @@ void LmtSkeleton::walk(Index h, Visit visit) const {
         // e runs from the left side to the right one.
         crossing = orientation(from, to, mesh_->points[apex]) > 0 ? next(e) : previous(e);
     }
-}
-
-bool candidates_cross(std::span<const glm::dvec2> points, Index a, Index b, Index c, Index d) {
-    if (a == c || a == d || b == c || b == d) return false;
-    return orientation(points[a], points[b], points[c]) * orientation(points[a], points[b], points[d]) < 0 &&
-           orientation(points[c], points[d], points[a]) * orientation(points[c], points[d], points[b]) < 0;
 }
 
 }  // namespace crofton::triangulate

@@ -11,33 +11,25 @@ namespace crofton::triangulate {
 // that is the unique minimum for lengths with an infinitesimal added by rank, and a minimum for the lengths themselves.
 class LmtSkeleton {
   public:
-    // Common neighbours on both sides that make an edge locally minimal; kept at the smaller half-edge.
-    struct Certificate {
-        Index left = kNone, right = kNone;
-    };
-    using Certificates = Vector<Certificate>;
-
-    // Sets kDead on edges without a certificate until none is left. Stops early, which is right but prunes less, with
-    // the watch.
-    void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates, Watch& watch);
-    // The same after some half-edges (one of each edge) have died, given the certificates from before.
-    void prune_after(std::span<const Index> dead, std::span<const glm::dvec2> points, CandidateGraph& graph,
-                     Certificates& certificates, Watch& watch);
+    // Sets kDead on edges without a certificate, that is, common neighbours on both sides that make them locally minimal,
+    // until none is left. Stops early, which is right but prunes less, with the watch.
+    void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch);
     // Sets kCertain on living edges that no living edge crosses. `mesh` is the constrained Delaunay triangulation that
     // the candidates of this graph, just pruned, come from.
     void mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph);
 
   private:
+    // Kept at the smaller half-edge.
+    struct Certificate {
+        Index left = kNone, right = kNone;
+    };
     struct Chord {
         Index half_edge, next;
     };
 
     [[nodiscard]] bool alive(Index h) const { return (graph_->flags[h] & CandidateGraph::kDead) == 0; }
     [[nodiscard]] bool certify(Index h);
-    [[nodiscard]] bool locally_minimal(Index p, Index q, Index left, Index right) const;
-    [[nodiscard]] bool shorter(Index a, Index b, Index p, Index q) const;
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
-    void start(std::span<const glm::dvec2> points, CandidateGraph& graph, Certificates& certificates);
     void kill(Index h);
     void run(Watch& watch);
     void mark_living_delaunay();
@@ -48,7 +40,7 @@ class LmtSkeleton {
     std::span<const glm::dvec2> points_;
     const HalfEdgeMesh* mesh_ = nullptr;
     CandidateGraph* graph_ = nullptr;
-    Certificates* certificates_ = nullptr;
+    Vector<Certificate> certificates_;
     Vector<Index> stack_, stamp_, left_, right_;
     Vector<std::uint8_t> queued_, crossed_;
     static constexpr Index kEmptyList = kNone - 1;
@@ -56,8 +48,5 @@ class LmtSkeleton {
     Vector<Chord> chords_;
     Index stamp_value_ = 0;
 };
-
-// Whether two candidates cross. They contain no vertex inside, so unless they share an end all sides are strict.
-[[nodiscard]] bool candidates_cross(std::span<const glm::dvec2> points, Index a, Index b, Index c, Index d);
 
 }  // namespace crofton::triangulate

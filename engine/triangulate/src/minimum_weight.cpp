@@ -10,6 +10,7 @@ namespace {
 constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
 // Candidates, their twins, certificates, walks and programme slots, with the growth of their arrays.
 constexpr std::size_t kBytesPerHalfEdge = 96;
+constexpr std::size_t kBytesPerTriangleSide = 2 * sizeof(TriangleSupport::Lists::Entry);
 
 double length(std::span<const glm::dvec2> points, const Segment& s) {
     const glm::dvec2 d = points[s.from] - points[s.to];
@@ -31,7 +32,9 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     find_faces(graph_, CandidateGraph::kConstraint, faces_);
     const auto in_pieces = [](Index size) { return size > 1; };
     if (std::any_of(faces_.component_size.begin(), faces_.component_size.end(), in_pieces)) {
-        skeleton_.prune(points, graph_, certificates_, watch);
+        skeleton_.prune(points, graph_, watch);
+        if (!support_.build(points, graph_, options.bytes / kBytesPerTriangleSide, watch, lists_))
+            return fail(ErrorCode::internal, kNoItem, "a side of the polygon has no triangle");
         skeleton_.mark_certain(domain.mesh(), graph_);
         find_faces(graph_, kFixed, faces_);
     }

@@ -6,6 +6,7 @@
 #include "faces.hpp"
 #include "interval_program.hpp"
 #include "lmt_skeleton.hpp"
+#include "triangle_support.hpp"
 
 namespace crofton::triangulate {
 
@@ -27,7 +28,8 @@ class MinimumWeight {
     CandidateGraph graph_;
     CandidateFinder finder_;
     LmtSkeleton skeleton_;
-    LmtSkeleton::Certificates certificates_;
+    TriangleSupport support_;
+    TriangleSupport::Lists lists_;
     Faces faces_;
     IntervalProgram program_;
     FaceSearch search_;
