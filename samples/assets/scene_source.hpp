@@ -25,6 +25,8 @@ struct SceneSource {
     std::vector<scene::InstanceId> movers;  // ascending: the instances that animate() moves; may be empty
     std::vector<std::string> warnings;      // what a file held that was left out, and why
     std::function<void(scene::Scene&, std::uint32_t)> motion;
+    // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
+    std::vector<std::vector<glm::vec3>> emission = {};
 
     // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
     // caller's.

@@ -3,12 +3,12 @@
 #include <chrono>
 #include <cmath>
 #include <crofton/radiosity/line_source.hpp>
+#include <crofton/radiosity/patches.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "assets/scene_source.hpp"
+#include "assets/flat_scene.hpp"
 #include "commands.hpp"
-#include "radiosity_output.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -62,7 +62,7 @@ Result<void> run(const Options& options) {
     auto source = assets::load_scene(options.scene, load);
     if (!source) return tl::unexpected(source.error());
     source->scene.update();
-    const TriangleMesh mesh = flattened(source->scene);
+    const TriangleMesh mesh = assets::flat_scene(*source).mesh;
     const Vector<radiosity::Material> materials(mesh.triangle_count());
     const auto patches = radiosity::make_patches(mesh, materials);
     if (!patches) return tl::unexpected(patches.error());

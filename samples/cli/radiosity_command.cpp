@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "assets/scene_source.hpp"
+#include "assets/flat_scene.hpp"
 #include "commands.hpp"
 #include "pipeline/camera_path.hpp"
 #include "progress_bar.hpp"
@@ -48,8 +48,8 @@ Result<radiosity::SolverOptions> solver_options(const Options& options) {
     return result;
 }
 
-Result<radiosity::Patches> patches_of(const Options& options, const scene::Scene& scene) {
-    TriangleMesh mesh = flattened(scene);
+Result<radiosity::Patches> patches_of(const Options& options, const assets::SceneSource& source) {
+    TriangleMesh mesh = assets::flat_scene(source).mesh;
     if (options.edge > 0.0) {
         auto refined = radiosity::refine(mesh, options.edge);
         if (!refined) return tl::unexpected(refined.error());
@@ -101,7 +101,7 @@ Result<void> run(const Options& options) {
     auto source = assets::load_scene(options.scene, load);
     if (!source) return tl::unexpected(source.error());
     source->scene.update();
-    const auto patches = patches_of(options, source->scene);
+    const auto patches = patches_of(options, *source);
     if (!patches) return tl::unexpected(patches.error());
     auto solver = radiosity::Solver::create(*patches, *parameters);
     if (!solver) return tl::unexpected(solver.error());

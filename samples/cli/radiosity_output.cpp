@@ -14,29 +14,6 @@
 
 namespace crofton::cli {
 
-TriangleMesh flattened(const scene::Scene& scene) {
-    TriangleMesh all;
-    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
-        if (scene.is_removed(i)) continue;
-        const TriangleMesh& mesh = scene.mesh(scene.mesh_of(i));
-        const scene::Transform& world = scene.world(scene.node_of(i));
-        const bool mirrored = glm::dot(world.linear[0], glm::cross(world.linear[1], world.linear[2])) < 0.0;
-        for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
-            glm::vec3 p[3];
-            for (std::size_t k = 0; k < 3; ++k)
-                p[k] = glm::vec3(world * glm::dvec3(mesh.positions[mesh.indices[t + (mirrored ? 2 - k : k)]]));
-            if (!(glm::length(glm::cross(glm::dvec3(p[1] - p[0]), glm::dvec3(p[2] - p[0]))) > 1e-12)) continue;
-            for (std::size_t k = 0; k < 3; ++k) {
-                all.indices.push_back(static_cast<std::uint32_t>(all.positions.size()));
-                all.positions.push_back(p[k]);
-                all.colors.push_back(mesh.colors.empty() ? glm::vec3(0.6f)
-                                                         : mesh.colors[mesh.indices[t + (mirrored ? 2 - k : k)]]);
-            }
-        }
-    }
-    return all;
-}
-
 TriangleMesh baked(const radiosity::Patches& patches, std::span<const glm::vec3> radiosity, double exposure) {
     const auto corners = radiosity::corner_values(patches, radiosity);
     TriangleMesh mesh;

@@ -6,9 +6,6 @@
 
 namespace crofton::cli {
 
-// All instances' triangles in world coordinates; those of no area are left out. The scene has been updated.
-[[nodiscard]] TriangleMesh flattened(const scene::Scene& scene);
-
 // Three vertices a triangle, coloured by radiosity · exposure, 1 and above as 1.
 [[nodiscard]] TriangleMesh baked(const radiosity::Patches& patches, std::span<const glm::vec3> radiosity,
                                  double exposure);

@@ -1,0 +1,97 @@
+#include "radiosity_peers.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#if defined(CROFTON_HAVE_EMBREE)
+#include <embree3/rtcore.h>
+
+namespace crofton::bench {
+
+struct EmbreeScene::Data {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    float start = 0.0f;
+};
+
+bool EmbreeScene::available() {
+    return true;
+}
+
+EmbreeScene::EmbreeScene(const TriangleMesh& mesh) : data_(std::make_unique<Data>()) {
+    data_->device = rtcNewDevice("threads=1");
+    data_->scene = rtcNewScene(data_->device);
+    rtcSetSceneBuildQuality(data_->scene, RTC_BUILD_QUALITY_HIGH);
+    const RTCGeometry geometry = rtcNewGeometry(data_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                              mesh.positions.size());
+    std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * 12);
+    void* indices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangle_count());
+    std::memcpy(indices, mesh.indices.data(), mesh.indices.size() * 4);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(data_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(data_->scene);
+    RTCBounds bounds;
+    rtcGetSceneBounds(data_->scene, &bounds);
+    data_->start = 1e-6f * std::max({bounds.upper_x - bounds.lower_x, bounds.upper_y - bounds.lower_y,
+                                     bounds.upper_z - bounds.lower_z});
+}
+
+EmbreeScene::~EmbreeScene() {
+    rtcReleaseScene(data_->scene);
+    rtcReleaseDevice(data_->device);
+}
+
+void EmbreeScene::first_hits(std::span<const radiosity::Ray> rays, std::span<radiosity::Hit> result) const {
+    for (std::size_t begin = 0; begin < rays.size(); begin += 16) {
+        const std::size_t count = std::min<std::size_t>(16, rays.size() - begin);
+        alignas(64) int valid[16];
+        RTCRayHit16 packet;
+        for (std::size_t i = 0; i < 16; ++i) {
+            valid[i] = i < count ? -1 : 0;
+            const measure::Line& line = rays[begin + std::min(i, count - 1)].line;
+            packet.ray.org_x[i] = static_cast<float>(line.point.x);
+            packet.ray.org_y[i] = static_cast<float>(line.point.y);
+            packet.ray.org_z[i] = static_cast<float>(line.point.z);
+            packet.ray.dir_x[i] = static_cast<float>(line.direction.x);
+            packet.ray.dir_y[i] = static_cast<float>(line.direction.y);
+            packet.ray.dir_z[i] = static_cast<float>(line.direction.z);
+            packet.ray.tnear[i] = data_->start;
+            packet.ray.tfar[i] = 1e30f;
+            packet.ray.time[i] = 0.0f;
+            packet.ray.mask[i] = ~0u;
+            packet.ray.flags[i] = 0;
+            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect16(valid, data_->scene, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) {
+            radiosity::Hit& hit = result[begin + i];
+            hit = {};
+            if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+            const glm::vec3 normal(packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]);
+            hit = {packet.ray.tfar[i], packet.hit.primID[i],
+                   glm::dot(normal, glm::vec3(rays[begin + i].line.direction)) < 0.0f};
+        }
+    }
+}
+
+}  // namespace crofton::bench
+#else
+namespace crofton::bench {
+
+struct EmbreeScene::Data {};
+bool EmbreeScene::available() {
+    return false;
+}
+EmbreeScene::EmbreeScene(const TriangleMesh&) {}
+EmbreeScene::~EmbreeScene() = default;
+void EmbreeScene::first_hits(std::span<const radiosity::Ray>, std::span<radiosity::Hit>) const {}
+
+}  // namespace crofton::bench
+#endif

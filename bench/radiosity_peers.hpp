@@ -1,0 +1,25 @@
+// Rays through Embree, where it is installed.
+#pragma once
+#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <memory>
+#include <span>
+
+namespace crofton::bench {
+
+class EmbreeScene {
+  public:
+    static bool available();
+    explicit EmbreeScene(const TriangleMesh& mesh);
+    ~EmbreeScene();
+
+    // As LineTracer::first_hits, sixteen rays at a time, one thread; `skip` is replaced by a start 10^-6 of the scene's
+    // size away.
+    void first_hits(std::span<const radiosity::Ray> rays, std::span<radiosity::Hit> result) const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace crofton::bench

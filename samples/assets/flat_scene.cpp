@@ -1,0 +1,33 @@
+#include "assets/flat_scene.hpp"
+
+#include <glm/geometric.hpp>
+
+namespace crofton::assets {
+
+FlatScene flat_scene(const SceneSource& source) {
+    const scene::Scene& scene = source.scene;
+    FlatScene all;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
+        if (scene.is_removed(i)) continue;
+        const scene::MeshId id = scene.mesh_of(i);
+        const TriangleMesh& mesh = scene.mesh(id);
+        const bool glows = id < source.emission.size() && !source.emission[id].empty();
+        const scene::Transform& world = scene.world(scene.node_of(i));
+        const bool mirrored = glm::dot(world.linear[0], glm::cross(world.linear[1], world.linear[2])) < 0.0;
+        for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+            const auto vertex = [&](std::size_t k) { return mesh.indices[t + (mirrored ? 2 - k : k)]; };
+            glm::vec3 p[3];
+            for (std::size_t k = 0; k < 3; ++k) p[k] = glm::vec3(world * glm::dvec3(mesh.positions[vertex(k)]));
+            if (!(glm::length(glm::cross(glm::dvec3(p[1] - p[0]), glm::dvec3(p[2] - p[0]))) > 1e-12)) continue;
+            for (std::size_t k = 0; k < 3; ++k) {
+                all.mesh.indices.push_back(static_cast<std::uint32_t>(all.mesh.positions.size()));
+                all.mesh.positions.push_back(p[k]);
+                all.mesh.colors.push_back(mesh.colors.empty() ? glm::vec3(0.6f) : mesh.colors[vertex(k)]);
+            }
+            all.emission.push_back(glows ? source.emission[id][t / 3] : glm::vec3(0.0f));
+        }
+    }
+    return all;
+}
+
+}  // namespace crofton::assets

@@ -1,0 +1,132 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/radiosity/bundle_tracer.hpp>
+#include <crofton/radiosity/form_factors.hpp>
+#include <limits>
+#include <random>
+
+#include "shapes.hpp"
+
+using namespace crofton;
+using namespace crofton::radiosity;
+
+namespace {
+
+TriangleMesh soup(int triangles, float size, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    TriangleMesh mesh;
+    for (int t = 0; t < triangles; ++t) {
+        const glm::vec3 center = vector();
+        for (int k = 0; k < 3; ++k) {
+            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.positions.push_back(center + size * vector());
+        }
+    }
+    return mesh;
+}
+
+struct Difference {
+    std::size_t crossings = 0, wrong = 0;
+};
+
+// Crossing by crossing against the hierarchy's answer for the same lines.
+Difference compare(const TriangleMesh& mesh, double cell_area, const std::array<double, 2>& u, std::uint64_t seed) {
+    const auto by_bundle = BundleTracer::build(mesh);
+    const auto by_line = LineTracer::build(mesh);
+    REQUIRE(by_bundle.has_value());
+    const Bundle bundle = make_bundle(by_bundle->bounds(), cell_area, u, seed);
+    std::vector<measure::Line> lines;
+    for (std::size_t i = 0; i < bundle.cells(); ++i) lines.push_back(bundle.line(i));
+    BundleTracer::Scratch scratch;
+    LineHits ours, theirs;
+    by_bundle->all_hits(bundle, scratch, ours);
+    by_line->all_hits(lines, theirs);
+    REQUIRE(ours.ends.size() == theirs.ends.size());
+    Difference result;
+    std::uint32_t a = 0, b = 0;
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        const std::span<const Hit> x(ours.hits.data() + a, ours.ends[l] - a),
+            y(theirs.hits.data() + b, theirs.ends[l] - b);
+        result.crossings += y.size();
+        if (x.size() != y.size()) {
+            ++result.wrong;
+        } else {
+            for (std::size_t h = 0; h < x.size(); ++h)
+                if (x[h].triangle != y[h].triangle || x[h].front != y[h].front || std::abs(x[h].t - y[h].t) > 1e-3f)
+                    ++result.wrong;
+        }
+        a = ours.ends[l];
+        b = theirs.ends[l];
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_SUITE("radiosity/bundle_tracer") {
+    TEST_CASE("invalid and empty meshes are refused") {
+        CHECK(BundleTracer::build({}).error().code == ErrorCode::empty);
+        TriangleMesh mesh = soup(3, 1.0f, 1);
+        mesh.indices[4] = 99;
+        CHECK(BundleTracer::build(mesh).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("a bundle's crossings are those of its lines one by one, for triangles below and far above a cell") {
+        std::uint64_t seed = 1;
+        std::size_t crossings = 0;
+        for (const float size : {0.01f, 0.1f, 1.5f})
+            for (const double cell_area : {0.0004, 0.01, 0.5})
+                for (const std::array<double, 2> u :
+                     {std::array{0.3, 0.7}, std::array{0.0, 0.0}, std::array{0.5, 0.25}, std::array{0.9, 0.1}}) {
+                    const Difference d = compare(soup(1500, size, 7), cell_area, u, ++seed);
+                    crossings += d.crossings;
+                    CHECK(d.wrong <= 2 + d.crossings / 20'000);
+                }
+        CHECK(crossings > 100'000);
+    }
+
+    TEST_CASE("every line of a closed room enters and leaves it") {
+        shapes::Shape room;
+        room.room({0, 0, 0}, {3, 2, 1}, 0);
+        const auto tracer = BundleTracer::build(room.mesh);
+        BundleTracer::Scratch scratch;
+        LineHits hits;
+        std::size_t odd = 0, lines = 0;
+        for (int k = 0; k < 20; ++k) {
+            const Bundle bundle = make_bundle(tracer->bounds(), 0.001, {0.05 * k + 0.01, 0.618 * k - std::floor(0.618 * k)},
+                                              static_cast<std::uint64_t>(k));
+            tracer->all_hits(bundle, scratch, hits);
+            std::uint32_t begin = 0;
+            for (const std::uint32_t end : hits.ends) {
+                if (end > begin) ++lines;
+                if (end != begin && end != begin + 2) ++odd;
+                begin = end;
+            }
+        }
+        CHECK(lines > 20'000);
+        CHECK(odd <= 2);
+    }
+
+    TEST_CASE("a surface expects S/(2 cell) crossings per bundle, and its box the lines promised") {
+        shapes::Shape flat;
+        flat.parallelogram({0, 0, 0}, {10, 0, 0}, {0, 10, 0}, 0);
+        flat.parallelogram({3, 3, 0.5f}, {0, 2, 0}, {2, 0, 0}, 1);
+        const auto tracer = BundleTracer::build(flat.mesh);
+        BundleTracer::Scratch scratch;
+        LineHits hits;
+        const measure::UnitPoints points(5, measure::Sequence::quasi_random);
+        double crossings = 0.0, lines = 0.0;
+        constexpr int kBundles = 1024;
+        for (std::uint64_t k = 0; k < kBundles; ++k) {
+            const Bundle bundle = make_bundle(tracer->bounds(), 0.25, points.at<2>(k), k);
+            tracer->all_hits(bundle, scratch, hits);
+            crossings += static_cast<double>(hits.hits.size());
+            lines += bundle.lines;
+        }
+        CHECK(crossings / kBundles == doctest::Approx(104.0 / (2.0 * 0.25)).epsilon(0.01));
+        CHECK(lines / kBundles == doctest::Approx(0.25 * (200.0 + 4 * 10 * 0.5) / 0.25).epsilon(0.01));
+    }
+}
