@@ -85,32 +85,21 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
     return result;
 }
 
-// Lanes of a leaf, `l` on: what the filter knows of their boxes.
-struct LeafTest {
+// Lanes of boxes: what the filter knows of them.
+struct BoxTest {
     MF inside;      // certainly inside
     MF straddling;  // certainly straddling (and, in the exact mode, meeting the frustum)
+    MF unsettled;   // certainly not rejected by a plane, certainly not inside; whether they meet the frustum is open
     MF undecided;   // the rest of those that are not certainly outside
+    MF improper;    // rejected by no plane, and certainly outside all the same
 };
 
-// The boxes of a leaf in floats.
-struct LeafBoxes {
-    VF x, y, z, unit, edge_slack;
-    VF edge[9];
+// Boxes in floats: from a leaf, or a list's records.
+struct BoxLanes {
+    VF x, y, z, unit;
+    VF edge_slack;
+    VF edge[9];  // in units
     MF present;
-
-    HWY_INLINE LeafBoxes(const KernelView& view, const tree::Leaf& leaf, std::size_t l) {
-        const DF d;
-        x = hn::Load(d, leaf.x + l);
-        y = hn::Load(d, leaf.y + l);
-        z = hn::Load(d, leaf.z + l);
-        unit = hn::Mul(hn::Load(d, leaf.radius + l), hn::Set(d, tree::kEdgeUnit));
-        // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums'
-        // rounding.
-        edge_slack = hn::Mul(unit, hn::Set(d, 6.0f));
-        for (unsigned i = 0; i < 9; ++i)
-            edge[i] = hn::ConvertTo(d, hn::PromoteTo(DI(), hn::LoadU(D16(), leaf.edge[i] + l)));
-        present = shares_layer(view, leaf.layers + l);
-    }
 
     // normal · edge k, in units.
     HWY_INLINE VF slope(const KernelPlane& plane, unsigned k) const {
@@ -124,28 +113,83 @@ struct LeafBoxes {
         const VF sum = hn::Add(hn::Add(hn::Abs(slope(plane, 0)), hn::Abs(slope(plane, 1))), hn::Abs(slope(plane, 2)));
         return hn::Mul(sum, unit);
     }
+
+    HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(edge_slack, hn::Set(DF(), local.slack)); }
+
+    // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
+    HWY_INLINE void set_radius(VF radius) {
+        unit = hn::Mul(radius, hn::Set(DF(), tree::kEdgeUnit));
+        edge_slack = hn::Mul(unit, hn::Set(DF(), 6.0f));
+    }
 };
 
-// Most leaves that cross a frustum cross one plane; then a box that straddles it meets the frustum for certain.
-HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, const KernelPlane& plane,
-                              LocalPlane local) {
+HWY_INLINE BoxLanes lanes_of(const KernelView& view, const tree::Leaf& leaf, std::size_t l) {
     const DF d;
-    const LeafBoxes boxes(view, leaf, l);
+    BoxLanes boxes;
+    boxes.x = hn::Load(d, leaf.x + l);
+    boxes.y = hn::Load(d, leaf.y + l);
+    boxes.z = hn::Load(d, leaf.z + l);
+    boxes.set_radius(hn::Load(d, leaf.radius + l));
+    for (unsigned i = 0; i < 9; ++i)
+        boxes.edge[i] = hn::ConvertTo(d, hn::PromoteTo(DI(), hn::LoadU(D16(), leaf.edge[i] + l)));
+    boxes.present = shares_layer(view, leaf.layers + l);
+    return boxes;
+}
+
+// Most leaves that cross a frustum cross one plane; then a box that straddles it meets the frustum for certain.
+template <class Lanes>
+HWY_INLINE BoxTest test_boxes(const Lanes& boxes, const KernelPlane& plane, LocalPlane local) {
+    const DF d;
     const VF middle = plane_value(plane, boxes.x, boxes.y, boxes.z, local.offset);
-    const VF reach = boxes.reach(plane);
-    const VF slack = hn::Add(boxes.edge_slack, hn::Set(d, local.slack));
+    const VF reach = boxes.reach(plane), slack = boxes.slack(local);
     const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
-    LeafTest result;
+    BoxTest result;
     result.inside = hn::And(boxes.present, hn::Ge(bottom, slack));
     result.straddling = hn::And(boxes.present, hn::And(hn::Ge(top, slack), hn::Lt(bottom, hn::Neg(slack))));
+    result.unsettled = result.improper = hn::FirstN(d, 0);
     const MF maybe = hn::And(boxes.present, hn::Ge(top, hn::Neg(slack)));
     result.undecided = hn::AndNot(hn::Or(result.inside, result.straddling), maybe);
     return result;
 }
 
+template <class Lanes>
+HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
+                              bool exact) {
+    const DF d;
+    const MF none = hn::FirstN(d, 0);
+    MF maybe = boxes.present, passes = boxes.present, center = boxes.present;
+    MF crosses = none, open_once = none, open_twice = none;
+    for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+        const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+        const VF middle = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
+        const VF reach = boxes.reach(view.planes[i]), slack = boxes.slack(local[i]);
+        const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
+        const MF open = hn::Lt(bottom, slack);
+        maybe = hn::And(maybe, hn::Ge(top, hn::Neg(slack)));
+        passes = hn::And(passes, hn::Ge(top, slack));
+        center = hn::And(center, hn::Ge(middle, slack));
+        crosses = hn::Or(crosses, hn::Lt(bottom, hn::Neg(slack)));
+        open_twice = hn::Or(open_twice, hn::And(open_once, open));
+        open_once = hn::Or(open_once, open);
+    }
+    BoxTest result;
+    result.improper = none;
+    result.inside = hn::AndNot(open_once, boxes.present);
+    const MF crossing = hn::And(passes, crosses);
+    // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
+    const MF meets = exact ? hn::Or(hn::Not(open_twice), center) : boxes.present;
+    result.straddling = hn::And(crossing, meets);
+    result.unsettled = hn::AndNot(meets, crossing);
+    result.undecided = hn::AndNot(hn::Or(result.inside, crossing), maybe);
+    return result;
+}
+
 // Those of the wanted lanes whose boxes certainly have a point inside all planes: from the centre towards the plane
-// that it is farthest outside of, to a little beyond it, and from there once more towards the plane that is worst then.
-HWY_INLINE MF has_witness(const KernelView& view, const LeafBoxes& boxes, std::uint32_t planes, const LocalPlane* local,
+// that it is farthest outside of, to a little beyond it, and on towards the plane that is worst then; coordinates that
+// have come to a face stay there while the way leads across it. Of the boxes that cross an edge of the frustum about
+// one in fifty needs more than six steps.
+template <class Lanes>
+HWY_INLINE MF has_witness(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
                           MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -164,7 +208,7 @@ HWY_INLINE MF has_witness(const KernelView& view, const LeafBoxes& boxes, std::u
                 hn::MulAdd(
                     b, t[1],
                     hn::MulAdd(c, t[2], plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset))));
-            inside = hn::And(inside, hn::Ge(value, hn::Add(boxes.edge_slack, hn::Set(d, local[i].slack))));
+            inside = hn::And(inside, hn::Ge(value, boxes.slack(local[i])));
             const MF worse = hn::Lt(value, worst);
             worst = hn::IfThenElse(worse, value, worst);
             slope[0] = hn::IfThenElse(worse, a, slope[0]);
@@ -172,51 +216,84 @@ HWY_INLINE MF has_witness(const KernelView& view, const LeafBoxes& boxes, std::u
             slope[2] = hn::IfThenElse(worse, c, slope[2]);
         }
         found = hn::Or(found, inside);
-        if (round == 2 || hn::AllFalse(d, hn::AndNot(found, wanted))) break;
+        if (round == 6 || hn::AllFalse(d, hn::AndNot(found, wanted))) break;
         // Along the gradient, clamped to the box; any t in [−1, 1]³ is as good a guess as another.
-        const VF square = hn::MulAdd(slope[0], slope[0], hn::MulAdd(slope[1], slope[1], hn::Mul(slope[2], slope[2])));
         const VF reach = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
-        const VF step =
-            hn::Div(hn::MulAdd(reach, hn::Set(d, 0.05f), hn::Neg(worst)), hn::Max(square, hn::Set(d, 1e-30f)));
-        for (VF& coordinate : t)
-            coordinate = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[&coordinate - t], coordinate)));
+        VF square = hn::Set(d, 1e-30f);
+        for (unsigned k = 0; k < 3; ++k) {
+            const MF blocked = hn::Ge(hn::Mul(t[k], slope[k]), hn::Abs(slope[k]));
+            slope[k] = hn::IfThenZeroElse(blocked, slope[k]);
+            square = hn::MulAdd(slope[k], slope[k], square);
+        }
+        const VF step = hn::Div(hn::MulAdd(reach, hn::Set(d, 0.05f), hn::Neg(worst)), square);
+        for (unsigned k = 0; k < 3; ++k) t[k] = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[k], t[k])));
     }
-    return found;
+    return hn::And(found, wanted);
 }
 
-HWY_INLINE LeafTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, std::uint32_t planes,
-                              const LocalPlane* local, bool exact) {
+// Those of the wanted lanes whose boxes a separating axis across an edge of the frustum and an edge of the box
+// certainly keeps apart. In the box's coordinates t, plane i is f_i(t) = base_i + Σ slope_ik t_k ≥ 0, and a sum with
+// weights ≥ 0 of two of them that is negative on the whole cube is a proof. The best weights let one slope vanish. For
+// any weights the sum's largest value is at most what the floats of f_i, f_j give plus Σ weight · slack; slack bounds
+// the error of f_i anywhere on the cube. Evaluating it here rounds at most eight times 2^-24 of Σ weight · (|base| +
+// reach): 2^-19; what underflow eats is far below 1e-30, since weights are at most 1.7 · 2^15.
+template <class Lanes>
+HWY_INLINE MF is_separated(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
+                           MF wanted) {
     const DF d;
-    const LeafBoxes boxes(view, leaf, l);
-    const MF none = hn::FirstN(d, 0);
-    MF maybe = boxes.present, passes = boxes.present, center = boxes.present;
-    MF crosses = none, open_once = none, open_twice = none;
+    struct Row {
+        VF base, margin, slope[3];
+    };
+    Row rows[KernelView::kMaxPlanes];
+    unsigned count = 0;
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-        const VF middle = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
-        const VF reach = boxes.reach(view.planes[i]);
-        const VF slack = hn::Add(boxes.edge_slack, hn::Set(d, local[i].slack));
-        const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
-        const MF open = hn::Lt(bottom, slack);
-        maybe = hn::And(maybe, hn::Ge(top, hn::Neg(slack)));
-        passes = hn::And(passes, hn::Ge(top, slack));
-        center = hn::And(center, hn::Ge(middle, slack));
-        crosses = hn::Or(crosses, hn::Lt(bottom, hn::Neg(slack)));
-        open_twice = hn::Or(open_twice, hn::And(open_once, open));
-        open_once = hn::Or(open_once, open);
+        Row& row = rows[count++];
+        row.base = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
+        VF reach = hn::Abs(row.base);
+        for (unsigned k = 0; k < 3; ++k) {
+            row.slope[k] = boxes.slope(view.planes[i], k);
+            reach = hn::MulAdd(hn::Abs(row.slope[k]), boxes.unit, reach);
+        }
+        row.margin = hn::MulAdd(reach, hn::Set(d, 0x1p-19f), boxes.slack(local[i]));
     }
-    LeafTest result;
-    result.inside = hn::AndNot(open_once, boxes.present);
-    result.straddling = hn::And(passes, crosses);
-    // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside, or
-    // another of its points.
-    if (exact) {
-        MF meets = hn::Or(hn::Not(open_twice), center);
-        const MF wanted = hn::AndNot(meets, result.straddling);
-        if (!hn::AllFalse(d, wanted)) meets = hn::Or(meets, has_witness(view, boxes, planes, local, wanted));
-        result.straddling = hn::And(result.straddling, meets);
-    }
-    result.undecided = hn::AndNot(hn::Or(result.inside, result.straddling), maybe);
+    MF separated = hn::FirstN(d, 0);
+    for (unsigned i = 0; i < count; ++i)
+        for (unsigned j = i + 1; j < count; ++j) {
+            for (unsigned k = 0; k < 3; ++k) {
+                const unsigned p = (k + 1) % 3, q = (k + 2) % 3;
+                const Row &a = rows[i], &b = rows[j];
+                const VF weight_a = hn::Abs(b.slope[k]), weight_b = hn::Abs(a.slope[k]);
+                const VF along_p = hn::MulAdd(weight_a, a.slope[p], hn::Mul(weight_b, b.slope[p])),
+                         along_q = hn::MulAdd(weight_a, a.slope[q], hn::Mul(weight_b, b.slope[q]));
+                const VF reach = hn::Mul(hn::Add(hn::Abs(along_p), hn::Abs(along_q)), boxes.unit);
+                const VF bound = hn::MulAdd(weight_a, hn::Add(a.base, a.margin),
+                                            hn::MulAdd(weight_b, hn::Add(b.base, b.margin), reach));
+                const MF opposed = hn::Lt(hn::Mul(a.slope[k], b.slope[k]), hn::Zero(d));
+                separated = hn::Or(separated, hn::And(opposed, hn::Lt(bound, hn::Set(d, -1e-30f))));
+            }
+            if (hn::AllFalse(d, hn::AndNot(separated, wanted))) return wanted;
+        }
+    return hn::And(separated, wanted);
+}
+
+// The second stage in vectors: what it cannot settle either is undecided.
+template <class Lanes>
+HWY_INLINE void settle(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
+                       BoxTest& test) {
+    const DF d;
+    const MF meets = has_witness(view, boxes, planes, local, test.unsettled);
+    test.straddling = hn::Or(test.straddling, meets);
+    test.unsettled = hn::AndNot(meets, test.unsettled);
+    if (!hn::AllFalse(d, test.unsettled)) test.improper = is_separated(view, boxes, planes, local, test.unsettled);
+    test.undecided = hn::Or(test.undecided, hn::AndNot(test.improper, test.unsettled));
+}
+
+HWY_INLINE BoxTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, std::uint32_t planes,
+                             const LocalPlane* local, bool exact) {
+    const BoxLanes boxes = lanes_of(view, leaf, l);
+    BoxTest result = test_boxes(view, boxes, planes, local, exact);
+    if (!hn::AllFalse(DF(), result.unsettled)) settle(view, boxes, planes, local, result);
     return result;
 }
 

@@ -95,7 +95,7 @@ class ManyWalk {
             LocalPlane local[KernelView::kMaxPlanes];
             for_each_bit(entry.planes[v], [&](unsigned i) { local[i] = local_plane(view.planes[i], at); });
             for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-                const LeafTest test = test_leaf(view, leaf, l, entry.planes[v], local, in_.exact);
+                const BoxTest test = test_leaf(view, leaf, l, entry.planes[v], local, in_.exact);
                 const auto seen = hn::RebindMask(du, hn::Or(test.inside, test.straddling));
                 hn::Store(hn::Or(hn::Load(du, masks + l), hn::IfThenElseZero(seen, hn::Set(du, 1u << v))), du,
                           masks + l);

@@ -186,7 +186,7 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.boxes_tested += output.boxes_tested;
     statistics.accepted_whole += output.accepted_whole;
     statistics.exact_tests += output.undecided_count;
-    statistics.improper += output.undecided_count - kept;
+    statistics.improper += output.improper + output.undecided_count - kept;
 }
 
 void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items) {

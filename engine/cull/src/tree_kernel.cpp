@@ -124,11 +124,12 @@ class Walk {
         count += hn::CountTrue(du, bits);
     }
 
-    HWY_INLINE void emit(std::uint32_t id, std::size_t l, const LeafTest& test) {
+    HWY_INLINE void emit(std::uint32_t id, std::size_t l, const BoxTest& test) {
         const DU du;
         const VU items = hn::Load(du, in_.slot_items + id * tree::kWidth + l);
         append(items, test.inside, out_.inside, out_.inside_count);
         append(items, test.straddling, out_.straddling, out_.straddling_count);
+        if (kCountStatistics) out_.improper += hn::CountTrue(DF(), test.improper);
         if (HWY_UNLIKELY(!hn::AllFalse(DF(), test.undecided)))
             append(hn::Iota(du, static_cast<std::uint32_t>(id * tree::kWidth + l)), test.undecided, out_.undecided,
                    out_.undecided_count);
@@ -145,7 +146,7 @@ class Walk {
             const KernelPlane& plane = view.planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(planes)];
             const LocalPlane local = local_plane(plane, at);
             for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-                emit(id, l, test_leaf(view, leaf, l, plane, local));
+                emit(id, l, test_boxes(lanes_of(view, leaf, l), plane, local));
             return;
         }
         LocalPlane local[KernelView::kMaxPlanes];

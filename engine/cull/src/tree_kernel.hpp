@@ -24,6 +24,7 @@ struct TreeKernelOutput {
     std::uint64_t* stack;      // child << 32 | planes still to test
     std::size_t inside_count, straddling_count, undecided_count;
     std::uint64_t nodes_tested, boxes_tested, accepted_whole;
+    std::uint64_t improper;  // outside, found by a separating axis
 };
 
 // The children of `entry` that are not certainly outside, in the order of their lanes, as entries; returns how many (≤
