@@ -6,6 +6,9 @@
 #include "local_minimality.hpp"
 
 namespace crofton::triangulate {
+namespace {
+constexpr std::uint8_t kSettled = CandidateGraph::kConstraint | CandidateGraph::kDead;
+}
 
 void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch) {
     points_ = points;
@@ -16,37 +19,44 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
     queued_.assign(count, 0);
     stack_.clear();
     certificates_.assign(count, {});
-    for (Index h = 0; h < count; ++h) {
-        if (h < graph.twin[h] && (graph.flags[h] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0) {
-            stack_.push_back(h);
-            queued_[h] = 1;
+    for (Index p = 0; p < graph.vertex_count(); ++p) {
+        stamp(p);
+        for (Index h = graph.first[p]; h < graph.first[p + 1]; ++h) {
+            if (graph.destination[h] < p || (graph.flags[h] & kSettled) != 0) continue;
+            if (watch.stopped(0.5)) return;
+            if (certify(h)) continue;
+            kill(h);
+            stamp_[graph.destination[h]] = 0;
         }
     }
-    run(watch);
-}
-
-void LmtSkeleton::run(Watch& watch) {
     while (!stack_.empty()) {
         const Index h = stack_.back();
         stack_.pop_back();
         queued_[h] = 0;
         if (watch.stopped(0.5)) return;
-        if (alive(h) && !certify(h)) kill(h);
+        if (!alive(h)) continue;
+        stamp(origin(h));
+        if (!certify(h)) kill(h);
     }
 }
 
-// Looks for a common neighbour on each side that makes h locally minimal.
+// Marks the living neighbours of p.
+void LmtSkeleton::stamp(Index p) {
+    const auto& g = *graph_;
+    ++stamp_value_;
+    for (Index k = g.first[p]; k < g.first[p + 1]; ++k) {
+        if (alive(k)) stamp_[g.destination[k]] = stamp_value_;
+    }
+}
+
+// Looks for a common neighbour on each side that makes h, whose origin's neighbours are stamped, locally minimal.
 bool LmtSkeleton::certify(Index h) {
     const auto& g = *graph_;
     const Index p = origin(h), q = g.destination[h];
-    ++stamp_value_;
-    for (Index k = g.first[q]; k < g.first[q + 1]; ++k) {
-        if (alive(k)) stamp_[g.destination[k]] = stamp_value_;
-    }
     left_.clear();
     right_.clear();
     const auto &a = points_[p], &b = points_[q];
-    for (Index k = g.first[p]; k < g.first[p + 1]; ++k) {
+    for (Index k = g.first[q]; k < g.first[q + 1]; ++k) {
         const Index s = g.destination[k];
         if (stamp_[s] != stamp_value_ || !alive(k)) continue;
         const int side = orientation(a, b, points_[s]);

@@ -28,10 +28,10 @@ class LmtSkeleton {
     };
 
     [[nodiscard]] bool alive(Index h) const { return (graph_->flags[h] & CandidateGraph::kDead) == 0; }
+    void stamp(Index p);
     [[nodiscard]] bool certify(Index h);
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
     void kill(Index h);
-    void run(Watch& watch);
     void mark_living_delaunay();
     void cross_delaunay(Index h, Index crossing);
     template <class Visit>
