@@ -29,14 +29,20 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
             stamp_[graph.destination[h]] = 0;
         }
     }
+    // In rounds, as an edge often loses several certificates in one.
     while (!stack_.empty()) {
-        const Index h = stack_.back();
-        stack_.pop_back();
-        queued_[h] = 0;
-        if (watch.stopped(0.5)) return;
-        if (!alive(h)) continue;
-        stamp(origin(h));
-        if (!certify(h)) kill(h);
+        std::swap(stack_, round_);
+        stack_.clear();
+        Index stamped = kNone;
+        for (const Index h : round_) {
+            queued_[h] = 0;
+            if (watch.stopped(0.5)) return;
+            if (!alive(h)) continue;
+            if (origin(h) != stamped) stamp(stamped = origin(h));
+            if (certify(h)) continue;
+            kill(h);
+            stamp_[graph.destination[h]] = 0;
+        }
     }
 }
 
@@ -49,24 +55,32 @@ void LmtSkeleton::stamp(Index p) {
     }
 }
 
-// Looks for a common neighbour on each side that makes h, whose origin's neighbours are stamped, locally minimal.
+// Looks for a common neighbour on each side that makes h, whose origin's neighbours are stamped, locally minimal. Which
+// neighbours are common and on which side they lie is hard to predict: every one is written, and few are kept.
 bool LmtSkeleton::certify(Index h) {
     const auto& g = *graph_;
     const Index p = origin(h), q = g.destination[h];
-    left_.clear();
-    right_.clear();
-    const auto &a = points_[p], &b = points_[q];
+    const std::size_t degree = g.first[q + 1] - g.first[q];
+    if (common_.size() < degree) {
+        for (auto* list : {&common_, &left_, &right_}) list->resize(degree);
+    }
+    std::size_t common = 0, lefts = 0, rights = 0;
     for (Index k = g.first[q]; k < g.first[q + 1]; ++k) {
         const Index s = g.destination[k];
-        if (stamp_[s] != stamp_value_ || !alive(k)) continue;
-        const int side = orientation(a, b, points_[s]);
-        if (side > 0) left_.push_back(s);
-        if (side < 0) right_.push_back(s);
+        common_[common] = s;
+        common += (stamp_[s] == stamp_value_) & alive(k);
     }
-    for (const Index left : left_) {
-        for (const Index right : right_) {
-            if (locally_minimal(points_, p, q, left, right)) {
-                certificates_[h] = {left, right};
+    const auto &a = points_[p], &b = points_[q];
+    for (std::size_t i = 0; i < common; ++i) {
+        const int side = orientation(a, b, points_[common_[i]]);
+        left_[lefts] = right_[rights] = common_[i];
+        lefts += side > 0;
+        rights += side < 0;
+    }
+    for (std::size_t l = 0; l < lefts; ++l) {
+        for (std::size_t r = 0; r < rights; ++r) {
+            if (locally_minimal(points_, p, q, left_[l], right_[r])) {
+                certificates_[h] = {left_[l], right_[r]};
                 return true;
             }
         }

@@ -41,7 +41,7 @@ class LmtSkeleton {
     const HalfEdgeMesh* mesh_ = nullptr;
     CandidateGraph* graph_ = nullptr;
     Vector<Certificate> certificates_;
-    Vector<Index> stack_, stamp_, left_, right_;
+    Vector<Index> stack_, round_, stamp_, common_, left_, right_;
     Vector<std::uint8_t> queued_, crossed_;
     static constexpr Index kEmptyList = kNone - 1;
     Vector<Index> graph_edge_, lonely_, chord_head_;
