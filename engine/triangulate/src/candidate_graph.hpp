@@ -16,6 +16,7 @@ struct CandidateGraph {
         kDelaunay = 4,     // an edge of the constrained Delaunay triangulation
         kCertain = 8,      // proven to be in a minimum-weight triangulation
         kDead = 16,        // proven to be in none
+        kLeftSettled = 32,  // a face that needs no further pruning lies on its left or around it
     };
     Vector<Index> first;
     Vector<Index> destination;

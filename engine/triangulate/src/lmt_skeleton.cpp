@@ -7,6 +7,7 @@
 
 namespace crofton::triangulate {
 namespace {
+constexpr std::uint8_t kPlaced = CandidateGraph::kCertain | CandidateGraph::kLeftSettled;
 constexpr std::uint8_t kSettled = CandidateGraph::kConstraint | CandidateGraph::kDead;
 }
 
@@ -118,7 +119,7 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) 
     chord_head_.assign(mesh_->triangle_count(), kNone);
     chords_.clear();
     const auto is_chord = [&](Index h) {
-        return h < g.twin[h] && alive(h) && (g.flags[h] & CandidateGraph::kDelaunay) == 0;
+        return h < g.twin[h] && alive(h) && (g.flags[h] & (CandidateGraph::kDelaunay | kPlaced)) == 0;
     };
     mark_living_delaunay();
     for (Index h = 0; h < count; ++h) {
@@ -147,7 +148,7 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) 
         });
     }
     for (Index h = 0; h < count; ++h) {
-        if (alive(h) && !crossed_[h] && !crossed_[g.twin[h]]) g.flags[h] |= CandidateGraph::kCertain;
+        if (alive(h) && (g.flags[h] & kPlaced) == 0 && !crossed_[h] && !crossed_[g.twin[h]]) g.flags[h] |= CandidateGraph::kCertain;
     }
 }
 

@@ -30,9 +30,13 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     }
     const auto points = domain.mesh().points;
     find_faces(graph_, CandidateGraph::kConstraint, faces_);
-    const auto in_pieces = [](Index size) { return size > 1; };
-    if (std::any_of(faces_.component_size.begin(), faces_.component_size.end(), in_pieces)) {
+    if (has_pieces()) {
         skeleton_.prune(points, graph_, watch);
+        skeleton_.mark_certain(domain.mesh(), graph_);
+        find_faces(graph_, kFixed, faces_);
+    }
+    if (has_pieces()) {
+        settle_simple_faces();
         if (!support_.build(points, graph_, options.bytes / kBytesPerTriangleSide, watch, lists_))
             return fail(ErrorCode::internal, kNoItem, "a side of the polygon has no triangle");
         skeleton_.mark_certain(domain.mesh(), graph_);
@@ -53,6 +57,20 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     }
     finish(domain, complete, result);
     return complete;
+}
+
+bool MinimumWeight::has_pieces() const {
+    const auto in_pieces = [](Index size) { return size > 1; };
+    return std::any_of(faces_.component_size.begin(), faces_.component_size.end(), in_pieces);
+}
+
+// The interval programme needs no help with them.
+void MinimumWeight::settle_simple_faces() {
+    for (Index h = 0; h < graph_.half_edge_count(); ++h) {
+        const Index walk = faces_.walk_of[h];
+        if (walk != kNone && faces_.component_size[faces_.component[walk]] == 1)
+            graph_.flags[h] |= CandidateGraph::kLeftSettled;
+    }
 }
 
 FaceSearch::Outcome MinimumWeight::solve_face(std::span<const glm::dvec2> points, Index name, Watch& watch,

@@ -20,6 +20,8 @@ class MinimumWeight {
     }
 
   private:
+    [[nodiscard]] bool has_pieces() const;
+    void settle_simple_faces();
     [[nodiscard]] FaceSearch::Outcome solve_face(std::span<const glm::dvec2> points, Index name, Watch& watch,
                                                  double fraction);
     [[nodiscard]] double face_lower_bound(std::span<const glm::dvec2> points, Index name);

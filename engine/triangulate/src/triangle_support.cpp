@@ -42,7 +42,7 @@ bool TriangleSupport::list_triangles(std::size_t limit, Watch& watch) {
         if (watch.stopped(0.5) || lists_->entries.size() > limit) return false;
         for (Index h = g.first[p]; h < g.first[p + 1]; ++h) leaving_[g.destination[h]] = alive(h) ? h : kNone;
         for (Index h = g.first[p]; h < g.first[p + 1]; ++h) {
-            if (g.destination[h] < p || !alive(h)) continue;
+            if (g.destination[h] < p || !alive(h) || (!left_inside(h) && !left_inside(g.twin[h]))) continue;
             collect_sides(h);
             if (!fixed(h)) support_sides(h);
             store(h, left_);
@@ -92,16 +92,18 @@ void TriangleSupport::scan(Index h, Admit admit) const {
     const Index p = origin(h), q = g.destination[h], begin = g.first[p], end = g.first[p + 1];
     const auto &at = points_[p], &to = points_[q];
     Index closest = kNone;
-    Index k = h;
-    do {
+    for (Index k = h;;) {
+        // What lies between two neighbours is on the left of the right one; a dead one may end in another face.
+        if (kTurn > 0 && !left_inside(k)) return;
         k = kTurn > 0 ? (k + 1 == end ? begin : k + 1) : (k == begin ? end : k) - 1;
+        if (kTurn < 0 && !left_inside(k)) return;
         const Index s = g.destination[k];
         if (k == h || kTurn * orientation(at, to, points_[s]) <= 0) return;
         if (closest == kNone || kTurn * orientation(to, points_[s], points_[closest]) <= 0) {
             closest = s;
             admit(k);
         }
-    } while (left_inside(kTurn > 0 ? k : g.twin[k]));
+    }
 }
 
 // Drops the triangles on either side of h that none on the other side supports.

@@ -25,8 +25,8 @@ class TriangleSupport {
         Vector<Entry> entries;
     };
 
-    // Lists the triangles of living edges and sets kDead on edges that no living triangle has. Returns false if some
-    // constraint has no triangle left: then there is no triangulation. Stops early with the watch or at `limit` entries,
+    // Lists the triangles of living edges, but for those in faces that are outside or settled, and sets kDead on edges
+    // that no living triangle has. Returns false if some certain edge has no triangle left: then there is no triangulation. Stops early with the watch or at `limit` entries,
     // which is right but prunes less; `lists` are then of no use.
     [[nodiscard]] bool build(std::span<const glm::dvec2> points, CandidateGraph& graph, std::size_t limit, Watch& watch,
                              Lists& lists);
@@ -54,8 +54,12 @@ class TriangleSupport {
     void remove_entry(Index h, Index next);
     void bury(Index h);
     [[nodiscard]] bool alive(Index h) const { return (graph_->flags[h] & CandidateGraph::kDead) == 0; }
-    [[nodiscard]] bool fixed(Index h) const { return (graph_->flags[h] & CandidateGraph::kConstraint) != 0; }
-    [[nodiscard]] bool left_inside(Index h) const { return (graph_->flags[h] & CandidateGraph::kLeftOutside) == 0; }
+    [[nodiscard]] bool fixed(Index h) const {
+        return (graph_->flags[h] & (CandidateGraph::kConstraint | CandidateGraph::kCertain)) != 0;
+    }
+    [[nodiscard]] bool left_inside(Index h) const {
+        return (graph_->flags[h] & (CandidateGraph::kLeftOutside | CandidateGraph::kLeftSettled)) == 0;
+    }
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
     [[nodiscard]] Index edge_between(Index from, Index to) const;
     [[nodiscard]] std::span<Lists::Entry> entries(Index h) const {
