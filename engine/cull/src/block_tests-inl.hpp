@@ -42,11 +42,14 @@ HWY_INLINE VF plane_value(const KernelPlane& plane, VF x, VF y, VF z, float offs
         hn::MulAdd(hn::Set(d, plane.normal_f[1]), y, hn::MulAdd(hn::Set(d, plane.normal_f[2]), z, hn::Set(d, offset))));
 }
 
-// Layers and edges follow rows of half the vectors' length in a Leaf: they need not be aligned.
-HWY_INLINE MF shares_layer(const KernelView& view, const std::uint32_t* layers) {
+// Lanes below `count` that share a layer with the view; lane by lane only if not all of them do.
+HWY_INLINE MF present(const KernelView& view, std::uint32_t every, const std::uint32_t* layers, std::uint32_t count,
+                      std::size_t l) {
     const DU du;
-    const VU common = hn::And(hn::LoadU(du, layers), hn::Set(du, view.layer_mask));
-    return hn::RebindMask(DF(), hn::Ne(common, hn::Zero(du)));  // empty lanes have no layers
+    const MF used = hn::FirstN(DF(), count > l ? count - l : 0);
+    if (HWY_LIKELY(every & view.layer_mask)) return used;
+    const VU common = hn::And(hn::Load(du, layers + l), hn::Set(du, view.layer_mask));
+    return hn::And(used, hn::RebindMask(DF(), hn::Ne(common, hn::Zero(du))));
 }
 
 HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, std::uint32_t planes) {
@@ -60,12 +63,18 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
         local[i] = local_plane(view.planes[i], at);
     }
+    const VF half_unit = hn::Set(d, 0.5f * node.unit);
     for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
-        const VF x = hn::Load(d, node.center[0] + l), y = hn::Load(d, node.center[1] + l),
-                 z = hn::Load(d, node.center[2] + l);
-        const VF hx = hn::Load(d, node.half[0] + l), hy = hn::Load(d, node.half[1] + l),
-                 hz = hn::Load(d, node.half[2] + l);
-        MF alive = shares_layer(view, node.layers_any + l);
+        // Sums of two shorts times half a power of two: exact.
+        VF center[3], half[3];
+        for (unsigned j = 0; j < 3; ++j) {
+            const auto low = hn::PromoteTo(DI(), hn::Load(D16(), node.low[j] + l)),
+                       high = hn::PromoteTo(DI(), hn::Load(D16(), node.high[j] + l));
+            center[j] = hn::Mul(hn::ConvertTo(d, hn::Add(low, high)), half_unit);
+            half[j] = hn::Mul(hn::ConvertTo(d, hn::Sub(high, low)), half_unit);
+        }
+        const VF x = center[0], y = center[1], z = center[2], hx = half[0], hy = half[1], hz = half[2];
+        MF alive = present(view, node.layers_every, node.layers_any, node.count, l);
         VU straddled = hn::Set(du, planes);
         for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
@@ -115,24 +124,21 @@ struct BoxLanes {
     }
 
     HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(edge_slack, hn::Set(DF(), local.slack)); }
-
-    // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
-    HWY_INLINE void set_radius(VF radius) {
-        unit = hn::Mul(radius, hn::Set(DF(), tree::kEdgeUnit));
-        edge_slack = hn::Mul(unit, hn::Set(DF(), 6.0f));
-    }
 };
 
 HWY_INLINE BoxLanes lanes_of(const KernelView& view, const tree::Leaf& leaf, std::size_t l) {
     const DF d;
     BoxLanes boxes;
-    boxes.x = hn::Load(d, leaf.x + l);
-    boxes.y = hn::Load(d, leaf.y + l);
-    boxes.z = hn::Load(d, leaf.z + l);
-    boxes.set_radius(hn::Load(d, leaf.radius + l));
-    for (unsigned i = 0; i < 9; ++i)
-        boxes.edge[i] = hn::ConvertTo(d, hn::PromoteTo(DI(), hn::LoadU(D16(), leaf.edge[i] + l)));
-    boxes.present = shares_layer(view, leaf.layers + l);
+    const VF position_unit = hn::Set(d, leaf.position_unit);
+    const auto load = [&](const std::int16_t* row)
+                          HWY_ATTR { return hn::ConvertTo(d, hn::PromoteTo(DI(), hn::Load(D16(), row + l))); };
+    boxes.x = hn::Mul(load(leaf.position[0]), position_unit);
+    boxes.y = hn::Mul(load(leaf.position[1]), position_unit);
+    boxes.z = hn::Mul(load(leaf.position[2]), position_unit);
+    boxes.unit = hn::Set(d, leaf.edge_unit);
+    boxes.edge_slack = hn::Set(d, leaf.slack);
+    for (unsigned i = 0; i < 9; ++i) boxes.edge[i] = load(leaf.edge[i]);
+    boxes.present = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
     return boxes;
 }
 

@@ -41,7 +41,7 @@ class Walk {
         std::size_t count = 0;
         for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
             const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
-            const bool whole = test.planes[lane] == 0 && (node.layers_all[lane] & in_.view->layer_mask);
+            const bool whole = test.planes[lane] == 0 && all_seen(node, lane);
             entries[count++] = std::uint64_t{node.child[lane]} << 32 | (whole ? kWhole : test.planes[lane]);
         }
         return count;
@@ -61,12 +61,17 @@ class Walk {
     }
 
   private:
+    // Is everything below in a layer that the view sees?
+    HWY_INLINE bool all_seen(const tree::Node& node, unsigned lane) const {
+        return ((node.layers_every & in_.view->layer_mask) != 0) || (node.layers_all[lane] & in_.view->layer_mask) != 0;
+    }
+
     HWY_INLINE std::size_t visit_node(std::uint32_t id, std::uint32_t planes, std::size_t stack_size) {
         const tree::Node& node = in_.nodes[id];
         const NodeTest test = test_node(*in_.view, node, planes & ~kWhole);
         if (kCountStatistics) out_.nodes_tested += node.count;
         const auto entry_planes = [&](unsigned lane) {
-            const bool whole = test.planes[lane] == 0 && (node.layers_all[lane] & in_.view->layer_mask);
+            const bool whole = test.planes[lane] == 0 && all_seen(node, lane);
             return whole ? kWhole : test.planes[lane];
         };
         if (node.only_leaves) {
@@ -102,6 +107,14 @@ class Walk {
         out_.inside_count += in_.leaf_counts[leaf];
     }
 
+    HWY_INLINE void copy_items(tree::LeafRange range) {
+        const DU du;
+        const tree::ItemId* from = in_.slot_items + std::size_t{range.first} * tree::kWidth;
+        tree::ItemId* to = out_.inside + out_.inside_count;
+        for (std::size_t i = 0; i < range.items; i += hn::Lanes(du)) hn::StoreU(hn::Load(du, from + i), du, to + i);
+        out_.inside_count += range.items;
+    }
+
     // False for a node whose leaves are not consecutive.
     HWY_INLINE bool accept_whole(std::uint32_t child) {
         const std::size_t before = out_.inside_count;
@@ -110,7 +123,10 @@ class Walk {
         } else {
             const tree::LeafRange range = in_.ranges[child];
             if (range.count == 0) return false;
-            for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) copy_leaf(leaf);
+            if (range.items > 0)
+                copy_items(range);
+            else
+                for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) copy_leaf(leaf);
         }
         if (kCountStatistics) out_.accepted_whole += out_.inside_count - before;
         return true;

@@ -14,14 +14,31 @@ float float_at_least(double value) {
     return static_cast<double>(rounded) < value ? std::nextafter(rounded, kInfinity) : rounded;
 }
 
-// To the nearest integer of at most 32767, for |value| ≤ 32769: adding 1.5 · 2^52 leaves no fraction.
-std::int16_t rounded(double value) {
-    const double integer = (value + 0x1.8p52) - 0x1.8p52;
-    return static_cast<std::int16_t>(std::min(32767.0, std::max(-32767.0, integer)));
+constexpr double kMost = 32767.0;
+constexpr int kLeastExponent = -100;  // units stay normal numbers, and so do their products
+
+// The nearest integer for |value| < 2^51: adding 1.5 · 2^52 leaves no fraction.
+double nearest(double value) {
+    return (value + 0x1.8p52) - 0x1.8p52;
 }
 
-float norm1(float x, float y, float z) {
-    return float_at_least((std::fabs(double{x}) + std::fabs(double{y}) + std::fabs(double{z})) * (1.0 + 0x1p-50));
+// The least power of two that is at least value / 2^bits, in float.
+float unit_for(double value, int bits) {
+    int exponent = 0;
+    std::frexp(value, &exponent);  // value < 2^exponent
+    return std::ldexp(1.0f, std::max(exponent - bits, kLeastExponent));
+}
+
+bool is_unit(float unit) {
+    int exponent = 0;
+    return std::frexp(unit, &exponent) == 0.5f && exponent - 1 >= kLeastExponent && exponent < 120;
+}
+
+// Rounding moves a box's farthest point along a normal n by at most ½ Σ|n_j| ≤ ½ · 1.001 · √3 units of its position, and
+// by that many units for each of the three edges. The rest of 3 covers the kernels' float sums of the edges: ten
+// roundings of 2^-24 of at most 3 · √3 · 2^15 units.
+float slack_of(float position_unit, float edge_unit) {
+    return float_at_least(double{position_unit} + 3.0 * double{edge_unit});
 }
 
 }  // namespace
@@ -39,44 +56,65 @@ void clear(Leaf& leaf) {
 }
 
 void clear_lane(Leaf& leaf, unsigned lane) {
-    leaf.x[lane] = leaf.y[lane] = leaf.z[lane] = 0.0f;
-    leaf.radius[lane] = -kInfinity;
-    leaf.layers[lane] = 0;
+    for (auto& row : leaf.position) row[lane] = 0;
     for (auto& row : leaf.edge) row[lane] = 0;
+    leaf.layers[lane] = 0;
 }
 
 void clear_lane(Node& node, unsigned lane) {
-    for (int j = 0; j < 3; ++j) {
-        node.center[j][lane] = 0.0f;
-        node.half[j][lane] = -kInfinity;
-    }
+    (void)write_lane(node, lane, Aabb{});
     node.child[lane] = kNone;
     node.layers_any[lane] = node.layers_all[lane] = 0;
 }
 
-void write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers) {
-    const double dx = box.center.x - leaf.origin[0], dy = box.center.y - leaf.origin[1],
-                 dz = box.center.z - leaf.origin[2];
-    leaf.x[lane] = static_cast<float>(dx);
-    leaf.y[lane] = static_cast<float>(dy);
-    leaf.z[lane] = static_cast<float>(dz);
-    // The difference rounds by 2^-53, the float by 2^-24, relative to each component.
-    const double shift = (std::fabs(dx) + std::fabs(dy) + std::fabs(dz)) * 0x1.01p-24 + 1e-44;
-    double edge[3][3], square = 0.0;
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j) edge[k][j] = double{box.axes[k][j]} * double{box.half_extents[k]};
-    const auto dot = [&](int a, int b) {
-        return edge[a][0] * edge[b][0] + edge[a][1] * edge[b][1] + edge[a][2] * edge[b][2];
-    };
-    // No corner is farther than |Σ ±edge|² ≤ Σ |edge_k|² + 2 Σ |edge_i · edge_k|.
-    for (int k = 0; k < 3; ++k) square += dot(k, k) + 2.0 * std::fabs(dot(k, (k + 1) % 3));
-    const float radius = std::max(kMinRadius, float_at_least(std::sqrt(square) * (1.0 + 0x1p-48) + shift));
-    leaf.radius[lane] = radius;
-    const double per_unit = 1.0 / (double{radius} * double{kEdgeUnit});
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j) leaf.edge[3 * k + j][lane] = rounded(edge[k][j] * per_unit);
+double longest_edge(const Obb& box) {
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, double{box.half_extents[k]});
+    return longest * (1.0 + kMaxAxisDeviation);
+}
+
+void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
+    double farthest = 0.0;
+    for (int j = 0; j < 3; ++j) {
+        leaf.origin[j] = centers.is_empty() ? 0.0 : centers.center()[j];
+        if (!centers.is_empty()) farthest = std::max(farthest, centers.half_extents()[j]);
+    }
+    leaf.position_unit = unit_for(farthest, 14);  // boxes may stray as far again
+    leaf.edge_unit = unit_for(longest * (32768.0 / 32766.0), 15);
+    leaf.slack = slack_of(leaf.position_unit, leaf.edge_unit);
+    leaf.reach = 0.0f;
+    leaf.layers_every = ~std::uint32_t{0};
+}
+
+bool is_frame(const Leaf& leaf) {
+    return is_unit(leaf.position_unit) && is_unit(leaf.edge_unit) &&
+           leaf.slack == slack_of(leaf.position_unit, leaf.edge_unit);
+}
+
+bool write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers) {
+    // Scaling by a power of two is exact, and so is a product of two floats in double.
+    const double per_position = 1.0 / double{leaf.position_unit}, per_edge = 1.0 / double{leaf.edge_unit};
+    double position[3], edge[9], reach = 0.0;
+    bool fits = true;
+    for (int j = 0; j < 3; ++j) {
+        position[j] = nearest((box.center[j] - leaf.origin[j]) * per_position);
+        fits = fits && std::fabs(position[j]) <= kMost;
+        reach += std::fabs(position[j]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double half = double{box.half_extents[k]} * per_edge;
+        for (int j = 0; j < 3; ++j) {
+            edge[3 * k + j] = nearest(double{box.axes[k][j]} * half);
+            fits = fits && std::fabs(edge[3 * k + j]) <= kMost;
+        }
+    }
+    if (!fits) return false;
+    for (int j = 0; j < 3; ++j) leaf.position[j][lane] = static_cast<std::int16_t>(static_cast<int>(position[j]));
+    for (int i = 0; i < 9; ++i) leaf.edge[i][lane] = static_cast<std::int16_t>(static_cast<int>(edge[i]));
     leaf.layers[lane] = layers;
-    leaf.reach = std::max(leaf.reach, norm1(leaf.x[lane], leaf.y[lane], leaf.z[lane]));
+    leaf.layers_every &= layers;
+    leaf.reach = std::max(leaf.reach, static_cast<float>(reach) * leaf.position_unit);  // exact: reach < 2^17
+    return true;
 }
 
 void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count) {
@@ -89,72 +127,108 @@ void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std
     node.layers_all[lane] = every;
 }
 
-void write_lane(Node& node, unsigned lane, const Aabb& bounds) {
-    if (bounds.is_empty()) {
-        for (int j = 0; j < 3; ++j) {
-            node.center[j][lane] = 0.0f;
-            node.half[j][lane] = -kInfinity;
-        }
-        return;
-    }
-    double reach = 0.0;
+void fit_frame(Node& node, const Aabb& whole) {
+    double farthest = 0.0;
     for (int j = 0; j < 3; ++j) {
-        const double low = bounds.min[j] - node.origin[j], high = bounds.max[j] - node.origin[j];
-        const float center = static_cast<float>(0.5 * low + 0.5 * high);
-        // The differences round by 2^-53 of the result each; 2^-50 of all magnitudes covers them and this line's own.
-        const double slack = (std::fabs(low) + std::fabs(high)) * 0x1p-50;
-        const float half = float_at_least(std::max(high - double{center}, double{center} - low) + slack);
-        node.center[j][lane] = center;
-        node.half[j][lane] = half;
-        reach += std::fabs(double{center}) + double{half};
+        node.origin[j] = whole.is_empty() ? 0.0 : whole.center()[j];
+        if (!whole.is_empty()) farthest = std::max(farthest, whole.half_extents()[j]);
     }
-    node.reach = std::max(node.reach, float_at_least(reach * (1.0 + 0x1p-50)));
+    node.unit = unit_for(farthest * (1.0 + 0x1p-10), 14);
+    node.reach = 0.0f;
 }
 
-Aabb bounds_of_lane(const Node& node, unsigned lane) {
-    Aabb result;
-    if (node.half[0][lane] < 0.0f) return result;
+bool is_frame(const Node& node) {
+    return is_unit(node.unit);
+}
+
+bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
+    double low[3] = {kMost, kMost, kMost}, high[3] = {-kMost, -kMost, -kMost}, reach = 0.0;
+    if (!bounds.is_empty()) {
+        const double per_unit = 1.0 / double{node.unit};
+        for (int j = 0; j < 3; ++j) {
+            const double from = (bounds.min[j] - node.origin[j]) * per_unit,
+                         to = (bounds.max[j] - node.origin[j]) * per_unit;
+            // Half a unit outward, then to the nearest; the 0.01 is for the roundings, 2^-38 units at most.
+            low[j] = nearest(from - 0.51);
+            high[j] = nearest(to + 0.51);
+            if (!(std::fabs(low[j]) <= kMost && std::fabs(high[j]) <= kMost)) return false;
+            reach += std::max(std::fabs(low[j]), std::fabs(high[j]));
+        }
+    }
     for (int j = 0; j < 3; ++j) {
-        const double center = double{node.center[j][lane]}, half = double{node.half[j][lane]};
-        // Two roundings of at most 2^-53 of the largest magnitude each.
-        const double slack = (std::fabs(node.origin[j]) + std::fabs(center) + half) * 0x1p-51;
-        result.min[j] = node.origin[j] + (center - half) - slack;
-        result.max[j] = node.origin[j] + (center + half) + slack;
+        node.low[j][lane] = static_cast<std::int16_t>(static_cast<int>(low[j]));
+        node.high[j][lane] = static_cast<std::int16_t>(static_cast<int>(high[j]));
+    }
+    node.reach = std::max(node.reach, static_cast<float>(reach) * node.unit);  // exact: reach < 2^17
+    return true;
+}
+
+namespace {
+
+// Relative to the origin, exact numbers; grown by the rounding of the sums.
+Aabb around(const double* origin, const double (&low)[3], const double (&high)[3]) {
+    Aabb result;
+    for (int j = 0; j < 3; ++j) {
+        const double slack = (std::fabs(origin[j]) + std::fabs(low[j]) + std::fabs(high[j])) * 0x1p-52;
+        result.min[j] = origin[j] + low[j] - slack;
+        result.max[j] = origin[j] + high[j] + slack;
     }
     return result;
+}
+
+}  // namespace
+
+Aabb bounds_of_lane(const Node& node, unsigned lane) {
+    if (node.low[0][lane] > node.high[0][lane]) return {};
+    double low[3], high[3];
+    for (int j = 0; j < 3; ++j) {
+        low[j] = double{node.unit} * node.low[j][lane];
+        high[j] = double{node.unit} * node.high[j][lane];
+    }
+    return around(node.origin, low, high);
 }
 
 Aabb bounds_of(const Node& node) {
-    Aabb result;
-    for (unsigned lane = 0; lane < node.count; ++lane) {
-        const Aabb child = bounds_of_lane(node, lane);
-        if (!child.is_empty()) result.include(child);
+    double low[3], high[3];
+    for (int j = 0; j < 3; ++j) {
+        // Empty lanes do not count: theirs are the largest low and the least high.
+        std::int16_t least = 32767, most = -32767;
+        for (unsigned lane = 0; lane < kWidth; ++lane) {
+            least = std::min(least, node.low[j][lane]);
+            most = std::max(most, node.high[j][lane]);
+        }
+        if (least > most) return {};
+        low[j] = double{node.unit} * least;
+        high[j] = double{node.unit} * most;
     }
-    return result;
+    return around(node.origin, low, high);
 }
 
 Aabb bounds_of(const Leaf& leaf) {
-    Aabb result;
-    if (leaf.count == 0) return result;
+    if (leaf.count == 0) return {};
+    double low[3], high[3];
     for (int j = 0; j < 3; ++j) {
-        const float* position = j == 0 ? leaf.x : j == 1 ? leaf.y : leaf.z;
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (unsigned lane = 0; lane < leaf.count; ++lane) {
-            const double unit = double{leaf.radius[lane]} * double{kEdgeUnit};
-            int sum = 0;
-            for (int k = 0; k < 3; ++k) sum += std::abs(int{leaf.edge[3 * k + j][lane]});
-            // Each of the three components is within one unit of the truth, and none sticks out of the ball.
-            const double extent = std::min((sum + 3.01) * unit, double{leaf.radius[lane]});
-            low = std::min(low, double{position[lane]} - extent);
-            high = std::max(high, double{position[lane]} + extent);
+        float least[kWidth], most[kWidth];
+        for (unsigned lane = 0; lane < kWidth; ++lane) {
+            const int extent = std::abs(int{leaf.edge[j][lane]}) + std::abs(int{leaf.edge[3 + j][lane]}) +
+                               std::abs(int{leaf.edge[6 + j][lane]});
+            // Both products are exact; the sums round once.
+            const float center = static_cast<float>(leaf.position[j][lane]) * leaf.position_unit,
+                        half = static_cast<float>(extent) * leaf.edge_unit;
+            least[lane] = center - half;
+            most[lane] = center + half;
         }
-        // The centres' own rounding (see write_lane), and that of the two additions here.
-        const double slack = double{leaf.reach} * 0x1.1p-24 +
-                             (std::fabs(leaf.origin[j]) + std::fabs(low) + std::fabs(high)) * 0x1p-51 + 1e-44;
-        result.min[j] = leaf.origin[j] + low - slack;
-        result.max[j] = leaf.origin[j] + high + slack;
+        for (unsigned lane = 1; lane < leaf.count; ++lane) {
+            least[0] = least[lane] < least[0] ? least[lane] : least[0];
+            most[0] = most[lane] > most[0] ? most[lane] : most[0];
+        }
+        // Positions are within half a unit of the truth (and the difference's rounding, 2^-38 units), and so is each of
+        // the three edges' components.
+        const double slack = 0.51 * double{leaf.position_unit} + 1.51 * double{leaf.edge_unit};
+        low[j] = double{least[0]} - std::fabs(double{least[0]}) * 0x1p-23 - slack;
+        high[j] = double{most[0]} + std::fabs(double{most[0]}) * 0x1p-23 + slack;
     }
-    return result;
+    return around(leaf.origin, low, high);
 }
 
 }  // namespace crofton::tree

@@ -1,6 +1,7 @@
 #include <crofton/tree/box_tree.hpp>
 
 #include <hwy/cache_control.h>
+#include <algorithm>
 #include <crofton/core/assert.hpp>
 
 #include "bounds.hpp"
@@ -103,26 +104,53 @@ void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology
     rewrite_leaf(structure, l);
 }
 
-// Writes all lanes anew around a fitting origin.
+// Writes all lanes anew in a fitting frame.
 void BoxTree::rewrite_leaf(Structure& structure, LeafId l) const {
     Leaf& leaf = structure.leaves[l];
     Aabb centers;
-    for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
-        centers.include(boxes_[structure.slot_items[l * kWidth + lane]].center);
-    for (int j = 0; j < 3; ++j) leaf.origin[j] = centers.is_empty() ? 0.0 : centers.center()[j];
-    leaf.reach = 0.0f;
+    double longest = 0.0;
+    for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
+        const Obb& box = boxes_[structure.slot_items[l * kWidth + lane]];
+        centers.include(box.center);
+        longest = std::max(longest, longest_edge(box));
+    }
+    fit_frame(leaf, centers, longest);
     for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
         const ItemId item = structure.slot_items[l * kWidth + lane];
-        write_lane(leaf, lane, boxes_[item], layer_masks_[item]);
+        [[maybe_unused]] const bool fits = write_lane(leaf, lane, boxes_[item], layer_masks_[item]);
+        CROFTON_ASSERT(fits, "a frame around boxes must take them");
     }
+}
+
+// An item's box into its slot, all lanes anew if the leaf's frame does not take it.
+void BoxTree::write_item(Structure& structure, ItemId item) const {
+    const std::uint32_t slot = structure.item_slots[item];
+    if (!write_lane(structure.leaves[slot / kWidth], slot % kWidth, boxes_[item], layer_masks_[item]))
+        rewrite_leaf(structure, slot / kWidth);
 }
 
 void BoxTree::finish_nodes(Structure& structure) const {
     // After a build, parents come before children.
-    for (auto n = static_cast<NodeId>(structure.nodes.size()); n-- > 0;) refresh_node(structure, n);
+    for (auto n = static_cast<NodeId>(structure.nodes.size()); n-- > 0;) {
+        refresh_node(structure, n);
+        structure.ranges[n].items = items_without_gaps(structure, structure.ranges[n]);
+    }
 }
 
-// Bounds and layers of all lanes from the children, around a fitting origin.
+std::uint32_t BoxTree::items_without_gaps(const Structure& structure, LeafRange range) {
+    if (range.count == 0) return 0;
+    const LeafId last = range.first + range.count - 1;
+    for (LeafId l = range.first; l < last; ++l)
+        if (structure.leaf_counts[l] < kWidth) return 0;
+    return (range.count - 1) * kWidth + structure.leaf_counts[last];
+}
+
+// The items of a leaf below here are no longer as many as they were.
+void BoxTree::forget_run(NodeId n) {
+    for (; n != kNone && now_.ranges[n].items != 0; n = now_.nodes[n].parent) now_.ranges[n].items = 0;
+}
+
+// Bounds and layers of all lanes from the children, in a fitting frame.
 void BoxTree::refresh_node(Structure& structure, NodeId n) const {
     Node& node = structure.nodes[n];
     Aabb bounds[kWidth], whole;
@@ -132,10 +160,11 @@ void BoxTree::refresh_node(Structure& structure, NodeId n) const {
             child & kLeafBit ? bounds_of(structure.leaves[child & ~kLeafBit]) : bounds_of(structure.nodes[child]);
         if (!bounds[lane].is_empty()) whole.include(bounds[lane]);
     }
-    for (int j = 0; j < 3; ++j) node.origin[j] = whole.is_empty() ? 0.0 : whole.center()[j];
-    node.reach = 0.0f;
+    fit_frame(node, whole);
+    node.layers_every = ~std::uint32_t{0};
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-        write_lane(node, lane, bounds[lane]);
+        [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane]);
+        CROFTON_ASSERT(fits, "a frame around bounds must take them");
         const std::uint32_t child = node.child[lane];
         if (child & kLeafBit) {
             const Leaf& leaf = structure.leaves[child & ~kLeafBit];
@@ -144,6 +173,7 @@ void BoxTree::refresh_node(Structure& structure, NodeId n) const {
             const Node& below = structure.nodes[child];
             write_layers(node, lane, below.layers_any, below.layers_all, below.count);
         }
+        node.layers_every &= node.layers_all[lane];
     }
 }
 

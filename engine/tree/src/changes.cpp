@@ -25,9 +25,8 @@ Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> b
     for (std::size_t i = 0; i < items.size(); ++i) {
         const ItemId item = items[i];
         boxes_[item] = boxes[i];
-        const std::uint32_t slot = now_.item_slots[item];
-        write_lane(now_.leaves[slot / kWidth], slot % kWidth, boxes[i], layer_masks_[item]);
-        mark(slot / kWidth);
+        write_item(now_, item);
+        mark(now_.item_slots[item] / kWidth);
         note_change(item);
     }
     return {};
@@ -37,7 +36,10 @@ Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
     if (auto known = check_item(item); !known) return known;
     layer_masks_[item] = layer_mask;
     const std::uint32_t slot = now_.item_slots[item];
-    now_.leaves[slot / kWidth].layers[slot % kWidth] = layer_mask;
+    Leaf& leaf = now_.leaves[slot / kWidth];
+    leaf.layers[slot % kWidth] = layer_mask;
+    leaf.layers_every = ~std::uint32_t{0};
+    for (unsigned lane = 0; lane < leaf.count; ++lane) leaf.layers_every &= leaf.layers[lane];
     mark(slot / kWidth);
     note_change(item);
     return {};
@@ -62,11 +64,12 @@ void BoxTree::vacate(ItemId item) {
     if (moved != item) {
         now_.slot_items[slot] = moved;
         now_.item_slots[moved] = slot;
-        write_lane(leaf, slot % kWidth, boxes_[moved], layer_masks_[moved]);
+        write_item(now_, moved);
     }
     clear_lane(leaf, last);
     now_.slot_items[l * kWidth + last] = kNone;
     now_.item_slots[item] = kNone;
+    forget_run(leaf.parent);
     mark(l);
 }
 
@@ -101,7 +104,8 @@ void BoxTree::place(ItemId item) {
     now_.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
     now_.slot_items[slot] = item;
     now_.item_slots[item] = slot;
-    write_lane(leaf, slot % kWidth, box, layer_masks_[item]);
+    write_item(now_, item);
+    forget_run(leaf.parent);
     refresh_path(leaf.parent);
 }
 
@@ -197,7 +201,7 @@ void BoxTree::add_child(NodeId parent, std::uint32_t child) {
     node.count++;
     link(parent, node.count - 1, child);
     // No longer one run of leaves, here and above.
-    for (NodeId n = parent; n != kNone; n = now_.nodes[n].parent) now_.ranges[n].count = 0;
+    for (NodeId n = parent; n != kNone; n = now_.nodes[n].parent) now_.ranges[n] = {};
 }
 
 // Half of a full node's children go to a new node; returns the one of the two that the caller may add to. Splitting the
@@ -209,8 +213,8 @@ NodeId BoxTree::split_node(NodeId n) {
         const Node& node = now_.nodes[n];
         items[lane] = {};
         for (int j = 0; j < 3; ++j) {
-            items[lane].extreme[j] = node.half[j][lane] - node.center[j][lane];
-            items[lane].extreme[4 + j] = node.center[j][lane] + node.half[j][lane];
+            items[lane].extreme[j] = -static_cast<float>(node.low[j][lane]);
+            items[lane].extreme[4 + j] = static_cast<float>(node.high[j][lane]);
         }
         items[lane].set_id(lane);
         children[lane] = node.child[lane];

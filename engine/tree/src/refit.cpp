@@ -100,7 +100,7 @@ void BoxTree::take_over() {
             const bool present = old_slots[item] != kNone;
             if (present && slot == kNone) homeless.push_back(item);
             if (present && slot != kNone)
-                write_lane(now_.leaves[slot / kWidth], slot % kWidth, boxes_[item], layer_masks_[item]);
+                write_item(now_, item);
             if (!present && slot != kNone) vacate(item);
         }
     finish_nodes(now_);

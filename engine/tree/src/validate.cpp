@@ -1,4 +1,5 @@
 // Does a tree keep all its promises?
+#include <algorithm>
 #include <cmath>
 #include <crofton/tree/box_tree.hpp>
 #include <string>
@@ -13,8 +14,8 @@ tl::unexpected<Error> broken(std::uint64_t item, const char* what) {
 }
 
 bool lanes_agree(const Leaf& a, const Leaf& b, unsigned lane) {
-    bool same = a.x[lane] == b.x[lane] && a.y[lane] == b.y[lane] && a.z[lane] == b.z[lane] &&
-                a.radius[lane] == b.radius[lane] && a.layers[lane] == b.layers[lane];
+    bool same = a.layers[lane] == b.layers[lane];
+    for (int j = 0; j < 3; ++j) same = same && a.position[j][lane] == b.position[j][lane];
     for (int i = 0; i < 9; ++i) same = same && a.edge[i][lane] == b.edge[i][lane];
     return same;
 }
@@ -25,9 +26,9 @@ bool holds(const Node& node, unsigned lane, const Aabb& child) {
     double reach = 0.0;
     for (int j = 0; j < 3; ++j) {
         if (!(bounds.min[j] <= child.min[j] && bounds.max[j] >= child.max[j])) return false;
-        reach += std::abs(double{node.center[j][lane]}) + double{node.half[j][lane]};
+        reach += double{node.unit} * std::max(std::abs(int{node.low[j][lane]}), std::abs(int{node.high[j][lane]}));
     }
-    return reach <= double{node.reach} * (1.0 + 1e-6);
+    return reach <= double{node.reach};
 }
 
 }  // namespace
@@ -69,9 +70,16 @@ Result<void> BoxTree::validate(Trust trust) const {
             if (layers.layers_any[lane] != node.layers_any[lane] || layers.layers_all[lane] != node.layers_all[lane])
                 return broken(n, "layers do not match those below");
         }
+        if (trust == Trust::nothing) {
+            std::uint32_t every = ~std::uint32_t{0};
+            for (unsigned lane = 0; lane < node.count; ++lane) every &= node.layers_all[lane];
+            if (!is_frame(node) || every != node.layers_every) return broken(n, "a node's frame is not one");
+        }
         if (only_leaves != (node.only_leaves != 0)) return broken(n, "a node is wrong about its children's kind");
         if (const LeafRange range = now_.ranges[n]; range.count > leaves || range.first > leaves - range.count)
             return broken(n, "a node's leaves do not exist");
+        if (const LeafRange range = now_.ranges[n]; range.items != 0 && range.items != items_without_gaps(now_, range))
+            return broken(n, "a node is wrong about its items");
         // Up to the root within `height` steps: no cycles.
         NodeId up = n;
         unsigned steps = 1;
@@ -102,8 +110,9 @@ Result<void> BoxTree::validate_leaves(Trust trust) const {
             if (trust == Trust::contents) continue;
             if (auto valid = crofton::validate(boxes_[item], item); !valid) return valid;
             Leaf expected = leaf;
-            write_lane(expected, lane, boxes_[item], layer_masks_[item]);
-            if (!lanes_agree(leaf, expected, lane) || expected.reach > leaf.reach)
+            if (!is_frame(leaf) || !write_lane(expected, lane, boxes_[item], layer_masks_[item]) ||
+                !lanes_agree(leaf, expected, lane) || expected.reach > leaf.reach ||
+                expected.layers_every != leaf.layers_every)
                 return broken(item, "an item's lane does not match its box");
         }
     }

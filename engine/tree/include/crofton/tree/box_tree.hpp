@@ -96,8 +96,11 @@ class BoxTree {
     void adopt(Structure& structure, const Topology& topology) const;
     void fill_leaf(Structure& structure, LeafId leaf, const Topology& topology) const;
     void rewrite_leaf(Structure& structure, LeafId leaf) const;
+    void write_item(Structure& structure, ItemId item) const;
     void refresh_node(Structure& structure, NodeId node) const;
     void finish_nodes(Structure& structure) const;
+    [[nodiscard]] static std::uint32_t items_without_gaps(const Structure& structure, LeafRange range);
+    void forget_run(NodeId node);
     void refresh_path(NodeId node);
     void mark(LeafId leaf);
     void note_change(ItemId item);

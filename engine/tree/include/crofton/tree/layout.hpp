@@ -11,43 +11,48 @@ inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 inline constexpr unsigned kWidth = 16;  // children of a node, items of a leaf: one AVX-512 register of floats
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;  // in Node::child: the rest is a LeafId, otherwise a NodeId
 
-// Axis-aligned boxes of up to 16 children, relative to `origin`, rounded outward. Lanes from `count` on are empty:
-// half = −infinity, so that no test passes.
+// Axis-aligned boxes of up to 16 children: origin + unit · [low, high], rounded outward. `unit` is a power of two, so that
+// products with it are exact. An empty child has low > high. Layers are read only where the view does not share one with
+// everything below.
 struct alignas(64) Node {
-    float center[3][kWidth];
-    float half[3][kWidth];
-    std::uint32_t child[kWidth];
-    std::uint32_t layers_any[kWidth];  // OR and AND of the layer masks below
-    std::uint32_t layers_all[kWidth];
     double origin[3];
-    float reach;  // ≥ |center| + half, summed over the axes, for every child
+    float unit;
+    float reach;  // ≥ the farthest |x| + |y| + |z|, relative to the origin, of every child
     std::uint32_t count;
     NodeId parent;  // kNone for the root
     std::uint32_t lane_in_parent;
-    std::uint32_t only_leaves;  // 1 if all children are leaves
+    std::uint32_t only_leaves;   // 1 if all children are leaves
+    std::uint32_t layers_every;  // the AND of layers_all
+    alignas(64) std::int16_t low[3][kWidth];
+    std::int16_t high[3][kWidth];
+    std::uint32_t child[kWidth];
+    std::uint32_t layers_any[kWidth];  // OR and AND of the layer masks below
+    std::uint32_t layers_all[kWidth];
 };
 
-// Up to 16 oriented boxes, compressed for filtering. Lane i < count holds an item:
-// its centre within the ball of (x, y, z) + origin that `radius` accounts for, its whole box within `radius` of there,
-// and its half edges as edge[3 k + j] · radius · 2^-15, component j of edge k, each within one such unit.
+// Up to 16 oriented boxes, compressed for filtering. Lane i < count holds an item: its centre within half a
+// position_unit, along each axis, of origin + position_unit · position, and component j of its half edge k within half an
+// edge_unit of edge_unit · edge[3 k + j]. Units are powers of two.
 struct alignas(64) Leaf {
-    float x[kWidth], y[kWidth], z[kWidth];
-    float radius[kWidth];  // −infinity in empty lanes
-    std::int16_t edge[9][kWidth];
-    std::uint32_t layers[kWidth];
     double origin[3];
-    float reach;  // ≥ |x| + |y| + |z| of every lane
+    float position_unit, edge_unit;
+    float slack;  // what both roundings together can change in the distance of a box's farthest point from a plane
+    float reach;  // ≥ |x| + |y| + |z| of every lane's position, relative to the origin
     std::uint32_t count;
     NodeId parent;
     std::uint32_t lane_in_parent;
+    std::uint32_t layers_every;  // bits that all lanes' layers have
+    alignas(64) std::int16_t position[3][kWidth];
+    std::int16_t edge[9][kWidth];
+    std::uint32_t layers[kWidth];
 };
-inline constexpr float kEdgeUnit = 0x1p-15f;  // of the radius
-inline constexpr float kMinRadius = 1e-30f;   // keeps units normal numbers
+static_assert(sizeof(Node) == 448 && sizeof(Leaf) == 512);
 
 // The leaves below a node, where they are consecutive (they are after a build): count 0 says they are not.
 struct LeafRange {
     LeafId first = 0;
     std::uint32_t count = 0;
+    std::uint32_t items = 0;  // how many, where they fill the leaves' slots without gaps; 0 says they may not
 };
 
 }  // namespace crofton::tree
