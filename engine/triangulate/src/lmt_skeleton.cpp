@@ -14,6 +14,7 @@ constexpr std::uint8_t kSettled = CandidateGraph::kConstraint | CandidateGraph::
 void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch) {
     points_ = points;
     graph_ = &graph;
+    mesh_ = nullptr;
     const auto count = static_cast<Index>(graph.half_edge_count());
     // Stamps only grow, so they stay clean between runs.
     if (stamp_.size() < graph.vertex_count()) stamp_.resize(graph.vertex_count(), 0);
@@ -81,7 +82,7 @@ bool LmtSkeleton::certify(Index h) {
     for (std::size_t l = 0; l < lefts; ++l) {
         for (std::size_t r = 0; r < rights; ++r) {
             if (locally_minimal(points_, p, q, left_[l], right_[r])) {
-                certificates_[h] = {left_[l], right_[r]};
+                certificates_[h] = certificates_[g.twin[h]] = {left_[l], right_[r]};
                 return true;
             }
         }
@@ -96,10 +97,10 @@ void LmtSkeleton::kill(Index h) {
         g.flags[k] |= CandidateGraph::kDead;
         const Index p = origin(k), q = g.destination[k];
         for (Index e = g.first[p]; e < g.first[p + 1]; ++e) {
+            const Certificate& c = certificates_[e];
+            if (c.left != q && c.right != q) continue;
             const Index canonical = std::min(e, g.twin[e]);
-            const Certificate& c = certificates_[canonical];
-            if ((c.left == q || c.right == q) && !queued_[canonical] && alive(canonical) &&
-                (g.flags[canonical] & CandidateGraph::kConstraint) == 0) {
+            if (!queued_[canonical] && (g.flags[e] & kSettled) == 0) {
                 queued_[canonical] = 1;
                 stack_.push_back(canonical);
             }
@@ -110,18 +111,20 @@ void LmtSkeleton::kill(Index h) {
 // Living Delaunay edges cross only others, which are walked through the Delaunay triangles. Almost all of them cross a
 // living Delaunay edge; only triangles with one that does not are searched for crossings inside.
 void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) {
-    mesh_ = &mesh;
     graph_ = &graph;
     points_ = mesh.points;
     auto& g = graph;
     const auto count = static_cast<Index>(g.half_edge_count());
+    if (mesh_ == nullptr) {
+        mesh_ = &mesh;
+        find_delaunay();
+    }
     crossed_.assign(count, 0);
     chord_head_.assign(mesh_->triangle_count(), kNone);
     chords_.clear();
     const auto is_chord = [&](Index h) {
         return h < g.twin[h] && alive(h) && (g.flags[h] & (CandidateGraph::kDelaunay | kPlaced)) == 0;
     };
-    mark_living_delaunay();
     for (Index h = 0; h < count; ++h) {
         if (is_chord(h)) walk(h, [&](Index, Index crossing) { cross_delaunay(h, crossing); });
     }
@@ -152,22 +155,23 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) 
     }
 }
 
-// graph_edge_[e] is the living half-edge of the graph that is the mesh's e. Both lists ascend counter-clockwise from
-// some start, so a search along the vertex's short list is enough.
-void LmtSkeleton::mark_living_delaunay() {
+// graph_edge_[e] is the graph's half-edge for the mesh's e, where it is a candidate.
+void LmtSkeleton::find_delaunay() {
     const auto& g = *graph_;
     graph_edge_.assign(mesh_->origin.size(), kNone);
     for (Index e = 0; e < mesh_->origin.size(); ++e) {
-        if ((e & 3u) == 3u) continue;
+        if ((e & 3u) == 3u || mesh_->twin[e] == kNone || e > mesh_->twin[e]) continue;
         const Index u = mesh_->origin[e], w = mesh_->destination(e);
-        for (Index k = g.first[u]; k < g.first[u + 1]; ++k) {
-            if (g.destination[k] == w && (g.flags[k] & CandidateGraph::kDelaunay) != 0 && alive(k)) graph_edge_[e] = k;
-        }
+        Index k = g.first[u];
+        while (k < g.first[u + 1] && g.destination[k] != w) ++k;
+        if (k == g.first[u + 1]) continue;
+        graph_edge_[e] = k;
+        graph_edge_[mesh_->twin[e]] = g.twin[k];
     }
 }
 
 void LmtSkeleton::cross_delaunay(Index h, Index crossing) {
-    if (crossing == kNone || graph_edge_[crossing] == kNone) return;
+    if (crossing == kNone || graph_edge_[crossing] == kNone || !alive(graph_edge_[crossing])) return;
     const Index k = graph_edge_[crossing];
     crossed_[k] = crossed_[graph_->twin[k]] = crossed_[h] = 1;
 }

@@ -14,12 +14,11 @@ class LmtSkeleton {
     // Sets kDead on edges without a certificate, that is, common neighbours on both sides that make them locally minimal,
     // until none is left. Stops early, which is right but prunes less, with the watch.
     void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch);
-    // Sets kCertain on living edges that no living edge crosses, but for those in settled faces. `mesh` is the constrained Delaunay triangulation that
-    // the candidates of this graph, just pruned, come from.
+    // Sets kCertain on living edges that no living edge crosses, but for those in settled faces. `mesh` is the constrained
+    // Delaunay triangulation that the candidates of this graph, the last one pruned, come from.
     void mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph);
 
   private:
-    // Kept at the smaller half-edge.
     struct Certificate {
         Index left = kNone, right = kNone;
     };
@@ -32,7 +31,7 @@ class LmtSkeleton {
     [[nodiscard]] bool certify(Index h);
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
     void kill(Index h);
-    void mark_living_delaunay();
+    void find_delaunay();
     void cross_delaunay(Index h, Index crossing);
     template <class Visit>
     void walk(Index h, Visit visit) const;
