@@ -35,6 +35,11 @@ Witness test_witness(const glm::dvec2& q, double q_square, const glm::dvec2& y, 
     return turn > 0.0 && turn <= kTangent * (q_square - along) ? Witness::kills : Witness::none;
 }
 
+void reserve(CandidateGraph& graph, std::size_t half_edges) {
+    graph.destination.reserve(half_edges);
+    graph.flags.reserve(half_edges);
+}
+
 }  // namespace
 
 bool CandidateFinder::find(const Domain& domain, std::size_t limit, Watch& watch, CandidateGraph& graph) {
@@ -50,6 +55,7 @@ bool CandidateFinder::find(const Domain& domain, std::size_t limit, Watch& watch
         seen_.clear();
         look_from(p);
         if (graph.destination.size() + seen_.size() > limit || watch.stopped(0.5 * p / count)) return false;
+        if (p == count / 16) reserve(graph, 18 * graph.destination.size());
         for (const auto& seen : seen_) {
             graph.destination.push_back(seen.vertex);
             graph.flags.push_back(seen.flags);

@@ -62,27 +62,35 @@ void LmtSkeleton::stamp(Index p) {
 bool LmtSkeleton::certify(Index h) {
     const auto& g = *graph_;
     const Index p = origin(h), q = g.destination[h];
-    const std::size_t degree = g.first[q + 1] - g.first[q];
-    if (common_.size() < degree) {
-        for (auto* list : {&common_, &left_, &right_}) list->resize(degree);
+    const Index begin = g.first[q], end = g.first[q + 1];
+    if (common_.size() < end - begin) {
+        for (auto* list : {&common_, &left_, &right_}) list->resize(end - begin);
     }
     std::size_t common = 0, lefts = 0, rights = 0;
-    for (Index k = g.first[q]; k < g.first[q + 1]; ++k) {
-        const Index s = g.destination[k];
-        common_[common] = s;
-        common += (stamp_[s] == stamp_value_) & alive(k);
+    // Local copies, or every write would make the compiler read the members again.
+    const Index* const destination = g.destination.data();
+    const std::uint8_t* const flags = g.flags.data();
+    const Index* const stamps = stamp_.data();
+    const Index value = stamp_value_;
+    Index *const commons = common_.data(), *const left = left_.data(), *const right = right_.data();
+    for (Index k = begin; k < end; ++k) {
+        const Index s = destination[k];
+        commons[common] = s;
+        common += (stamps[s] == value) & ((flags[k] & CandidateGraph::kDead) == 0);
     }
-    const auto &a = points_[p], &b = points_[q];
+    const auto points = points_;
+    const glm::dvec2 a = points[p], b = points[q];
     for (std::size_t i = 0; i < common; ++i) {
-        const int side = orientation(a, b, points_[common_[i]]);
-        left_[lefts] = right_[rights] = common_[i];
+        const Index s = commons[i];
+        const int side = orientation(a, b, points[s]);
+        left[lefts] = right[rights] = s;
         lefts += side > 0;
         rights += side < 0;
     }
     for (std::size_t l = 0; l < lefts; ++l) {
         for (std::size_t r = 0; r < rights; ++r) {
-            if (locally_minimal(points_, p, q, left_[l], right_[r])) {
-                certificates_[h] = certificates_[g.twin[h]] = {left_[l], right_[r]};
+            if (locally_minimal(points, p, q, left[l], right[r])) {
+                certificates_[h] = certificates_[g.twin[h]] = {left[l], right[r]};
                 return true;
             }
         }
@@ -96,8 +104,8 @@ void LmtSkeleton::kill(Index h) {
     for (const Index k : {h, g.twin[h]}) {
         g.flags[k] |= CandidateGraph::kDead;
         const Index p = origin(k), q = g.destination[k];
-        for (Index e = g.first[p]; e < g.first[p + 1]; ++e) {
-            const Certificate& c = certificates_[e];
+        for (Index e = g.first[p], end = g.first[p + 1]; e < end; ++e) {
+            const Certificate c = certificates_[e];
             if (c.left != q && c.right != q) continue;
             const Index canonical = std::min(e, g.twin[e]);
             if (!queued_[canonical] && (g.flags[e] & kSettled) == 0) {

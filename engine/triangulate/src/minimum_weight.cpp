@@ -29,8 +29,9 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
         return false;
     }
     const auto points = domain.mesh().points;
-    find_faces(graph_, CandidateGraph::kConstraint, faces_);
-    if (has_pieces()) {
+    const bool holes = domain.ring_count() > 1;
+    if (!holes) find_faces(graph_, CandidateGraph::kConstraint, faces_);
+    if (holes || has_pieces()) {
         skeleton_.prune(points, graph_, watch);
         skeleton_.mark_certain(domain.mesh(), graph_);
         find_faces(graph_, kFixed, faces_);
