@@ -15,36 +15,36 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
     points_ = points;
     graph_ = &graph;
     mesh_ = nullptr;
-    const auto count = static_cast<Index>(graph.half_edge_count());
     // Stamps only grow, so they stay clean between runs.
     if (stamp_.size() < graph.vertex_count()) stamp_.resize(graph.vertex_count(), 0);
-    queued_.assign(count, 0);
-    stack_.clear();
-    certificates_.assign(count, {});
-    for (Index p = 0; p < graph.vertex_count(); ++p) {
-        stamp(p);
-        for (Index h = graph.first[p]; h < graph.first[p + 1]; ++h) {
-            if (graph.destination[h] < p || (graph.flags[h] & kSettled) != 0) continue;
+    certificates_.assign(graph.half_edge_count(), {});
+    changed_.assign(graph.vertex_count(), 1);
+    for (bool again = true; again;) {
+        again = false;
+        for (Index p = 0; p < graph.vertex_count(); ++p) {
+            if (changed_[p] == 0) continue;
+            again = true;
             if (watch.stopped(0.5)) return;
-            if (certify(h)) continue;
-            kill(h);
-            stamp_[graph.destination[h]] = 0;
+            changed_[p] = 0;
+            look_around(p);
         }
     }
-    // In rounds, as an edge often loses several certificates in one.
-    while (!stack_.empty()) {
-        std::swap(stack_, round_);
-        stack_.clear();
-        Index stamped = kNone;
-        for (const Index h : round_) {
-            queued_[h] = 0;
-            if (watch.stopped(0.5)) return;
-            if (!alive(h)) continue;
-            if (origin(h) != stamped) stamp(stamped = origin(h));
-            if (certify(h)) continue;
-            kill(h);
-            stamp_[graph.destination[h]] = 0;
-        }
+}
+
+// Certifies the edges of p whose certificate has lost an edge at p, and kills those that have none.
+void LmtSkeleton::look_around(Index p) {
+    auto& g = *graph_;
+    stamp(p);
+    for (Index h = g.first[p], end = g.first[p + 1]; h < end; ++h) {
+        if ((g.flags[h] & kSettled) != 0) continue;
+        const Certificate c = certificates_[h];
+        const bool stands = c.left != kNone && stamp_[c.left] == stamp_value_ && stamp_[c.right] == stamp_value_;
+        if (stands || certify(h)) continue;
+        const Index q = g.destination[h];
+        g.flags[h] |= CandidateGraph::kDead;
+        g.flags[g.twin[h]] |= CandidateGraph::kDead;
+        stamp_[q] = 0;
+        changed_[p] = changed_[q] = 1;
     }
 }
 
@@ -96,24 +96,6 @@ bool LmtSkeleton::certify(Index h) {
         }
     }
     return false;
-}
-
-// Removes an edge and puts those on the stack whose certificate used it.
-void LmtSkeleton::kill(Index h) {
-    auto& g = *graph_;
-    for (const Index k : {h, g.twin[h]}) {
-        g.flags[k] |= CandidateGraph::kDead;
-        const Index p = origin(k), q = g.destination[k];
-        for (Index e = g.first[p], end = g.first[p + 1]; e < end; ++e) {
-            const Certificate c = certificates_[e];
-            if (c.left != q && c.right != q) continue;
-            const Index canonical = std::min(e, g.twin[e]);
-            if (!queued_[canonical] && (g.flags[e] & kSettled) == 0) {
-                queued_[canonical] = 1;
-                stack_.push_back(canonical);
-            }
-        }
-    }
 }
 
 // Living Delaunay edges cross only others, which are walked through the Delaunay triangles. Almost all of them cross a

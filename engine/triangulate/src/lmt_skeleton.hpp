@@ -27,10 +27,10 @@ class LmtSkeleton {
     };
 
     [[nodiscard]] bool alive(Index h) const { return (graph_->flags[h] & CandidateGraph::kDead) == 0; }
+    void look_around(Index p);
     void stamp(Index p);
     [[nodiscard]] bool certify(Index h);
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
-    void kill(Index h);
     void find_delaunay();
     void cross_delaunay(Index h, Index crossing);
     template <class Visit>
@@ -40,8 +40,8 @@ class LmtSkeleton {
     const HalfEdgeMesh* mesh_ = nullptr;
     CandidateGraph* graph_ = nullptr;
     Vector<Certificate> certificates_;
-    Vector<Index> stack_, round_, stamp_, common_, left_, right_;
-    Vector<std::uint8_t> queued_, crossed_;
+    Vector<Index> stamp_, common_, left_, right_;
+    Vector<std::uint8_t> changed_, crossed_;
     static constexpr Index kEmptyList = kNone - 1;
     Vector<Index> graph_edge_, lonely_, chord_head_;
     Vector<Chord> chords_;
