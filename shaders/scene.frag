@@ -15,7 +15,8 @@ layout(location = 0) out vec4 pixel;
 
 void main() {
     vec3 lit = gl_FrontFacing ? lit_color.rgb : lit_color.rgb * (1.0 + lit_color.a);
-    float depth = frame.to_sun.w / gl_FragCoord.w;
-    float haze = depth * depth / (1.0 + depth * depth);
+    // With view depth d = 1 / gl_FragCoord.w and the haze distance h: d² / (h² + d²), by one division.
+    float nearness = gl_FragCoord.w * frame.to_sun.w;
+    float haze = frame.fog.w / (1.0 + nearness * nearness);
     pixel = vec4(sqrt(mix(lit, frame.fog.rgb, haze)), 1.0);
 }

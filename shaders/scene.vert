@@ -2,11 +2,11 @@
 // Lit triangles. The position is computed exactly as ClipPredictor does, so that triangle counts agree to the bit.
 
 layout(push_constant) uniform Frame {
-    vec4 to_sun;        // unit vector; w: fog density per metre
+    vec4 to_sun;        // unit vector; w: distance of half the haze
     vec4 sun;           // linear RGB
     vec4 sky_ambient;   // light from above
     vec4 ground_ambient;
-    vec4 fog;
+    vec4 fog;           // linear RGB; w: 1, or 0 without haze
     vec4 spare[3];
 } frame;
 

@@ -80,8 +80,9 @@ DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId>
 
 DrawList::Part DrawList::append(std::span<const render::Vertex> vertices,
                                 std::span<const std::uint32_t> local_indices) {
-    const Part part{static_cast<std::uint32_t>(vertices_.size()), static_cast<std::uint32_t>(vertices.size()),
-                    static_cast<std::uint32_t>(indices_.size()), static_cast<std::uint32_t>(local_indices.size())};
+    Part part{static_cast<std::uint32_t>(vertices_.size()), static_cast<std::uint32_t>(vertices.size()),
+              static_cast<std::uint32_t>(indices_.size()), static_cast<std::uint32_t>(local_indices.size()), Aabb{}};
+    for (const render::Vertex& vertex : vertices) part.bounds.include(vertex.position);
     vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
     for (const render::Vertex& vertex : vertices) positions_.push_back(vertex.position);
     for (const std::uint32_t index : local_indices) indices_.push_back(part.first_vertex + index);
@@ -115,7 +116,7 @@ std::uint64_t DrawList::predict_clipped() {
         sum +=
             predictor_.count(std::span<const glm::vec3>(positions_).subspan(part.first_vertex, part.vertex_count),
                              std::span<const std::uint32_t>(local_indices_).subspan(part.first_index, part.index_count),
-                             transforms_[ranges_[i].transform].to_clip);
+                             transforms_[ranges_[i].transform].to_clip, part.bounds);
     }
     return sum;
 }

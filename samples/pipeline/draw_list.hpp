@@ -34,6 +34,7 @@ class DrawList {
   private:
     struct Part {  // a run of vertices with the indices that refer to it, counted from its first vertex
         std::uint32_t first_vertex = 0, vertex_count = 0, first_index = 0, index_count = 0;
+        Aabb bounds;  // of the vertices
     };
 
     Part append(std::span<const render::Vertex> vertices, std::span<const std::uint32_t> local_indices);

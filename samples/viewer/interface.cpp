@@ -7,8 +7,10 @@
 
 namespace crofton::viewer {
 
-Result<void> Session::draw_interface() {
+// Builds the panels and records how to draw them.
+Result<void> Session::build_interface() {
     ui_us_ = 0.0;
+    wish_ = {};
     if (!settings_.panels) return {};
     const auto start = Clock::now();
     ImGuiIO& io = ImGui::GetIO();
@@ -24,15 +26,21 @@ Result<void> Session::draw_interface() {
     const ImVec2 inset_size =
         inset != nullptr ? ImVec2(static_cast<float>(rasterizer_->width(1)), static_cast<float>(rasterizer_->height(1)))
                          : ImVec2(0.0f, 0.0f);
-    const PanelWish wish = draw_panels({settings_, eye_, *stage_, nodes_, frame_, other_ ? &other_frame_ : nullptr,
-                                        journal_, painter_, overlay_, cascades_, pick_, selected_, shown, inset_size,
-                                        device_->name(), is_recording_, replaying_});
+    const pipeline::FrameStatistics* drawn = journal_.entries().empty() ? nullptr : &journal_.entries().back().frame;
+    wish_ = draw_panels({settings_, eye_, *stage_, nodes_, frame_, drawn, other_ ? &other_frame_ : nullptr, journal_,
+                         painter_, overlay_, cascades_, pick_, selected_, shown, inset_size, device_->name(),
+                         is_recording_, replaying_});
     ImGui::Render();
     if (auto begun = ui_commands_.begin(); !begun) return begun;
     if (auto recorded = ui_->record(ui_commands_.handle, *ImGui::GetDrawData()); !recorded) return recorded;
     ui_us_ = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    return {};
+}
+
+Result<void> Session::draw_interface() {
+    if (ui_us_ == 0.0) return {};
     if (auto done = ui_commands_.submit_and_wait(); !done) return done;
-    grant(wish);
+    grant(wish_);
     return {};
 }
 

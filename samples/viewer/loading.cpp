@@ -6,6 +6,7 @@
 #include <crofton/render/vertex.hpp>
 
 #include "pipeline/camera_path.hpp"
+#include "pipeline/walk.hpp"
 #include "session.hpp"
 #include "shape_colors.hpp"
 
@@ -137,7 +138,9 @@ Result<void> Session::load_replay() {
     path.kind = options_.camera;
     path.frames = options_.frames > 0 ? options_.frames : 600;
     path.aspect = static_cast<double>(options_.width) / options_.height;
-    auto cameras = pipeline::make_camera_path(path, stage_->extent(), stage_->source().walk);
+    std::vector<glm::dvec3> walk = stage_->source().walk;
+    if (walk.empty() && path.kind == "street") walk = pipeline::find_walk(stage_->scene(), stage_->focus());
+    auto cameras = pipeline::make_camera_path(path, stage_->focus(), walk);
     if (!cameras) return tl::unexpected(std::move(cameras.error()));
     replay_ = std::move(*cameras);
     replaying_ = true;

@@ -72,8 +72,8 @@ void statistics_table(const PanelInput& input) {
 }
 
 void counters(const PanelInput& input) {
-    const Frame& frame = input.frame;
-    if (!frame.gpu) return;
+    if (input.drawn == nullptr || !input.drawn->gpu) return;
+    const Frame& frame = *input.drawn;
     ImGui::Text("clipped: predicted %" PRIu64 ", counted %" PRIu64, frame.triangles_clipped,
                 frame.gpu->clipping_primitives);
     const bool same = frame.triangles_clipped == frame.gpu->clipping_primitives;

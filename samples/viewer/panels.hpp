@@ -36,6 +36,7 @@ struct PanelInput {
     const Stage& stage;
     const NodeTree& nodes;
     const pipeline::FrameStatistics& frame;
+    const pipeline::FrameStatistics* drawn;  // the last frame that the device has counted, or null
     const pipeline::FrameStatistics* other;  // of the comparison's B, or null
     const Journal& journal;
     const Painter& painter;

@@ -62,7 +62,12 @@ Result<void> Session::turn() {
     if (auto resized = resize(); !resized) return resized;
     advance(seconds);
     if (auto culled = cull(); !culled) return culled;
-    if (auto drawn = draw(); !drawn) return drawn;
+    if (auto started = start_drawing(); !started) return started;
+    // The device draws; what needs no picture is done meanwhile.
+    frame_.triangles_clipped = list_->predict_clipped();
+    auto built = build_interface();
+    if (auto finished = finish_drawing(); !finished) return finished;
+    if (!built) return built;
     if (auto drawn = draw_interface(); !drawn) return drawn;
     if (auto saved = save_screenshots(); !saved) return saved;
     if (window_) {
@@ -124,7 +129,7 @@ Result<void> Session::cull() {
     return {};
 }
 
-Result<render::GpuCounters> Session::draw_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
+Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
     list_->select(frame_.visible_ids, camera);
     painter_.paint(*list_, settings_.wireframe);
     lines_.clear(camera.position);
@@ -143,23 +148,26 @@ Result<render::GpuCounters> Session::draw_view(const Camera& camera, std::uint32
     } else {
         frame.environment.haze_distance = static_cast<float>(2.5 * glm::length(stage_->extent().half_extents()));
     }
-    return rasterizer_->draw(frame, picture);
+    return rasterizer_->submit(frame, picture);
 }
 
-Result<void> Session::draw() {
+Result<void> Session::start_drawing() {
     if (settings_.inset) {
         if (auto sized = rasterizer_->resize(kInsetSize.width, kInsetSize.height, 1); !sized) return sized;
         const double reach = 1.5 * glm::length(stage_->extent().half_extents());
-        auto drawn = draw_view(from_outside(culling_camera_, reach), 1, true);
-        if (!drawn) return tl::unexpected(std::move(drawn.error()));
+        if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
+        if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }
-    const auto start = Clock::now();
-    auto counters = draw_view(eye_.camera, 0, settings_.freeze);
+    draw_start_ = Clock::now();
+    return submit_view(eye_.camera, 0, settings_.freeze);
+}
+
+Result<void> Session::finish_drawing() {
+    auto counters = rasterizer_->finish();
     if (!counters) return tl::unexpected(std::move(counters.error()));
-    frame_.draw_us = microseconds_since(start);
+    frame_.draw_us = microseconds_since(draw_start_);
     frame_.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
                                      counters->clipping_primitives, counters->samples_passed};
-    frame_.triangles_clipped = list_->predict_clipped();
     return {};
 }
 

@@ -57,8 +57,10 @@ class Session {
     [[nodiscard]] Result<void> resize();
     void advance(double seconds);
     [[nodiscard]] Result<void> cull();
-    [[nodiscard]] Result<void> draw();
-    [[nodiscard]] Result<render::GpuCounters> draw_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
+    [[nodiscard]] Result<void> start_drawing();
+    [[nodiscard]] Result<void> finish_drawing();
+    [[nodiscard]] Result<void> submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
+    [[nodiscard]] Result<void> build_interface();
     [[nodiscard]] Result<void> draw_interface();
     [[nodiscard]] Result<void> save_screenshots();
     void report(const Error& error) const;
@@ -95,8 +97,9 @@ class Session {
     std::uint32_t frame_index_ = 0, exports_ = 0;
     double scene_time_ = 0.0;  // in frames of 1/60 s
     VkExtent2D wanted_size_{};
-    Clock::time_point last_turn_ = Clock::now();
+    Clock::time_point last_turn_ = Clock::now(), draw_start_;
     double ui_us_ = 0.0;
+    PanelWish wish_;
     glm::dvec2 cursor_{0.0};
     std::vector<std::string> screenshots_;  // to be taken this turn
     nlohmann::json pictures_ = nlohmann::json::array();

@@ -1,10 +1,10 @@
 #include "stage.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <crofton/geometry/aabb.hpp>
 #include <glm/geometric.hpp>
+
+#include "pipeline/camera_path.hpp"
 
 namespace crofton::viewer {
 namespace {
@@ -34,26 +34,6 @@ bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b
     return a.bounds == b.bounds && a.cull == b.cull && a.mode == b.mode && a.collide == b.collide;
 }
 
-// The middle 96 % of the instances' centres along each axis, with room for one of middling size.
-Aabb focus_of(const scene::Scene& scene, const Aabb& extent) {
-    std::array<std::vector<double>, 4> values;
-    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
-        if (scene.is_removed(i)) continue;
-        const Obb& box = scene.world_boxes()[i];
-        for (int k = 0; k < 3; ++k) values[static_cast<std::size_t>(k)].push_back(box.center[k]);
-        values[3].push_back(glm::length(glm::dvec3(box.half_extents)));
-    }
-    if (values[0].size() < 20) return extent;
-    for (auto& list : values) std::sort(list.begin(), list.end());
-    const std::size_t low = values[0].size() / 50, high = values[0].size() - 1 - low, middle = values[0].size() / 2;
-    Aabb focus;
-    for (int k = 0; k < 3; ++k) {
-        focus.min[k] = values[static_cast<std::size_t>(k)][low] - values[3][middle];
-        focus.max[k] = values[static_cast<std::size_t>(k)][high] + values[3][middle];
-    }
-    return focus;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Stage>> Stage::load(const SceneRequest& request, const Method& method,
@@ -75,7 +55,7 @@ Result<std::unique_ptr<Stage>> Stage::load(const SceneRequest& request, const Me
         stage->extent_.include(aabb_of(scene.world_boxes()[i]));
         stage->triangle_count_ += scene.mesh(scene.mesh_of(i)).triangle_count();
     }
-    stage->focus_ = focus_of(scene, stage->extent_);
+    stage->focus_ = pipeline::focus_of(scene);
     if (auto configured = stage->configure(method, settings); !configured)
         return tl::unexpected(std::move(configured.error()));
     return stage;

@@ -35,7 +35,7 @@ class Stage {
     [[nodiscard]] const scene::Scene& scene() const { return source_.scene; }
     [[nodiscard]] const pipeline::Pipeline& pipeline() const { return *pipeline_; }
     [[nodiscard]] const Aabb& extent() const { return extent_; }
-    // Where most instances are: without the far landscape and the odd stray.
+    // Where most triangles are: without the far landscape and the odd stray.
     [[nodiscard]] const Aabb& focus() const { return focus_; }
     [[nodiscard]] std::uint64_t triangle_count() const { return triangle_count_; }
 

@@ -137,6 +137,61 @@ TEST_SUITE("geometry/clip_space") {
         CHECK(count({1, 0, 0.5f}, {1, 1, 0.5f}, {1, -1, 0.5f}) == 1);        // lies in a plane: touching is inside
         CHECK(count({0, 0, 0.5f}, {0, 0, 0.5f}, {0, 0, 0.5f}) == 1);         // degenerate
     }
+    TEST_CASE("with bounds the count is the same, wherever the box lies: inside, outside, touching, huge, at 10⁷ m") {
+        std::mt19937_64 random(11);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        ClipPredictor predictor;
+        const Vector<std::uint32_t> indices{0, 1, 2};
+        int whole = 0, none = 0;
+        for (int i = 0; i < 20000; ++i) {
+            Camera camera;
+            camera.position = {1e7 * unit(random), 0.0, 0.0};
+            camera.projection = i % 3 == 0 ? Projection::orthographic : Projection::perspective;
+            camera.far = i % 5 == 0 ? std::numeric_limits<double>::infinity() : 50.0;
+            if (camera.projection == Projection::orthographic) camera.far = 50.0;
+            const double reach = std::exp2(6.0 * unit(random));
+            const glm::dvec3 place(60.0 * unit(random), 60.0 * unit(random), 40.0 * unit(random) - 25.0);
+            const glm::mat4 matrix = ModelToClip(camera)(glm::dmat3(reach), camera.position + place);
+            // Snapped corners land on the planes of cameras that look along an axis.
+            const Soup soup = random_soup(static_cast<std::uint64_t>(i), 12, 2.0f, 2.0f, i % 2 == 0 ? 0.5f : 0.0f);
+            Aabb bounds;
+            for (const glm::vec3& p : soup.positions) bounds.include(p);
+            const std::uint64_t counted = predictor.count(soup.positions, soup.indices, matrix);
+            if (predictor.count(soup.positions, soup.indices, matrix, bounds) != counted) FAIL("differs in case " << i);
+            whole += counted == 12;
+            none += counted == 0;
+        }
+        CHECK(whole > 500);
+        CHECK(none > 500);
+        // Points within a few roundings of the right plane: their box is that point.
+        int beyond = 0;
+        for (int i = 0; i < 20000; ++i) {
+            Camera camera;
+            camera.position = {1e7, 0.0, -1e7};
+            camera.forward = glm::normalize(glm::dvec3(unit(random), 0.3 * unit(random), unit(random)));
+            const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
+            const double depth = 20.0 + 10.0 * unit(random),
+                         edge = depth * std::tan(0.5 * camera.fov_y) * camera.aspect;
+            const glm::vec3 point(to_world * glm::dvec3((1.0 + 4e-7 * unit(random)) * edge, 0.0, -depth));
+            const Vector<glm::vec3> triangle(3, point);
+            const Aabb bounds{point, point};
+            const glm::mat4 matrix = ModelToClip(camera)(glm::dmat3(1.0), camera.position);
+            const std::uint64_t counted = predictor.count(triangle, indices, matrix);
+            if (predictor.count(triangle, indices, matrix, bounds) != counted) FAIL("differs at the plane, case " << i);
+            beyond += counted == 0;
+        }
+        CHECK(beyond > 2000);
+        CHECK(beyond < 18000);
+        // What overflows or is not a number is looked at point by point.
+        const Vector<glm::vec3> points{{kInfinity, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+            huge{{3e38f, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        for (const auto& list : {points, huge}) {
+            Aabb bounds;
+            for (const glm::vec3& p : list) bounds.include(p);
+            const glm::mat4 matrix = 4.0f * some_matrix();
+            CHECK(predictor.count(list, indices, matrix, bounds) == predictor.count(list, indices, matrix));
+        }
+    }
     TEST_CASE(
         "agrees with lavapipe on 600,000 random triangles: crossing planes, behind the camera, degenerate, touching") {
         CROFTON_REQUIRE_DEVICE(device);

@@ -167,13 +167,23 @@ Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height, std::
 }
 
 Result<GpuCounters> Rasterizer::draw(const Frame& frame, std::uint32_t picture) {
+    if (auto submitted = submit(frame, picture); !submitted) return tl::unexpected(std::move(submitted.error()));
+    return finish();
+}
+
+Result<void> Rasterizer::submit(const Frame& frame, std::uint32_t picture) {
     CROFTON_ASSERT(picture < state_->targets.size(), "there is no such picture");
     Target& target = *state_->targets[picture];
-    if (auto prepared = state_->prepare(frame); !prepared) return tl::unexpected(std::move(prepared.error()));
-    if (auto begun = state_->commands.begin(); !begun) return tl::unexpected(std::move(begun.error()));
+    if (auto prepared = state_->prepare(frame); !prepared) return prepared;
+    if (auto begun = state_->commands.begin(); !begun) return begun;
     state_->record(frame, target);
-    if (auto done = state_->commands.submit_and_wait(); !done) return tl::unexpected(std::move(done.error()));
+    if (auto submitted = state_->commands.submit(); !submitted) return submitted;
     target.drawn = true;
+    return {};
+}
+
+Result<GpuCounters> Rasterizer::finish() {
+    if (auto done = state_->commands.wait(); !done) return tl::unexpected(std::move(done.error()));
     return state_->read_counters();
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 // Push constants, as the shaders declare them.
 struct SceneConstants {
-    glm::vec4 to_sun_and_haze, sun, sky_ambient, ground_ambient, fog, spare[3];
+    glm::vec4 to_sun_and_haze, sun, sky_ambient, ground_ambient, fog_and_share, spare[3];
 };
 struct SkyConstants {
     glm::vec4 to_sun, zenith, horizon, ground, sun, right, up, forward;
@@ -27,11 +27,11 @@ SceneConstants scene_constants(const Frame& frame) {
     const Environment& e = frame.environment;
     // Orthographic views have w = 1 everywhere: no haze.
     const bool haze = e.haze_distance > 0.0f && frame.camera.projection == Projection::perspective;
-    return {wide(glm::normalize(e.to_sun), haze ? 1.0f / e.haze_distance : 0.0f),
+    return {wide(glm::normalize(e.to_sun), haze ? e.haze_distance : 0.0f),
             wide(e.sun),
             wide(e.sky_ambient),
             wide(e.ground_ambient),
-            wide(e.horizon),
+            wide(e.horizon, haze ? 1.0f : 0.0f),
             {}};
 }
 

@@ -158,6 +158,11 @@ Result<void> Commands::begin() {
 }
 
 Result<void> Commands::submit_and_wait() {
+    if (auto submitted = submit(); !submitted) return submitted;
+    return wait();
+}
+
+Result<void> Commands::submit() {
     const auto& vk = context_->vk;
     VkResult result = vk.vkEndCommandBuffer(handle);
     if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkEndCommandBuffer"));
@@ -166,7 +171,12 @@ Result<void> Commands::submit_and_wait() {
     info.pCommandBuffers = &handle;
     result = vk.vkQueueSubmit(context_->queue, 1, &info, fence_);
     if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkQueueSubmit"));
-    result = vk.vkWaitForFences(context_->device, 1, &fence_, VK_TRUE, ~std::uint64_t{0});
+    return {};
+}
+
+Result<void> Commands::wait() {
+    const auto& vk = context_->vk;
+    VkResult result = vk.vkWaitForFences(context_->device, 1, &fence_, VK_TRUE, ~std::uint64_t{0});
     if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkWaitForFences"));
     result = vk.vkResetFences(context_->device, 1, &fence_);
     if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkResetFences"));

@@ -1,6 +1,7 @@
 // Model coordinates to clip coordinates in float, and how many triangles a software clipper makes of a mesh there.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/aabb.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -39,6 +40,11 @@ class ClipPredictor {
     // them. Keeps scratch memory between calls: allocates only while meshes grow. One predictor per thread.
     [[nodiscard]] std::uint64_t count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                       const glm::mat4& model_to_clip);
+
+    // The same sum for positions that all lie in `bounds`: a mesh inside all planes, or beyond one, by more than the
+    // floats can round is counted by its bounds alone.
+    [[nodiscard]] std::uint64_t count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
+                                      const glm::mat4& model_to_clip, const Aabb& bounds);
 
   private:
     Vector<std::uint8_t> codes_;  // per position: bit k set where it lies outside plane k

@@ -112,6 +112,11 @@ class Rasterizer {
     // Vulkan's.
     [[nodiscard]] Result<GpuCounters> draw(const Frame& frame, std::uint32_t picture = 0);
 
+    // draw() in two steps, so that the caller can work while the device draws. Frame and spans are done with once
+    // submit() returns; after it, finish() comes before any other call.
+    [[nodiscard]] Result<void> submit(const Frame& frame, std::uint32_t picture = 0);
+    [[nodiscard]] Result<GpuCounters> finish();
+
     // The picture's pixels as they are now. Errors: nothing drawn since its last change of size; Vulkan's.
     [[nodiscard]] Result<void> read_pixels(Image& image, std::uint32_t picture = 0);
 

@@ -73,7 +73,7 @@ class ImageResource {
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
 };
 
-// A command buffer and its fence, recorded, submitted and waited for.
+// A command buffer and its fence: recorded, submitted, waited for.
 class Commands {
   public:
     Commands() = default;
@@ -86,6 +86,8 @@ class Commands {
 
     [[nodiscard]] static Result<Commands> create(const VulkanContext& context);
     [[nodiscard]] Result<void> begin();
+    [[nodiscard]] Result<void> submit();
+    [[nodiscard]] Result<void> wait();  // once after each submit()
     [[nodiscard]] Result<void> submit_and_wait();
 
     VkCommandBuffer handle = VK_NULL_HANDLE;
