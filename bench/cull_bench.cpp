@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/core/thread_pool.hpp>
-#include <crofton/cull/box_set.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/many_views.hpp>
 #include <crofton/tree/box_tree.hpp>

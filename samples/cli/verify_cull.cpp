@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cmath>
-#include <crofton/cull/box_set.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>

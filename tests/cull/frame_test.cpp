@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <crofton/core/memory.hpp>
 #include <crofton/core/thread_pool.hpp>
-#include <crofton/cull/box_set.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/many_views.hpp>
 #include <cstdlib>
 #include <oracle/random_boxes.hpp>

@@ -19,13 +19,15 @@ Dyadic exact_entry(const Plane& plane, const glm::dvec3& origin, const Obb& box,
     return sum;
 }
 
-int exact_corner_sign(const Plane& plane, const glm::dvec3& origin, const Obb& box, bool innermost) {
-    Dyadic sum = exact_entry(plane, origin, box, 3);
-    for (unsigned k = 0; k < 3; ++k) {
-        const Dyadic reach = abs(exact_entry(plane, origin, box, k));
-        sum = innermost ? sum + reach : sum - reach;
+Dyadic exact_entry(const Plane& plane, const glm::dvec3& origin, const Aabb& box, unsigned k) {
+    const auto axis = static_cast<int>(k);
+    if (k < 3) return Dyadic(plane.normal[axis]) * (Dyadic(box.max[axis]) - Dyadic(box.min[axis]));
+    Dyadic sum = Dyadic(plane.offset) + Dyadic(plane.offset);
+    for (int j = 0; j < 3; ++j) {
+        const Dyadic start(origin[j]);
+        sum = sum + Dyadic(plane.normal[j]) * ((Dyadic(box.min[j]) - start) + (Dyadic(box.max[j]) - start));
     }
-    return sum.sign();
+    return sum;
 }
 
 bool is_usable(const Obb& box) {
@@ -33,6 +35,14 @@ bool is_usable(const Obb& box) {
     for (int k = 0; k < 3; ++k)
         if (!within(glm::dvec3(box.axes[k]), 2.0)) return false;
     return true;
+}
+
+bool is_usable(const Aabb& box) {
+    return !box.is_empty() && within(box.min, kMaxCoordinate) && within(box.max, kMaxCoordinate);
+}
+
+bool is_usable(const Sphere& sphere) {
+    return within(sphere.center, kMaxCoordinate) && sphere.radius >= 0.0 && sphere.radius <= kMaxCoordinate;
 }
 
 bool is_usable(const Frustum& frustum) {

@@ -5,12 +5,16 @@
 
 namespace crofton::cull {
 
-Verdict classify(const Frustum& frustum, const Obb& box, Mode mode) {
-    if (!is_usable(box) || !is_usable(frustum)) return Verdict::straddling;
-    return classify_usable(frustum, box, mode);
+namespace {
+
+template <class Bound>
+Verdict classify_any(const Frustum& frustum, const Bound& bound, Mode mode) {
+    if (!is_usable(bound) || !is_usable(frustum)) return Verdict::straddling;
+    return classify_usable(frustum, bound, mode);
 }
 
-Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode) {
+template <class Box>
+Verdict classify_box(const Frustum& frustum, const Box& box, Mode mode) {
     Constraint constraints[Frustum::kMaxPlanes];
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
         constraints[i] = constraint_of(frustum.planes[i], frustum.origin, box);
@@ -21,6 +25,28 @@ Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode) {
         inside = outermost_sign(constraints[i], frustum.planes[i], frustum.origin, box) >= 0;
     if (inside) return Verdict::inside;
     return mode == Mode::conservative || meets(frustum, box, constraints) ? Verdict::straddling : Verdict::outside;
+}
+
+}  // namespace
+
+Verdict classify(const Frustum& frustum, const Obb& box, Mode mode) {
+    return classify_any(frustum, box, mode);
+}
+
+Verdict classify(const Frustum& frustum, const Aabb& box, Mode mode) {
+    return classify_any(frustum, box, mode);
+}
+
+Verdict classify(const Frustum& frustum, const Sphere& sphere, Mode mode) {
+    return classify_any(frustum, sphere, mode);
+}
+
+Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode) {
+    return classify_box(frustum, box, mode);
+}
+
+Verdict classify_usable(const Frustum& frustum, const Aabb& box, Mode mode) {
+    return classify_box(frustum, box, mode);
 }
 
 void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts, Mode mode) {

@@ -9,6 +9,7 @@ struct KernelPlane {
     double normal[3];
     double offset;
     float normal_f[3];  // normal, rounded
+    float length_f;     // of normal, within 2^-23
 };
 
 struct KernelView {

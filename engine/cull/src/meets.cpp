@@ -9,7 +9,7 @@ namespace crofton::cull {
 namespace {
 
 // u = 2^-53 times this bounds the error of a combination y · (slopes, base) + Σ|y · slope| relative to Σ y_i size_i:
-// entries 6u, at most three products and additions per entry 5u, four additions and absolute values 4u.
+// entries 7u, at most three products and additions per entry 5u, four additions and absolute values 4u.
 constexpr double kCombinationRounding = 32.0 * kUnit;
 
 struct Weighted {
@@ -59,7 +59,7 @@ bool finds_witness(std::span<const Constraint> constraints, int rounds) {
         const Constraint* violated = nullptr;
         for (const Constraint& c : constraints) {
             const double value = c.base + c.slope[0] * t[0] + c.slope[1] * t[1] + c.slope[2] * t[2];
-            // Entries 6u and at most 4 roundings more each; the stored t is exact by definition.
+            // Entries 7u and at most 4 roundings more each; the stored t is exact by definition.
             const double margin = value - (16.0 * kUnit * c.size() + kTiny);
             const double steepness = std::fabs(c.slope[0]) + std::fabs(c.slope[1]) + std::fabs(c.slope[2]);
             if (margin < 0.0 && (!violated || margin < worst * steepness)) {
@@ -91,9 +91,10 @@ bool finds_witness(std::span<const Constraint> constraints, int rounds) {
 // All rows (slope, base) of the polytope in t: the planes, then the cube's faces t_k + 1 ≥ 0 and 1 − t_k ≥ 0.
 // The polytope is bounded, so if it is not empty it has a vertex, where three independent rows vanish: the vertex, in
 // homogeneous coordinates, is their generalised cross product.
+template <class Box>
 class Enumeration {
   public:
-    Enumeration(const Frustum& frustum, const Obb& box, const Constraint* constraints) : frustum_(frustum), box_(box) {
+    Enumeration(const Frustum& frustum, const Box& box, const Constraint* constraints) : frustum_(frustum), box_(box) {
         for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
             const Constraint& c = constraints[i];
             value_[i] = {c.slope[0], c.slope[1], c.slope[2], c.base};
@@ -145,8 +146,8 @@ class Enumeration {
             if (m == rows[0] || m == rows[1] || m == rows[2]) continue;
             double sum = 0.0, sum_size = 0.0;
             for (unsigned b = 0; b < 4; ++b) sum += value_[m][b] * at[b], sum_size += size_[m][b] * at_size[b];
-            // 24 products of four entries, each entry within 6u of its size, three multiplications, at most eight
-            // additions deep: 35u; 64u covers the higher orders.
+            // 24 products of four entries, each entry within 7u of its size, three multiplications, at most eight
+            // additions deep: 39u; 64u covers the higher orders.
             const double bound = 64.0 * kUnit * sum_size + kTiny;
             const int sign = sum > bound ? 1 : sum < -bound ? -1 : exact_sign(rows, m);
             if (sign * side < 0) return false;
@@ -178,7 +179,7 @@ class Enumeration {
     }
 
     const Frustum& frustum_;
-    const Obb& box_;
+    const Box& box_;
     std::array<std::array<double, 4>, kMaxRows> value_{};
     std::array<std::array<double, 4>, kMaxRows> size_{};
     std::array<Dyadic, 4> exact_at_;
@@ -188,7 +189,8 @@ class Enumeration {
 
 }  // namespace
 
-bool meets(const Frustum& frustum, const Obb& box, const Constraint* constraints) {
+template <class Box>
+bool meets(const Frustum& frustum, const Box& box, const Constraint* constraints) {
     const std::span<const Constraint> all(constraints, frustum.plane_count);
     std::array<std::uint32_t, Frustum::kMaxPlanes> outside;
     std::uint32_t outside_count = 0;
@@ -206,7 +208,10 @@ bool meets(const Frustum& frustum, const Obb& box, const Constraint* constraints
             for (std::uint32_t k = j + 1; k < frustum.plane_count; ++k)
                 if (j != outside[n] && k != outside[n] && vertex_separates(all[outside[n]], all[j], all[k]))
                     return false;
-    return Enumeration(frustum, box, constraints).has_vertex();
+    return Enumeration<Box>(frustum, box, constraints).has_vertex();
 }
+
+template bool meets(const Frustum&, const Obb&, const Constraint*);
+template bool meets(const Frustum&, const Aabb&, const Constraint*);
 
 }  // namespace crofton::cull

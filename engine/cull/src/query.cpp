@@ -3,6 +3,7 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <bit>
+#include <glm/geometric.hpp>
 
 #include "box_constraints.hpp"
 
@@ -35,6 +36,7 @@ KernelView kernel_view_of(const View& view) {
             result.planes[i].normal_f[j] = static_cast<float>(plane.normal[j]);
         }
         result.planes[i].offset = plane.offset;
+        result.planes[i].length_f = static_cast<float>(glm::length(plane.normal));
     }
     return result;
 }

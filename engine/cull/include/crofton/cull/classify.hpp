@@ -1,7 +1,9 @@
 // The one question a renderer asks of a bound: is this worth drawing?
 #pragma once
+#include <crofton/geometry/aabb.hpp>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/sphere.hpp>
 #include <cstdint>
 #include <span>
 
@@ -20,6 +22,12 @@ enum class Mode : std::uint8_t {
 // never lost. Planes settle most boxes in double with a proven error bound; the rest go through the separating-axis
 // test (Gottschalk, Lin, Manocha 1996) and, where rounding could still matter, through exact arithmetic.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, Mode mode = Mode::exact);
+
+// The same for axis-aligned boxes and for balls. An empty Aabb and a negative radius are `straddling`, as is what is
+// not finite. `inside` and `outside` are exact for a ball too, except that one whose numbers (the view's as well)
+// include some other than 0 below 1e-60 in magnitude may be `straddling` where no plane rejects it but an edge would.
+[[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, Mode mode = Mode::exact);
+[[nodiscard]] Verdict classify(const Frustum& frustum, const Sphere& sphere, Mode mode = Mode::exact);
 
 // As above for many boxes: writes verdicts[i] for boxes[i]. Allocates nothing; may run on any thread.
 // Requires verdicts.size() == boxes.size().

@@ -19,6 +19,8 @@ struct View {
     std::uint32_t layer_mask = ~std::uint32_t{0};
 };
 
+inline constexpr std::size_t kMaxViews = 32;  // in one pass
+
 // Tree order costs nothing and is the same on every run; items that a renderer lays out in the tree's order
 // (BoxTree::slot_items) come out ascending anyway.
 enum class Order : std::uint8_t { ascending, tree };

@@ -7,8 +7,6 @@
 
 namespace crofton::cull {
 
-inline constexpr std::size_t kMaxViews = 32;
-
 class ManyVisible {
   public:
     // The items that at least one view sees, each once, in the tree's order; bit v of view_masks()[i]: view v sees

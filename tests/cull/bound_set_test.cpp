@@ -1,5 +1,5 @@
 #include <doctest/doctest.h>
-#include <crofton/cull/box_set.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <limits>
 #include <oracle/random_boxes.hpp>
 #include <vector>
@@ -8,7 +8,7 @@ using namespace crofton;
 using cull::BoxSet;
 using cull::Verdict;
 
-TEST_SUITE("cull/box_set") {
+TEST_SUITE("cull/bound_set") {
     TEST_CASE(
         "boxes that are not finite are straddling for every view, and their neighbours are as if they were absent") {
         oracle::Crowd crowd = oracle::random_crowd(200, 0.0, 1);

@@ -1,0 +1,38 @@
+// One view against a chunk of a list, in vectors: what a filter can decide, and the list of what it cannot.
+#pragma once
+#include <crofton/cull/list_layout.hpp>
+
+#include "kernel_view.hpp"
+
+namespace crofton::cull {
+
+template <class Record>
+struct ListKernelInput {
+    const RowBlock* rows;  // the chunk's
+    const Record* records;
+    const ListChunk* chunk;
+    const KernelView* view;
+    std::size_t count;
+    bool exact;
+};
+
+// Bit i % 64 of word i / 64 is bound i's.
+struct ListKernelOutput {
+    std::uint64_t visible[kChunk / 64];  // not certainly outside
+    std::uint64_t inside[kChunk / 64];
+    std::uint32_t undecided[kChunk + 16];  // theirs are open
+    std::size_t undecided_count, settled_count;
+    std::uint64_t improper;
+};
+
+void run_list_kernel(const ListKernelInput<BoxRecord>& input, ListKernelOutput& output);
+void run_list_kernel(const ListKernelInput<AabbRecord>& input, ListKernelOutput& output);
+void run_list_kernel(const ListKernelInput<SphereRecord>& input, ListKernelOutput& output);
+
+// masks[i] |= bit for each of `count` bounds that is visible and, if there are layers, shares one with layer_mask.
+void mark_views_kernel(const std::uint64_t* visible, std::size_t count, std::uint32_t bit, const std::uint32_t* layers,
+                       std::uint32_t layer_mask, std::uint32_t* masks);
+
+std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
+
+}  // namespace crofton::cull

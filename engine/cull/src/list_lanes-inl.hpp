@@ -1,0 +1,100 @@
+// A list's records, gathered from wherever they lie and turned into lanes. Compiled once per instruction set (Highway).
+#include <crofton/cull/list_layout.hpp>
+#include <cstring>
+
+#include "block_tests-inl.hpp"
+
+#if defined(CROFTON_CULL_LIST_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_CULL_LIST_LANES_INL
+#undef CROFTON_CULL_LIST_LANES_INL
+#else
+#define CROFTON_CULL_LIST_LANES_INL
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+
+inline constexpr std::size_t kBatch = 128;
+
+// Records copied next to each other, as rows of four numbers that lanes are loaded from interleaved.
+template <class Record>
+struct Batch {
+    static constexpr std::size_t kQuads = sizeof(Record) / 16;
+    alignas(64) float quads[kQuads][kBatch][4];
+
+    HWY_INLINE void copy(std::size_t to, const Record& record) {
+        for (std::size_t q = 0; q < kQuads; ++q)
+            std::memcpy(quads[q][to], reinterpret_cast<const char*>(&record) + 16 * q, 16);
+    }
+    HWY_INLINE void load(std::size_t quad, std::size_t at, VF& a, VF& b, VF& c, VF& d) const {
+        hn::LoadInterleaved4(DF(), quads[quad][at], a, b, c, d);
+    }
+};
+
+HWY_INLINE VF lower_half(VF pairs) {
+    const DI di;
+    return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::ShiftLeft<16>(hn::BitCast(di, pairs))));
+}
+HWY_INLINE VF upper_half(VF pairs) {
+    return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::BitCast(DI(), pairs)));
+}
+
+HWY_INLINE BoxLanes lanes_of(const Batch<BoxRecord>& batch, std::size_t at, std::size_t count) {
+    BoxLanes boxes;
+    VF first, pairs[4];
+    batch.load(0, at, boxes.x, boxes.y, boxes.z, first);
+    batch.load(1, at, pairs[0], pairs[1], pairs[2], pairs[3]);
+    boxes.set_radius(hn::BitCast(DF(), hn::ShiftLeft<16>(hn::BitCast(DU(), first))));
+    boxes.edge[0] = upper_half(first);
+    for (unsigned i = 0; i < 4; ++i) {
+        boxes.edge[2 * i + 1] = lower_half(pairs[i]);
+        boxes.edge[2 * i + 2] = upper_half(pairs[i]);
+    }
+    boxes.present = hn::FirstN(DF(), count);
+    return boxes;
+}
+
+// Half extents in the place of half edges.
+struct AabbLanes {
+    VF x, y, z, unit, half[3], error;
+    MF present;
+
+    HWY_INLINE VF slope(const KernelPlane& plane, unsigned k) const {
+        return hn::Mul(hn::Set(DF(), plane.normal_f[k]), half[k]);
+    }
+    HWY_INLINE VF reach(const KernelPlane& plane) const {
+        const VF sum = hn::Add(hn::Add(hn::Abs(slope(plane, 0)), hn::Abs(slope(plane, 1))), hn::Abs(slope(plane, 2)));
+        return hn::Mul(sum, unit);
+    }
+    HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(error, hn::Set(DF(), local.slack)); }
+};
+
+HWY_INLINE AabbLanes lanes_of(const Batch<AabbRecord>& batch, std::size_t at, std::size_t count) {
+    AabbLanes boxes;
+    batch.load(0, at, boxes.x, boxes.y, boxes.z, boxes.unit);
+    batch.load(1, at, boxes.half[0], boxes.half[1], boxes.half[2], boxes.error);
+    boxes.present = hn::FirstN(DF(), count);
+    return boxes;
+}
+
+struct SphereLanes {
+    VF x, y, z, radius;
+    MF present;
+
+    HWY_INLINE VF reach(const KernelPlane& plane) const { return hn::Mul(radius, hn::Set(DF(), plane.length_f)); }
+    // The radius, the normal's length and their product round by 2^-24 of the result each, the sums with it by as much.
+    HWY_INLINE VF slack(LocalPlane local) const {
+        return hn::MulAdd(radius, hn::Set(DF(), 0x1p-20f), hn::Set(DF(), local.slack));
+    }
+};
+
+HWY_INLINE SphereLanes lanes_of(const Batch<SphereRecord>& batch, std::size_t at, std::size_t count) {
+    SphereLanes spheres;
+    batch.load(0, at, spheres.x, spheres.y, spheres.z, spheres.radius);
+    spheres.present = hn::FirstN(DF(), count);
+    return spheres;
+}
+
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

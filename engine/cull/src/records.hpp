@@ -1,0 +1,24 @@
+// A bound as a list keeps it.
+#pragma once
+#include <crofton/cull/list_layout.hpp>
+#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/sphere.hpp>
+
+namespace crofton::cull {
+
+// A ball that contains the bound, in double: radius rounded up, centre to the nearest (the radius makes up for it).
+[[nodiscard]] Sphere ball_around(const Obb& box);
+[[nodiscard]] Sphere ball_around(const Aabb& box);
+[[nodiscard]] Sphere ball_around(const Sphere& sphere);
+
+// `offset`: the centre relative to the chunk's origin.
+[[nodiscard]] BoxRecord record_of(const Obb& box, const glm::dvec3& offset);
+[[nodiscard]] AabbRecord record_of(const Aabb& box, const glm::dvec3& offset);
+[[nodiscard]] SphereRecord record_of(const Sphere& sphere, const glm::dvec3& offset);
+
+// Such that no view's filter decides anything: for bounds that are not valid.
+template <class Record>
+[[nodiscard]] Record undecidable_record();
+
+}  // namespace crofton::cull
