@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <crofton/cull/bound_set.hpp>
 #include <limits>
+#include <oracle/exact_bounds.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -75,5 +77,209 @@ TEST_SUITE("cull/bound_set") {
                     for (std::size_t n = 0; n < visible; ++n) REQUIRE(bits.verdict(ids[n]) != Verdict::outside);
                 }
             }
+    }
+
+    TEST_CASE(
+        "axis-aligned boxes and balls get classify's verdicts, at every offset and in every mode, after updates too") {
+        for (const double offset : {0.0, 1e5, 1e7})
+            for (const std::size_t count : {1u, 65u, 5000u}) {
+                oracle::NearMisses random(6, offset);
+                const glm::dvec3 middle = offset * glm::dvec3(1.0, -0.7, 0.3);
+                const auto random_aabb = [&](const glm::dvec3& near) {
+                    return aabb_of(oracle::random_box(random, near, 40.0));
+                };
+                const auto random_sphere = [&](const glm::dvec3& near) {
+                    const Obb box = oracle::random_box(random, near, 40.0);
+                    return Sphere{box.center, double{box.half_extents.x}};
+                };
+                std::vector<Aabb> boxes;
+                std::vector<Sphere> spheres;
+                for (std::size_t i = 0; i < count; ++i) {
+                    boxes.push_back(random_aabb(middle));
+                    spheres.push_back(random_sphere(middle));
+                }
+                cull::AabbSet box_set;
+                cull::SphereSet sphere_set;
+                box_set.assign(boxes);
+                sphere_set.assign(spheres);
+                cull::VerdictBits bits;
+                for (int trial = 0; trial < 6; ++trial) {
+                    Camera camera = random.camera();
+                    camera.far = camera.near + random.number(1.0, 60.0);
+                    const cull::View view{*frustum_of(camera)};
+                    std::vector<std::uint32_t> moved;
+                    for (std::uint32_t i = 0; i < count; i += 3) {
+                        boxes[i] = i % 15 ? random_aabb(camera.position) : oracle::near_aabb(random, view.frustum);
+                        spheres[i] =
+                            i % 15 ? random_sphere(camera.position) : oracle::near_sphere(random, view.frustum);
+                        moved.push_back(i);
+                    }
+                    if (count > 60) {
+                        boxes[30] = Aabb{};
+                        boxes[33].max.x = std::numeric_limits<double>::infinity();
+                        boxes[36] = {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
+                        boxes[39].min.y = std::nan("");
+                        spheres[30].radius = -1.0;
+                        spheres[33].center.z = std::nan("");
+                        spheres[36].radius = 1e30;
+                        spheres[39].center.x = -std::numeric_limits<double>::infinity();
+                        spheres[42].radius = std::numeric_limits<double>::denorm_min();
+                    }
+                    box_set.update(moved, boxes);
+                    sphere_set.update(moved, spheres);
+                    const cull::Mode mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
+                    cull::cull(box_set, boxes, view, bits, mode);
+                    for (std::size_t i = 0; i < count; ++i)
+                        REQUIRE(bits.verdict(i) == cull::classify(view.frustum, boxes[i], mode));
+                    cull::cull(sphere_set, spheres, view, bits, mode);
+                    for (std::size_t i = 0; i < count; ++i)
+                        REQUIRE(bits.verdict(i) == cull::classify(view.frustum, spheres[i], mode));
+                }
+            }
+    }
+
+    TEST_CASE(
+        "zero, denormal and enormous boxes, and views far away or with enormous offsets, get classify's verdicts") {
+        oracle::NearMisses random(7);
+        oracle::Crowd crowd = oracle::random_crowd(4200, 0.0, 3);
+        for (std::size_t i = 0; i < 300; ++i) {
+            Obb& box = crowd.boxes[11 * i];
+            if (i % 6 == 0) box.half_extents = glm::vec3(0.0f);
+            if (i % 6 == 1) box.half_extents = glm::vec3(std::numeric_limits<float>::denorm_min());
+            if (i % 6 == 2) box.half_extents = glm::vec3(9e29f);
+            if (i % 6 == 3) box.center *= 1e28;
+            if (i % 6 == 4) box.axes = glm::mat3(0.0f);
+            if (i % 6 == 5) box.half_extents.x = std::numeric_limits<float>::quiet_NaN();
+        }
+        BoxSet set;
+        set.assign(crowd.boxes);
+        cull::VerdictBits bits;
+        for (int trial = 0; trial < 12; ++trial) {
+            cull::View view{*frustum_of(random.camera())};
+            if (trial % 4 == 1) view.frustum.origin *= 1e29;
+            if (trial % 4 == 2) view.frustum.planes[trial % 6u].offset = trial % 8 == 2 ? 1e49 : -1e49;
+            if (trial % 4 == 3) view.frustum.planes[trial % 6u].offset = trial % 8 == 3 ? 1e31 : -1e31;
+            for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
+                cull::cull(set, crowd.boxes, view, bits, mode);
+                for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
+                    REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i], mode));
+            }
+        }
+    }
+
+    TEST_CASE("a chunk whose boxes have all moved far away is laid out anew; one box moving to and fro is not") {
+        oracle::Crowd crowd = oracle::random_crowd(4096, 0.0, 8);
+        BoxSet set;
+        set.assign(crowd.boxes);
+        CHECK(set.chunks()[0].strays == 0);
+        const double quantum = set.chunks()[0].quantum;
+        std::vector<std::uint32_t> one{5}, all;
+        crowd.boxes[5].center.x += 1e6;
+        set.update(one, crowd.boxes);
+        CHECK(set.chunks()[0].strays == 1);
+        CHECK(set.chunks()[0].quantum == quantum);
+        crowd.boxes[5].center.x -= 1e6;
+        set.update(one, crowd.boxes);
+        CHECK(set.chunks()[0].strays == 0);
+        for (std::uint32_t i = 0; i < 4096; ++i) {
+            crowd.boxes[i].center.x += 1e6;
+            all.push_back(i);
+        }
+        set.update(all, crowd.boxes);
+        CHECK(set.chunks()[0].strays == 0);
+        cull::VerdictBits bits;
+        oracle::NearMisses random(9);
+        for (int trial = 0; trial < 5; ++trial) {
+            Camera camera = random.camera();
+            camera.position.x += 1e6;
+            camera.far = 60.0;
+            const cull::View view{*frustum_of(camera)};
+            cull::cull(set, crowd.boxes, view, bits);
+            for (std::size_t i = 0; i < 4096; ++i)
+                REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i]));
+        }
+    }
+
+    TEST_CASE("a list in the order of space is settled by whole chunks, with the same verdicts") {
+        oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 10);
+        std::sort(crowd.boxes.begin(), crowd.boxes.end(),
+                  [](const Obb& a, const Obb& b) { return a.center.x < b.center.x; });
+        for (Obb& box : crowd.boxes) box.half_extents = glm::min(box.half_extents, glm::vec3(1.0f));
+        BoxSet set;
+        set.assign(crowd.boxes);
+        Camera camera;
+        camera.position = {-200.0, 0.0, 0.0};
+        camera.forward = {1.0, 0.0, 0.0};
+        camera.near = 150.0;
+        camera.far = 200.0;
+        const cull::View view{*frustum_of(camera)};
+        cull::VerdictBits bits;
+        cull::cull(set, crowd.boxes, view, bits);
+        std::size_t inside = 0;
+        for (std::size_t i = 0; i < crowd.boxes.size(); ++i) {
+            REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i]));
+            inside += bits.verdict(i) == Verdict::inside;
+        }
+        CHECK(inside > 5000);
+    }
+
+    TEST_CASE("32 views in one pass see what each sees alone, each within its layers") {
+        for (const std::size_t count : {1u, 70u, 9000u}) {
+            const oracle::Crowd crowd = oracle::random_crowd(count, 1e6, 12);
+            BoxSet set;
+            set.assign(crowd.boxes);
+            oracle::NearMisses random(13, 1e6);
+            std::vector<cull::View> views;
+            for (unsigned v = 0; v < 32; ++v) {
+                Camera camera = random.camera();
+                camera.far = camera.near + random.number(1.0, 60.0);
+                views.push_back({*frustum_of(camera), v % 3 ? ~0u : 1u << (v % 4)});
+            }
+            views[7].frustum.planes[0].offset = std::nan("");
+            views[8].frustum.planes[2].normal *= 1.5;
+            views[9].frustum.plane_count = 0;
+            cull::VerdictBits bits;
+            std::vector<std::uint32_t> masks(count, 77u);
+            for (const bool layered : {false, true})
+                for (const std::size_t used : {0u, 5u, 32u}) {
+                    const auto layers =
+                        layered ? std::span<const std::uint32_t>(crowd.layers) : std::span<const std::uint32_t>();
+                    cull::cull(set, crowd.boxes, layers, std::span<const cull::View>(views).first(used), masks);
+                    std::vector<std::uint32_t> expected(count, 0u);
+                    for (std::size_t v = 0; v < used; ++v) {
+                        cull::cull(set, crowd.boxes, views[v], bits);
+                        for (std::size_t i = 0; i < count; ++i)
+                            if (bits.verdict(i) != Verdict::outside &&
+                                (!layered || crowd.layers[i] & views[v].layer_mask))
+                                expected[i] |= 1u << v;
+                    }
+                    CHECK(masks == expected);
+                }
+        }
+    }
+
+    TEST_CASE("statistics count what the exact stage found outside") {
+        if (!cull::kCountStatistics) return;
+        const oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 14);
+        BoxSet set;
+        set.assign(crowd.boxes);
+        oracle::NearMisses random(15);
+        cull::VerdictBits bits;
+        std::size_t improper = 0;
+        for (int trial = 0; trial < 10; ++trial) {
+            const cull::View view{*frustum_of(random.camera())};
+            cull::cull(set, crowd.boxes, view, bits);
+            std::size_t expected = 0, straddling = 0;
+            for (std::size_t i = 0; i < crowd.boxes.size(); ++i) {
+                expected += bits.verdict(i) == Verdict::outside &&
+                            cull::classify(view.frustum, crowd.boxes[i], cull::Mode::conservative) != Verdict::outside;
+                straddling += bits.verdict(i) == Verdict::straddling;
+            }
+            CHECK(bits.statistics.improper == expected);
+            CHECK(bits.statistics.straddling == straddling);
+            CHECK(bits.statistics.boxes_tested == 20000);
+            improper += expected;
+        }
+        CHECK(improper > 10);
     }
 }

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <crofton/cull/classify.hpp>
 #include <limits>
+#include <oracle/exact_bounds.hpp>
 #include <oracle/exact_frustum.hpp>
 #include <oracle/near_misses.hpp>
 #include <vector>
@@ -150,6 +151,69 @@ TEST_SUITE("cull/classify") {
                 if (trial % 2) break;
             }
             CHECK(cull::classify(cut, box) == oracle::classify(cut, box));
+        }
+    }
+
+    TEST_CASE("axis-aligned boxes and balls that are not valid are straddling, and cull nothing") {
+        const Frustum frustum = unit_cube();
+        for (const Mode mode : {Mode::conservative, Mode::exact}) {
+            CHECK(cull::classify(frustum, Aabb{}, mode) == Verdict::straddling);
+            CHECK(cull::classify(frustum, Aabb{{5.0, 0.0, 0.0}, {kInfinity, 1.0, 1.0}}, mode) == Verdict::straddling);
+            CHECK(cull::classify(frustum, Aabb{{5.0, 0.0, 0.0}, {6.0, std::nan(""), 1.0}}, mode) ==
+                  Verdict::straddling);
+            CHECK(cull::classify(frustum, Sphere{{5.0, 0.0, 0.0}, -1.0}, mode) == Verdict::straddling);
+            CHECK(cull::classify(frustum, Sphere{{5.0, std::nan(""), 0.0}, 1.0}, mode) == Verdict::straddling);
+            CHECK(cull::classify(frustum, Sphere{{5.0, 0.0, 0.0}, std::nan("")}, mode) == Verdict::straddling);
+            CHECK(cull::classify(frustum, Sphere{{5.0, 0.0, 0.0}, 1e31}, mode) == Verdict::straddling);
+        }
+        Frustum broken = frustum;
+        broken.planes[1].normal.y = std::nan("");
+        CHECK(cull::classify(broken, Sphere{{50.0, 0.0, 0.0}, 1.0}) == Verdict::straddling);
+        CHECK(cull::classify(broken, Aabb{{50.0, 0.0, 0.0}, {51.0, 1.0, 1.0}}) == Verdict::straddling);
+    }
+
+    TEST_CASE("balls that touch a plane, an edge or a corner are never culled; one step away they are") {
+        const Frustum frustum = unit_cube();
+        const double next = std::nextafter(2.0, 1.0);
+        CHECK(cull::classify(frustum, Sphere{{3.0, 0.0, 0.0}, 2.0}) == Verdict::straddling);
+        CHECK(cull::classify(frustum, Sphere{{3.0, 0.0, 0.0}, next}) == Verdict::outside);
+        // 3-4-5 beyond an edge, 1-2-2-3 beyond a corner.
+        CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, 5.0}) == Verdict::straddling);
+        CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, std::nextafter(5.0, 4.0)}) == Verdict::outside);
+        CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, std::nextafter(5.0, 4.0)}, Mode::conservative) ==
+              Verdict::straddling);
+        CHECK(cull::classify(frustum, Sphere{{-2.0, 3.0, -3.0}, 3.0}) == Verdict::straddling);
+        CHECK(cull::classify(frustum, Sphere{{-2.0, 3.0, -3.0}, std::nextafter(3.0, 2.0)}) == Verdict::outside);
+        CHECK(cull::classify(frustum, Sphere{{0.5, 0.0, 0.0}, 0.5}) == Verdict::inside);
+        CHECK(cull::classify(frustum, Sphere{{0.5, 0.0, 0.0}, std::nextafter(0.5, 1.0)}) == Verdict::straddling);
+        CHECK(cull::classify(frustum, Sphere{{1.0, 1.0, 1.0}, 0.0}) == Verdict::inside);
+        CHECK(cull::classify(frustum, Sphere{{1.0, 1.0, std::nextafter(1.0, 2.0)}, 0.0}) == Verdict::outside);
+        CHECK(cull::classify(frustum, Sphere{{1e30, 0.0, 0.0}, 9e29}) == Verdict::outside);
+        CHECK(cull::classify(frustum, Sphere{{0.0, 0.0, 0.0}, 1e30}) == Verdict::straddling);
+    }
+
+    TEST_CASE("agrees with the exact oracles on axis-aligned boxes and balls that nearly touch") {
+        for (const double offset : {0.0, 1e4, 1e7}) {
+            oracle::NearMisses cases(5, offset);
+            int improper = 0, outside = 0;
+            for (int trial = 0; trial < 250; ++trial) {
+                Frustum frustum = *frustum_of(cases.camera());
+                const Aabb box = oracle::near_aabb(cases, frustum);
+                const Sphere sphere = oracle::near_sphere(cases, frustum);
+                if (trial % 5 == 0) frustum.plane_count = 5;
+                const auto agrees = [&](const auto& bound) {
+                    const Verdict expected = oracle::classify(frustum, bound);
+                    const bool rejected = oracle::is_rejected_by_a_plane(frustum, bound);
+                    CHECK(cull::classify(frustum, bound) == expected);
+                    CHECK((cull::classify(frustum, bound, Mode::conservative) == Verdict::outside) == rejected);
+                    outside += expected == Verdict::outside;
+                    improper += expected == Verdict::outside && !rejected;
+                };
+                agrees(box);
+                agrees(sphere);
+            }
+            CHECK(outside > 50);
+            CHECK(improper > 10);
         }
     }
 }

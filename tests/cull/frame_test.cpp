@@ -55,6 +55,17 @@ TEST_SUITE("cull/frame") {
         cull::VisibleSet visible;
         cull::ManyVisible many;
         cull::VerdictBits bits;
+        cull::AabbSet aabb_set;
+        cull::SphereSet sphere_set;
+        std::vector<Aabb> aabbs;
+        std::vector<Sphere> spheres;
+        for (const Obb& box : crowd.boxes) {
+            aabbs.push_back(aabb_of(box));
+            spheres.push_back({box.center, double{box.half_extents.x}});
+        }
+        aabb_set.assign(aabbs);
+        sphere_set.assign(spheres);
+        std::vector<std::uint32_t> masks(crowd.boxes.size()), items{1, 70, 4999};
         const std::vector<cull::View> views = flight(40);
         std::size_t warm = 0;
         for (std::size_t f = 0; f < 2 * views.size(); ++f) {
@@ -65,7 +76,11 @@ TEST_SUITE("cull/frame") {
             cull::cull(tree, views[at], visible,
                        {cull::Mode::exact, f % 2 ? cull::Order::ascending : cull::Order::tree});
             cull::cull(tree, std::span(views).subspan(at / 2, 4), many);
+            set.update(items, crowd.boxes);
             cull::cull(set, crowd.boxes, views[at], bits);
+            cull::cull(aabb_set, aabbs, views[at], bits);
+            cull::cull(sphere_set, spheres, views[at], bits);
+            cull::cull(set, crowd.boxes, crowd.layers, std::span(views).subspan(at / 2, 4), masks);
             if (f == views.size()) warm = allocations;
         }
         CHECK(warm > 0);
@@ -96,6 +111,7 @@ TEST_SUITE("cull/frame") {
                 cull::cull(set, crowd.boxes, view, many_bits, cull::Mode::exact, three);
                 CHECK(one_bits.visible == many_bits.visible);
                 CHECK(one_bits.inside == many_bits.inside);
+                CHECK(one_bits.statistics.improper == many_bits.statistics.improper);
             }
     }
 
@@ -104,12 +120,23 @@ TEST_SUITE("cull/frame") {
         const tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
         cull::BoxSet set;
         set.assign(crowd.boxes);
+        cull::AabbSet aabb_set;
+        cull::SphereSet sphere_set;
+        std::vector<Aabb> aabbs;
+        std::vector<Sphere> spheres;
+        for (const Obb& box : crowd.boxes) {
+            aabbs.push_back(aabb_of(box));
+            spheres.push_back({box.center, double{box.half_extents.x}});
+        }
+        aabb_set.assign(aabbs);
+        sphere_set.assign(spheres);
         std::vector<cull::View> views = flight(6);
         for (cull::View& view : views) view.frustum.origin += 1e6 * glm::dvec3(1.0, -0.7, 0.3);
         struct Answer {
             std::vector<cull::ItemId> ids;
             std::vector<cull::Verdict> verdicts;
-            Vector<std::uint64_t> visible, inside;
+            std::vector<Vector<std::uint64_t>> visible, inside;  // of boxes, axis-aligned boxes, balls
+            std::vector<std::uint32_t> masks;
             bool operator==(const Answer&) const = default;
         };
         const auto answer = [&] {
@@ -119,11 +146,23 @@ TEST_SUITE("cull/frame") {
                     cull::VisibleSet visible;
                     cull::VerdictBits bits;
                     cull::cull(tree, view, visible, {mode});
+                    Answer one{{visible.ids().begin(), visible.ids().end()},
+                               {visible.verdicts().begin(), visible.verdicts().end()},
+                               {},
+                               {},
+                               std::vector<std::uint32_t>(crowd.boxes.size())};
+                    const auto keep = [&] {
+                        one.visible.push_back(bits.visible);
+                        one.inside.push_back(bits.inside);
+                    };
                     cull::cull(set, crowd.boxes, view, bits, mode);
-                    answers.push_back({{visible.ids().begin(), visible.ids().end()},
-                                       {visible.verdicts().begin(), visible.verdicts().end()},
-                                       bits.visible,
-                                       bits.inside});
+                    keep();
+                    cull::cull(aabb_set, aabbs, view, bits, mode);
+                    keep();
+                    cull::cull(sphere_set, spheres, view, bits, mode);
+                    keep();
+                    cull::cull(set, crowd.boxes, crowd.layers, views, one.masks, mode);
+                    answers.push_back(one);
                 }
             return answers;
         };

@@ -140,28 +140,27 @@ struct ListQuery {
             run_list_kernel(input, output);
         } else {
             output.settled_count = output.improper = 0;
-            output.undecided_count = count;
+            output.open = output.undecided_count = count;
             for (std::size_t i = 0; i < count; ++i) output.undecided[i] = static_cast<std::uint32_t>(i);
             std::fill_n(output.visible, (count + 63) / 64, 0);
             std::fill_n(output.inside, (count + 63) / 64, 0);
         }
         Statistics statistics;
-        statistics.boxes_tested = count;
-        statistics.exact_tests = output.settled_count + output.undecided_count;
-        statistics.improper = output.improper;
+        if (kCountStatistics) {
+            statistics.boxes_tested = count;
+            statistics.exact_tests = output.settled_count + output.undecided_count;
+            statistics.improper = output.improper;
+            statistics.straddling = output.open;
+        }
         for (std::size_t n = 0; n < output.undecided_count; ++n) {
             const std::uint32_t i = output.undecided[n];
-            statistics.improper += decide(view, usable, bounds[first + i], i, output);
+            decide(view, usable, bounds[first + i], i, output, statistics);
         }
-        if (kCountStatistics)
-            for (std::size_t w = 0; w < (count + 63) / 64; ++w)
-                statistics.straddling +=
-                    static_cast<std::uint64_t>(std::popcount(output.visible[w] & ~output.inside[w]));
         return statistics;
     }
 
-    // Whether the bound is improper.
-    bool decide(const View& view, bool usable, const Bound& bound, std::uint32_t i, ListKernelOutput& output) const {
+    void decide(const View& view, bool usable, const Bound& bound, std::uint32_t i, ListKernelOutput& output,
+                Statistics& statistics) const {
         const Verdict verdict =
             usable && is_usable(bound) ? classify_usable(view.frustum, bound, mode) : Verdict::straddling;
         const std::uint64_t bit = std::uint64_t{1} << (i % 64);
@@ -169,8 +168,10 @@ struct ListQuery {
         output.inside[i / 64] &= ~bit;
         if (verdict != Verdict::outside) output.visible[i / 64] |= bit;
         if (verdict == Verdict::inside) output.inside[i / 64] |= bit;
-        return kCountStatistics && mode == Mode::exact && verdict == Verdict::outside &&
-               classify_usable(view.frustum, bound, Mode::conservative) != Verdict::outside;
+        if (!kCountStatistics || verdict == Verdict::straddling) return;
+        --statistics.straddling;
+        statistics.improper += mode == Mode::exact && verdict == Verdict::outside &&
+                               classify_usable(view.frustum, bound, Mode::conservative) != Verdict::outside;
     }
 };
 

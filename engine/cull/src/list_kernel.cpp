@@ -2,6 +2,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <crofton/cull/statistics.hpp>
 #include <type_traits>
 
 #include "row_planes.hpp"
@@ -73,16 +74,20 @@ HWY_INLINE void test_rows(const RowBlock* blocks, const RowPlanes& planes, std::
     }
 }
 
+// The lowest bits as a mask. Eight bytes are stored and loaded as one: parts would have to wait for each other.
+HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
+    alignas(8) std::uint8_t bytes[8];
+    std::memcpy(bytes, &bits, 8);
+    return hn::LoadMaskBits(DU(), bytes);
+}
+
 HWY_INLINE std::size_t list_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     const DU du;
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w) {
         if (bits[w] == 0) continue;
         for (std::size_t l = 0; l < 64; l += hn::Lanes(du)) {
-            alignas(8) std::uint8_t bytes[8] = {};
-            const std::uint64_t part = bits[w] >> l;
-            for (unsigned i = 0; i < 2; ++i) bytes[i] = static_cast<std::uint8_t>(part >> (8 * i));
-            const auto mask = hn::LoadMaskBits(du, bytes);
+            const auto mask = mask_of(bits[w] >> l);
             hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(64 * w + l)), mask), du, ids + count);
             count += hn::CountTrue(du, mask);
         }
@@ -119,7 +124,7 @@ class ChunkQuery {
 
     void run() {
         out_.undecided_count = out_.settled_count = 0;
-        out_.improper = 0;
+        out_.improper = out_.open = 0;
         const std::uint64_t last = ~std::uint64_t{0} >> (64 * words_ - in_.count);
         if (rows_.outside || rows_.planes == 0) {
             std::fill_n(out_.visible, words_, rows_.outside ? 0 : ~std::uint64_t{0});
@@ -149,6 +154,8 @@ class ChunkQuery {
         });
         out_.settled_count = unsettled_count;
         settle_all(unsettled, unsettled_count);
+        if (kCountStatistics)
+            for (std::size_t w = 0; w < words_; ++w) out_.open += hwy::PopCount(out_.visible[w] & ~out_.inside[w]);
     }
 
   private:
@@ -223,22 +230,15 @@ void RunSpheres(const ListKernelInput<SphereRecord>& input, ListKernelOutput& ou
 void MarkViews(const std::uint64_t* visible, std::size_t count, std::uint32_t bit, const std::uint32_t* layers,
                std::uint32_t layer_mask, std::uint32_t* masks) {
     const DU du;
-    for (std::size_t i = 0; i < count; i += hn::Lanes(du)) {
-        const std::uint64_t part = visible[i / 64] >> (i % 64);
-        alignas(8) std::uint8_t bytes[8] = {};
-        for (unsigned b = 0; b < 2; ++b) bytes[b] = static_cast<std::uint8_t>(part >> (8 * b));
-        auto seen = hn::LoadMaskBits(du, bytes);
-        const auto store = [&](VU old, auto&& put) { put(hn::Or(old, hn::IfThenElseZero(seen, hn::Set(du, bit)))); };
-        const std::size_t left = count - i;
-        if (left >= hn::Lanes(du)) {
-            if (layers)
-                seen = hn::And(seen, hn::Ne(hn::And(hn::LoadU(du, layers + i), hn::Set(du, layer_mask)), hn::Zero(du)));
-            store(hn::LoadU(du, masks + i), [&](VU value) HWY_ATTR { hn::StoreU(value, du, masks + i); });
-        } else {
-            for (std::size_t l = 0; l < left; ++l)
-                if ((part >> l & 1) && (!layers || layers[i + l] & layer_mask)) masks[i + l] |= bit;
-        }
+    std::size_t i = 0;
+    for (; i + hn::Lanes(du) <= count; i += hn::Lanes(du)) {
+        auto seen = mask_of(visible[i / 64] >> (i % 64));
+        if (layers)
+            seen = hn::And(seen, hn::Ne(hn::And(hn::LoadU(du, layers + i), hn::Set(du, layer_mask)), hn::Zero(du)));
+        hn::StoreU(hn::Or(hn::LoadU(du, masks + i), hn::IfThenElseZero(seen, hn::Set(du, bit))), du, masks + i);
     }
+    for (; i < count; ++i)
+        if (visible[i / 64] >> (i % 64) & 1 && (!layers || layers[i] & layer_mask)) masks[i] |= bit;
 }
 
 std::size_t ListBits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {

@@ -29,8 +29,9 @@ RowPlanes row_planes(const KernelView& view, const ListChunk& chunk) {
         // The value's seven roundings (as in local_plane), and the offset's to an integer.
         double slack = 0x1p-49 * (at.size + std::fabs(plane.offset)) * per_quantum + 1.0, span = 0.0;
         for (int j = 0; j < 3; ++j) {
-            const double scaled = plane.normal[j] * kScale, whole = std::nearbyint(scaled);
-            normals[i][j] = static_cast<std::int32_t>(whole);
+            const double scaled = plane.normal[j] * kScale;
+            normals[i][j] = static_cast<std::int32_t>(scaled + std::copysign(0.5, scaled));
+            const double whole = normals[i][j];
             // The normal's rounding, and that of the row: half a quantum, a trifle more for the centre's in double.
             slack += std::fabs(scaled - whole) * chunk.extent[j] + std::fabs(scaled) * 0.5001;
             span += std::fabs(whole) * chunk.extent[j];
