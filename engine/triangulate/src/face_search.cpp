@@ -226,12 +226,29 @@ void FaceSearch::mark_certain(Level& level) const {
     }
 }
 
+// An edge that leaves a living triangle's apex through h, if there is one.
+Index FaceSearch::crossing_from_apex(const Level& level, Index h) const {
+    const CandidateGraph& g = level.graph;
+    const auto& range = level.working_lists.ranges[h];
+    const Index p = g.destination[g.twin[h]];
+    for (Index i = range.begin; i < range.begin + range.size; ++i) {
+        const Index last = g.twin[level.working_lists.entries[i].next];
+        const Index apex = g.destination[g.twin[last]], begin = g.first[apex], end = g.first[apex + 1];
+        // Clockwise from the side to h's end, up to the one to its origin.
+        for (Index k = (last == begin ? end : last) - 1; g.destination[k] != p; k = (k == begin ? end : k) - 1) {
+            if ((g.flags[k] & CandidateGraph::kDead) == 0) return k;
+        }
+    }
+    return kNone;
+}
+
 bool FaceSearch::has_crossing(Level& level, Index h) const {
     const CandidateGraph& g = level.graph;
     const auto open = [&](Index k) {
         return (g.flags[k] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0;
     };
     if (level.witness[h] != kNone && open(level.witness[h])) return true;
+    if (level.witness[h] = crossing_from_apex(level, h); level.witness[h] != kNone) return true;
     const Index a = g.destination[g.twin[h]], b = g.destination[h];
     const Index low = std::min(a, b), high = std::max(a, b);
     const auto [y_low, y_high] = std::minmax(level.points[a].y, level.points[b].y);

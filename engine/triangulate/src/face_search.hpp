@@ -48,6 +48,7 @@ class FaceSearch {
     void choose(Level& level);
     void mark_certain(Level& level) const;
     [[nodiscard]] bool has_crossing(Level& level, Index h) const;
+    [[nodiscard]] Index crossing_from_apex(const Level& level, Index h) const;
     void raise(const Level& level, Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;
 
     Vector<Level> levels_;
