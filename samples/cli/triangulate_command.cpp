@@ -132,7 +132,7 @@ Result<int> run(const TriangulateOptions& options) {
     if (options.json == "-" && options.svg == "-") {
         return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --svg can go to stdout");
     }
-    if (!(options.seconds >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--seconds must not be negative");
+    if (!(options.seconds >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
     if (is_polygon_file(options.file)) {
         if (!options.out.empty())
             return fail(ErrorCode::invalid_argument, kNoItem, "--out is for meshes: .obj, .glb, .gltf");
@@ -166,7 +166,7 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_option("file", options->file, "What to triangulate")->required();
     command->add_option("--method", options->method, "ear, delaunay or minimum-weight")->capture_default_str();
     command->add_option("--map", options->map, "Only this level of a .wad");
-    command->add_option("--seconds", options->seconds, "Time allowed per polygon; then the best so far, with its gap")
+    command->add_option("--time-limit,--seconds", options->seconds, "Seconds allowed per polygon; then the best so far, with its proven gap")
         ->capture_default_str();
     command->add_option(
         "--tolerance", options->tolerance,

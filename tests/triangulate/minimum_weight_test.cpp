@@ -157,6 +157,30 @@ TEST_SUITE("triangulate/minimum_weight") {
         }
     }
 
+    TEST_CASE("whenever time runs out, there is a triangulation and a true bound on the minimum") {
+        std::mt19937_64 random(31);
+        Polygon p;
+        add_star(p, random, {0, 0}, 9.0, 10.0, 700, 0.0);
+        for (int hole = 0; hole < 12; ++hole) {
+            const double angle = 6.283185307179586 * hole / 12;
+            add_star(p, random, 5.0 * glm::dvec2(std::cos(angle), std::sin(angle)), 0.8, 1.0, 60, 0.0);
+        }
+        const auto minimum = triangulate::triangulate(p);
+        REQUIRE(minimum.has_value());
+        REQUIRE(minimum->optimal);
+        int limited = 0;
+        for (double seconds = 1e-5; seconds < 2.0; seconds *= 1.5) {
+            const auto result = triangulate::triangulate(p, {.seconds = seconds});
+            REQUIRE(result.has_value());
+            limited += !result->optimal;
+            CHECK(oracle::check_triangulation(p, result->triangles) == "");
+            CHECK(result->weight >= minimum->weight * (1.0 - 1e-12));
+            CHECK(result->weight <= minimum->weight * (1.0 + result->gap) * (1.0 + 1e-12));
+            CHECK(result->optimal == (result->gap == 0.0));
+        }
+        CHECK(limited > 0);
+    }
+
     TEST_CASE("the progress callback sees growing shares and can cancel") {
         std::mt19937_64 random(24);
         Polygon p;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/assert.hpp>
 #include <cstdio>
 #include <limits>
 
@@ -117,6 +118,15 @@ Result<void> Domain::insert_edge(Index input, Index successor) {
         at = mesh_.origin[e] == at ? mesh_.destination(e) : mesh_.origin[e];
     }
     return {};
+}
+
+void Domain::insert_diagonals(std::span<const Segment> segments) {
+    ConstraintInserter inserter(mesh_, scratch_);
+    for (const Segment& s : segments) {
+        Crossing crossing;
+        (void)inserter.advance(s.from, s.to, crossing);
+        CROFTON_ASSERT(!crossing.found, "a diagonal crosses the boundary");
+    }
 }
 
 void Domain::claim(Index half_edge, Index input) {

@@ -4,6 +4,7 @@
 #include <crofton/geometry/polygon.hpp>
 
 #include "half_edge_mesh.hpp"
+#include "root_sums.hpp"
 
 namespace crofton::triangulate {
 
@@ -19,6 +20,9 @@ namespace crofton::triangulate {
 class Domain {
   public:
     [[nodiscard]] Result<void> build(const Polygon& polygon);
+
+    // Makes segments between vertices edges of the mesh. They must lie inside, cross nothing and hold no vertex.
+    void insert_diagonals(std::span<const Segment> segments);
 
     [[nodiscard]] const HalfEdgeMesh& mesh() const { return mesh_; }
     [[nodiscard]] bool inside(Index triangle) const { return inside_[triangle] != 0; }

@@ -23,6 +23,8 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     Watch watch(options);
     lower_bound_ = 0.0;
     proven_ = true;
+    corners_.clear();
+    diagonals_.clear();
     const auto cancelled = [] { return fail(ErrorCode::cancelled, kNoItem, "cancelled by the progress callback"); };
     if (!finder_.find(domain, options.bytes / kBytesPerHalfEdge, watch, graph_)) {
         if (watch.cancelled()) return cancelled();
@@ -44,8 +46,6 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
         find_faces(graph_, kFixed, faces_);
     }
     program_.start(points, graph_);
-    corners_.clear();
-    diagonals_.clear();
     bool complete = true;
     const auto count = static_cast<Index>(faces_.component.size());
     for (Index w = 0; w < count; ++w) {
@@ -128,11 +128,14 @@ double MinimumWeight::face_lower_bound(std::span<const glm::dvec2> points, Index
 
 void MinimumWeight::finish(const Domain& domain, bool complete, Triangulation& result) {
     const auto points = domain.mesh().points;
+    const std::size_t inside_faces = diagonals_.size();
     double weight = 0.0;
     for (Index h = 0; h < graph_.half_edge_count(); ++h) {
         const auto flags = graph_.flags[h] | graph_.flags[graph_.twin[h]];
         if (h > graph_.twin[h] || (flags & CandidateGraph::kLeftOutside) != 0 || (flags & kFixed) == 0) continue;
-        weight += length(points, {graph_.destination[h], graph_.destination[graph_.twin[h]]});
+        const Segment edge{graph_.destination[h], graph_.destination[graph_.twin[h]]};
+        weight += length(points, edge);
+        if (!complete) diagonals_.push_back(edge);
     }
     // Rounding of all sums below; what is proven keeps this distance.
     const double slack = 1.0 - 0x1p-50 * (static_cast<double>(diagonals_.size()) + 64.0);
@@ -143,7 +146,7 @@ void MinimumWeight::finish(const Domain& domain, bool complete, Triangulation& r
     };
     result.triangles.reserve(corners_.size());
     for (const auto& c : corners_) result.triangles.push_back({input(c[0]), input(c[1]), input(c[2])});
-    for (const auto& d : diagonals_) weight += length(points, d);
+    for (std::size_t i = 0; i < inside_faces; ++i) weight += length(points, diagonals_[i]);
     result.weight = weight * domain.scale();
     result.optimal = proven_;
     result.gap = proven_ ? 0.0 : gap_of(result.weight);

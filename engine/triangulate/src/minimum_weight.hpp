@@ -12,8 +12,11 @@ namespace crofton::triangulate {
 
 class MinimumWeight {
   public:
-    // False if a budget ran out before there was a triangulation. Errors: cancelled.
+    // False if a budget ran out before all faces had a triangulation; then known_edges() tells what is settled. Errors:
+    // cancelled.
     [[nodiscard]] Result<bool> solve(const Domain& domain, const Options& options, Triangulation& result);
+    // Diagonals that are proven to be in a minimum-weight triangulation, or in the best one known of a face.
+    [[nodiscard]] std::span<const Segment> known_edges() const { return diagonals_; }
     // The proven bound on how much heavier than the minimum a triangulation of the last domain with this weight is.
     [[nodiscard]] double gap_of(double weight) const {
         return lower_bound_ > 0.0 ? weight / lower_bound_ - 1.0 : std::numeric_limits<double>::infinity();

@@ -58,6 +58,7 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
         const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, result);
         if (!solved) return tl::unexpected<Error>(solved.error());
         if (*solved) return {};
+        workspace_->domain.insert_diagonals(workspace_->minimum_weight.known_edges());
     }
     if (options.method == Method::ear) {
         auto& corners = workspace_->corners;

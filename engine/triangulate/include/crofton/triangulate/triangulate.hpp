@@ -14,9 +14,10 @@ enum class Method : std::uint8_t { ear, delaunay, minimum_weight };
 
 struct Options {
     Method method = Method::minimum_weight;
-    // minimum_weight only. When the time is over or candidates would need more memory than this, the best triangulation
-    // found so far is returned, at worst the constrained Delaunay one, with `optimal` false and a proven `gap`.
-    double seconds = std::numeric_limits<double>::infinity();
+    // minimum_weight only. When the time is over or candidates would need more memory than this, what is proven and
+    // solved so far is completed to a constrained Delaunay triangulation, and returned with `optimal` false and a proven
+    // `gap`. All but the largest and smoothest polygons (docs/triangulate.md) need a small part of the time.
+    double seconds = 10.0;
     std::size_t bytes = std::numeric_limits<std::size_t>::max();
     // Called now and then with the share of the work done, between 0 and 1; returning false ends the call with the
     // error `cancelled`.
@@ -35,15 +36,12 @@ struct Triangulation {
 
 // What input means that is not a simple polygon with disjoint simple holes inside it:
 // - a point is inside a ring if an odd number of the ring's edges lie between it and infinity; rings may touch
-// themselves
-//   and each other, at points or along edges;
+//   themselves and each other, at points or along edges;
 // - points at one position are one vertex: triangles name the index of the ring whose corner they fill, and of
-// consecutive
-//   duplicates the first;
+//   consecutive duplicates the first;
 // - a vertex on another edge splits that edge;
 // - an edge that one ring traverses there and back is no boundary: a spike pointing inside becomes a slit that
-// triangles
-//   do not cross, one pointing outside vanishes and its tip is used by no triangle;
+//   triangles do not cross, one pointing outside vanishes and its tip is used by no triangle;
 // - a hole of one point is a Steiner point, of two a slit, of none nothing.
 // Errors name ring, point and position: an outer ring of fewer than three points, positions not finite or differing by
 // more than 2^200 in size, edges that cross, holes outside, overlapping or nested, zero area.
