@@ -64,19 +64,40 @@ void BoundBlocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, B
         }
 }
 
-// Lanes of `block` whose bounds meet lane `lane` of `other`.
-HWY_INLINE std::uint32_t meet(const BoundBlock& block, const BoundBlock& other, std::size_t lane) {
+constexpr std::size_t kVectors = kBoxBlock / hn::MaxLanes(D());
+
+// The sixteen bounds of a block, in registers.
+struct Bounds {
+    V low[3][kVectors], high[3][kVectors];
+};
+
+HWY_INLINE void load(const BoundBlock& block, Bounds& bounds) {
     const D d;
-    std::uint32_t bits = 0;
-    for (std::size_t l = 0; l < kBoxBlock; l += hn::Lanes(d)) {
-        M both = hn::And(hn::Le(hn::Load(d, block.low[0] + l), hn::Set(d, other.high[0][lane])),
-                         hn::Ge(hn::Load(d, block.high[0] + l), hn::Set(d, other.low[0][lane])));
-        for (int i = 1; i < 3; ++i) {
-            both = hn::And(both, hn::Le(hn::Load(d, block.low[i] + l), hn::Set(d, other.high[i][lane])));
-            both = hn::And(both, hn::Ge(hn::Load(d, block.high[i] + l), hn::Set(d, other.low[i][lane])));
+    for (int i = 0; i < 3; ++i)
+        for (std::size_t v = 0; v < kVectors; ++v) {
+            bounds.low[i][v] = hn::Load(d, block.low[i] + v * hn::Lanes(d));
+            bounds.high[i][v] = hn::Load(d, block.high[i] + v * hn::Lanes(d));
         }
-        bits |= bits_of(d, both, l);
-    }
+}
+
+// Of vector v: lanes whose bounds meet lane `lane` of `other`. The comparisons do not wait for each other.
+HWY_INLINE M meet(const Bounds& bounds, std::size_t v, const BoundBlock& other, std::size_t lane) {
+    const D d;
+    const M x = hn::And(hn::Le(bounds.low[0][v], hn::Set(d, other.high[0][lane])),
+                        hn::Ge(bounds.high[0][v], hn::Set(d, other.low[0][lane])));
+    const M y = hn::And(hn::Le(bounds.low[1][v], hn::Set(d, other.high[1][lane])),
+                        hn::Ge(bounds.high[1][v], hn::Set(d, other.low[1][lane])));
+    const M z = hn::And(hn::Le(bounds.low[2][v], hn::Set(d, other.high[2][lane])),
+                        hn::Ge(bounds.high[2][v], hn::Set(d, other.low[2][lane])));
+    return hn::And(x, hn::And(y, z));
+}
+
+HWY_INLINE std::uint32_t lanes_that_meet(const BoundBlock& block, const BoundBlock& other, std::size_t lane) {
+    const D d;
+    Bounds bounds;
+    load(block, bounds);
+    std::uint32_t bits = 0;
+    for (std::size_t v = 0; v < kVectors; ++v) bits |= bits_of(d, meet(bounds, v, other, lane), v * hn::Lanes(d));
     return bits;
 }
 
@@ -84,66 +105,135 @@ HWY_INLINE std::size_t lowest(std::uint32_t bits) {
     return hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
 }
 
-HWY_INLINE void put(SlotPairs& pairs, std::size_t a, std::size_t base, std::uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1)
-        pairs.data[pairs.count++] = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(base + lowest(lanes))};
+using DI = hn::RebindToUnsigned<D>;
+
+// Writes base + the lanes of `mask` to `out`, and whatever after them up to a whole vector; returns how many.
+HWY_INLINE std::size_t put_lanes(M mask, std::uint32_t base, std::uint32_t* out) {
+    const DI d;
+    const auto lanes = hn::Add(hn::Iota(d, 0), hn::Set(d, base));
+    hn::StoreU(hn::Compress(lanes, hn::RebindMask(d, mask)), d, out);
+    return hn::CountTrue(D(), mask);
 }
 
-// Leaves a ≤ b, whose bounds are lanes of the blocks above them. Only lanes that meet the other leaf's bound are tried,
-// from the side that has fewer of them.
-HWY_INLINE void compare_leaves(const BoundTree& tree, std::size_t a, std::size_t b, SlotPairs& pairs) {
-    const BoundBlock &in_a = tree.levels[0][a], &in_b = tree.levels[0][b];
-    ++pairs.leaf_pairs;
-    if (a == b) {
-        for (std::size_t lane = 0; lane + 1 < kBoxBlock; ++lane)
-            put(pairs, a * kBoxBlock + lane, b * kBoxBlock, meet(in_a, in_a, lane) & (~std::uint32_t{1} << lane));
-        return;
-    }
-    std::uint32_t near_a = meet(in_a, tree.levels[1][b / kBoxBlock], b % kBoxBlock);
-    if (near_a == 0) return;
-    std::uint32_t near_b = meet(in_b, tree.levels[1][a / kBoxBlock], a % kBoxBlock);
-    if (hwy::PopCount(near_a) <= hwy::PopCount(near_b)) {
-        for (; near_a != 0; near_a &= near_a - 1) {
-            const std::size_t lane = lowest(near_a);
-            put(pairs, a * kBoxBlock + lane, b * kBoxBlock, meet(in_b, in_a, lane) & near_b);
-        }
-    } else {
-        for (; near_b != 0; near_b &= near_b - 1) {
-            const std::size_t lane = lowest(near_b);
-            put(pairs, b * kBoxBlock + lane, a * kBoxBlock, meet(in_a, in_b, lane) & near_a);
-        }
-    }
+// A leaf and the boxes gathered to be compared with it.
+struct Leaf {
+    Bounds bounds;
+    std::uint32_t base;  // its first slot
+    std::size_t count = 0;
+    std::uint32_t near[kCandidates + kBoxBlock];  // slots in other leaves whose bounds meet this leaf's
+};
+
+HWY_INLINE void put_pairs(M mask, std::size_t v, std::uint32_t base, std::uint32_t partner, SlotPairs& pairs) {
+    const DI d;
+    const auto lane = static_cast<std::uint32_t>(v * hn::Lanes(d));
+    hn::StoreU(hn::Set(d, partner), d, pairs.second + pairs.count);
+    pairs.count += put_lanes(mask, base + lane, pairs.first + pairs.count);
 }
 
-void FindPairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow) {
+// Without branches on what is found: whether two boxes meet is anyone's guess.
+HWY_INLINE bool compare_gathered(const BoundTree& tree, Leaf& leaf, SlotPairs& pairs, GrowPairs grow) {
+    if (pairs.capacity - pairs.count < kPairRoom && !grow(pairs)) return false;
+    for (std::size_t n = 0; n < leaf.count; ++n) {
+        const std::uint32_t slot = leaf.near[n];
+        const BoundBlock& block = tree.levels[0][slot / kBoxBlock];
+        for (std::size_t v = 0; v < kVectors; ++v)
+            put_pairs(meet(leaf.bounds, v, block, slot % kBoxBlock), v, leaf.base, slot, pairs);
+    }
+    leaf.count = 0;
+    return true;
+}
+
+// Pairs within the leaf: of each lane with those after it.
+HWY_INLINE bool compare_own(const BoundBlock& block, Leaf& leaf, SlotPairs& pairs, GrowPairs grow) {
+    const D d;
+    if (pairs.capacity - pairs.count < kPairRoom && !grow(pairs)) return false;
+    for (std::size_t lane = 0; lane + 1 < kBoxBlock; ++lane)
+        for (std::size_t v = 0; v < kVectors; ++v) {
+            const V lanes = hn::Iota(d, static_cast<float>(v * hn::Lanes(d)));
+            const M after = hn::Gt(lanes, hn::Set(d, static_cast<float>(lane)));
+            put_pairs(hn::And(after, meet(leaf.bounds, v, block, lane)), v, leaf.base,
+                      leaf.base + static_cast<std::uint32_t>(lane), pairs);
+        }
+    return true;
+}
+
+// Leaf `index` against the leaves from it on below blocks `near` of levels[1].
+bool compare_leaf(const BoundTree& tree, std::size_t index, const std::uint32_t* near, std::size_t near_count,
+                  SlotPairs& pairs, GrowPairs grow) {
+    const BoundBlock& own = tree.levels[1][index / kBoxBlock];
+    const std::size_t lane = index % kBoxBlock;
+    Leaf leaf;
+    load(tree.levels[0][index], leaf.bounds);
+    leaf.base = static_cast<std::uint32_t>(index * kBoxBlock);
+    for (std::size_t n = 0; n < near_count; ++n) {
+        const std::size_t first = near[n] * kBoxBlock;
+        std::uint32_t leaves = lanes_that_meet(tree.levels[1][near[n]], own, lane);
+        if (first <= index) leaves &= ~std::uint32_t{0} << (index - first);
+        for (; leaves != 0; leaves &= leaves - 1) {
+            const std::size_t other = first + lowest(leaves);
+            ++pairs.leaf_pairs;
+            if (other == index) {
+                if (!compare_own(tree.levels[0][index], leaf, pairs, grow)) return false;
+                continue;
+            }
+            Bounds bounds;
+            load(tree.levels[0][other], bounds);
+            for (std::size_t v = 0; v < kVectors; ++v)
+                leaf.count += put_lanes(meet(bounds, v, own, lane),
+                                        static_cast<std::uint32_t>(other * kBoxBlock + v * hn::Lanes(D())),
+                                        leaf.near + leaf.count);
+            if (leaf.count > kCandidates - kBoxBlock && !compare_gathered(tree, leaf, pairs, grow)) return false;
+        }
+    }
+    return compare_gathered(tree, leaf, pairs, grow);
+}
+
+struct NearBlocks {
+    static constexpr std::size_t kCapacity = 256;
+    std::uint32_t block[kCapacity];
+    std::size_t count = 0;
+};
+
+// All leaves of a block against those of the blocks near it.
+bool compare_block(const BoundTree& tree, std::size_t block, NearBlocks& near, SlotPairs& pairs, GrowPairs grow) {
+    const std::size_t begin = block * kBoxBlock, end = HWY_MIN(begin + kBoxBlock, tree.sizes[0]);
+    for (std::size_t leaf = begin; leaf < end; ++leaf)
+        if (!compare_leaf(tree, leaf, near.block, near.count, pairs, grow)) return false;
+    near.count = 0;
+    return true;
+}
+
+// Descends to the blocks of levels[1], from `block` on, whose bounds meet its own.
+bool visit_block(const BoundTree& tree, std::size_t block, SlotPairs& pairs, GrowPairs grow) {
     struct Step {
         std::size_t level, block;
     };
     Step stack[kMaxLevels * kBoxBlock];
-    const std::size_t top = tree.level_count - 1;
-    for (std::size_t leaf = begin; leaf < end; ++leaf) {
-        const BoundBlock& query = tree.levels[1][leaf / kBoxBlock];
-        std::size_t height = 0;
-        stack[height++] = {top, 0};
-        while (height > 0) {
-            const Step step = stack[--height];
-            std::uint32_t lanes = meet(tree.levels[step.level][step.block], query, leaf % kBoxBlock);
-            // Leaves before this one have met it already: leave out subtrees that end before it.
-            std::size_t leaves_per_lane = 1;
-            for (std::size_t k = 1; k < step.level; ++k) leaves_per_lane *= kBoxBlock;
-            const std::size_t first = step.block * kBoxBlock, own = leaf / leaves_per_lane;
-            if (own > first) lanes &= own - first < kBoxBlock ? ~std::uint32_t{0} << (own - first) : 0;
-            for (; lanes != 0; lanes &= lanes - 1) {
-                const std::size_t child = first + lowest(lanes);
-                if (step.level > 1) {
-                    stack[height++] = {step.level - 1, child};
-                    continue;
-                }
-                if (pairs.capacity - pairs.count < kBoxBlock * kBoxBlock && !grow(pairs)) return;
-                compare_leaves(tree, leaf, child, pairs);
-            }
+    std::size_t height = 0;
+    NearBlocks near;
+    stack[height++] = {tree.level_count - 1, 0};
+    while (height > 0) {
+        const Step step = stack[--height];
+        if (step.level == 1) {
+            near.block[near.count++] = static_cast<std::uint32_t>(step.block);
+            if (near.count == NearBlocks::kCapacity && !compare_block(tree, block, near, pairs, grow)) return false;
+            continue;
         }
+        std::uint32_t lanes =
+            lanes_that_meet(tree.levels[step.level][step.block], tree.levels[2][block / kBoxBlock], block % kBoxBlock);
+        // Blocks before this one have met it already: leave out subtrees that end before it.
+        std::size_t blocks_per_lane = 1;
+        for (std::size_t k = 2; k < step.level; ++k) blocks_per_lane *= kBoxBlock;
+        const std::size_t first = step.block * kBoxBlock, own = block / blocks_per_lane;
+        if (own > first) lanes &= own - first < kBoxBlock ? ~std::uint32_t{0} << (own - first) : 0;
+        for (; lanes != 0; lanes &= lanes - 1) stack[height++] = {step.level - 1, first + lowest(lanes)};
     }
+    return compare_block(tree, block, near, pairs, grow);
+}
+
+void FindPairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow) {
+    for (std::size_t block = begin; block < end; ++block)
+        if (!visit_block(tree, block, pairs, grow)) return;
 }
 
 }  // namespace crofton::collide::HWY_NAMESPACE

@@ -29,15 +29,18 @@ std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds);
 // Bounds of blocks [begin, end) of one level, into the lanes of the level above.
 void bound_blocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, BoundBlock* above);
 
-// Room for found pairs of slots; `grow` is called when fewer than 256 are left, returns false to stop.
+// Found pairs of slots as two lists. `grow` is called when fewer than kPairRoom are left, returns false to stop.
 struct SlotPairs {
-    Pair* data = nullptr;
+    std::uint32_t *first = nullptr, *second = nullptr;
     std::size_t count = 0, capacity = 0;
     std::uint64_t leaf_pairs = 0;
 };
 using GrowPairs = FunctionRef<bool(SlotPairs&)>;
+inline constexpr std::size_t kCandidates = 512;  // boxes near a leaf that are compared with it at once
+inline constexpr std::size_t kPairRoom = (kCandidates + 1) * kBoxBlock;
 
-// All pairs of slots (first's leaf ≤ second's leaf) whose bounds meet and whose first lies in leaves [begin, end).
+// All pairs of slots whose bounds meet and the earlier of whose leaves lies below blocks [begin, end) of levels[1], each
+// once.
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
 
 }  // namespace crofton::collide

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr std::size_t kLeafGrain = 64;    // leaves a task
+constexpr std::size_t kBlockGrain = 4;    // blocks of leaves a task
 constexpr std::size_t kPairGrain = 2048;  // pairs a task
 // The order is made anew once the leaves' bounds have grown by this factor; a sort costs about as much as one update.
 constexpr double kWornOut = 1.2;
@@ -28,7 +29,7 @@ void clear_lane(BoundBlock& block, std::size_t lane) {
 }
 
 struct Worker {
-    Vector<Pair> storage;
+    Vector<std::uint32_t> first, second;
     SlotPairs pairs;
     Vector<std::uint32_t> rejected;
     BatchStatistics boxes;
@@ -54,11 +55,13 @@ struct Broadphase::State {
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, Worker& worker);
     void build_levels();
     [[nodiscard]] bool collect(Executor& executor);
+    void sort_pairs(std::size_t item_count, std::span<const Filter> filters);
     void keep_boxes_that_meet(std::span<const Obb> boxes, Executor& executor);
 };
 
 Broadphase::Broadphase(const BroadphaseOptions& options) : state_(std::make_unique<State>()) {
     state_->options = options;
+    state_->options.max_pairs = std::min<std::size_t>(options.max_pairs, 0xffffffffu);  // counted in 32 bits
 }
 Broadphase::~Broadphase() = default;
 Broadphase::Broadphase(Broadphase&&) noexcept = default;
@@ -144,10 +147,9 @@ void Broadphase::State::refit(std::span<const Obb> boxes, Executor& executor) {
 // Pairs of slots whose bounds meet, into the workers' lists; false when there are too many.
 bool Broadphase::State::collect(Executor& executor) {
     std::atomic<bool> too_many = false;
-    for (Worker& worker : workers) {
-        worker.pairs = {worker.storage.data(), 0, worker.storage.size(), 0};
-    }
-    executor.parallel_for(levels[0].size(), kLeafGrain, [&](std::size_t begin, std::size_t end, unsigned index) {
+    for (Worker& worker : workers)
+        worker.pairs = {worker.first.data(), worker.second.data(), 0, worker.first.size(), 0};
+    executor.parallel_for(tree.sizes[1], kBlockGrain, [&](std::size_t begin, std::size_t end, unsigned index) {
         Worker& worker = workers[index];
         if (too_many) return;
         find_pairs(tree, begin, end, worker.pairs, [&](SlotPairs& found) {
@@ -155,9 +157,12 @@ bool Broadphase::State::collect(Executor& executor) {
                 too_many = true;
                 return false;
             }
-            worker.storage.resize(std::max<std::size_t>(4096, 2 * worker.storage.size()));
-            found.data = worker.storage.data();
-            found.capacity = worker.storage.size();
+            const std::size_t size = std::max(2 * kPairRoom, 2 * worker.first.size());
+            worker.first.resize(size);
+            worker.second.resize(size);
+            found.first = worker.first.data();
+            found.second = worker.second.data();
+            found.capacity = size;
             return true;
         });
     });
@@ -167,6 +172,18 @@ bool Broadphase::State::collect(Executor& executor) {
         statistics.nodes_tested += worker.pairs.leaf_pairs;
     }
     return !too_many && total <= options.max_pairs;
+}
+
+void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const Filter> filters) {
+    const auto found = [](Worker& worker, Vector<std::uint32_t>& slots) {
+        return std::span<std::uint32_t>(slots).first(worker.pairs.count);
+    };
+    list.begin(item_count);
+    for (Worker& worker : workers)
+        list.count(found(worker, worker.first), found(worker, worker.second), order.items(), filters);
+    list.place(pairs);
+    for (Worker& worker : workers) list.add(found(worker, worker.first), found(worker, worker.second), pairs);
+    list.finish(pairs);
 }
 
 void Broadphase::State::keep_boxes_that_meet(std::span<const Obb> boxes, Executor& executor) {
@@ -214,12 +231,7 @@ Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const Filt
         if (!s.collect(executor))
             return fail(ErrorCode::budget_exceeded, kNoItem,
                         "broadphase: the bounds of more than " + std::to_string(s.options.max_pairs) + " pairs meet");
-        s.list.begin(boxes.size());
-        for (Worker& worker : s.workers)
-            s.list.count({worker.pairs.data, worker.pairs.count}, s.order.items(), filters);
-        s.list.place();
-        for (Worker& worker : s.workers) s.list.add({worker.pairs.data, worker.pairs.count});
-        s.list.sort(s.pairs);
+        s.sort_pairs(boxes.size(), filters);
         s.statistics.bound_pairs = s.pairs.size();
         if (s.options.exact_boxes) s.keep_boxes_that_meet(boxes, executor);
     }

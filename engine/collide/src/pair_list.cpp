@@ -9,38 +9,43 @@ void PairList::begin(std::size_t item_count) {
     place_.assign(item_count + 1, 0);
 }
 
-void PairList::count(std::span<Pair> pairs, std::span<const std::uint32_t> items, std::span<const Filter> filters) {
-    for (Pair& pair : pairs) {
-        const std::uint32_t a = items[pair.first], b = items[pair.second];
-        if (!filters.empty() && !passes(filters[a], filters[b])) {
-            pair = {0, 0};
-            continue;
-        }
-        pair = {std::min(a, b), std::max(a, b)};
-        ++place_[pair.first];
+void PairList::count(std::span<std::uint32_t> first, std::span<std::uint32_t> second,
+                     std::span<const std::uint32_t> items, std::span<const Filter> filters) {
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::uint32_t a = items[first[i]], b = items[second[i]];
+        const bool refused = !filters.empty() && !passes(filters[a], filters[b]);
+        first[i] = refused ? 0 : std::min(a, b);
+        second[i] = refused ? 0 : std::max(a, b);
+        place_[first[i]] += !refused;
     }
 }
 
-void PairList::place() {
-    total_ = 0;
-    for (std::uint64_t& place : place_) total_ += std::exchange(place, total_);
-    partners_.resize(total_);
+void PairList::place(Vector<Pair>& sorted) {
+    std::uint32_t total = 0;
+    for (std::uint32_t& place : place_) total += std::exchange(place, total);
+    sorted.resize(total);
 }
 
-void PairList::add(std::span<const Pair> pairs) {
-    for (const Pair& pair : pairs)
-        if (pair.first != pair.second) partners_[place_[pair.first]++] = pair.second;
+void PairList::add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<Pair>& sorted) {
+    for (std::size_t i = 0; i < first.size(); ++i)
+        if (first[i] != second[i]) sorted[place_[first[i]]++] = {first[i], second[i]};
 }
 
-void PairList::sort(Vector<Pair>& sorted) {
-    sorted.resize(total_);
+// Partners of one item stand together but in any order: most have none or few, and insertion mends those in one pass.
+void PairList::finish(Vector<Pair>& sorted) const {
+    constexpr std::size_t kFew = 12;
     std::size_t begin = 0;
-    for (std::uint32_t item = 0; begin < total_; ++item) {
-        const auto end = static_cast<std::size_t>(place_[item]);
-        if (end - begin > 1)
-            std::sort(partners_.begin() + static_cast<std::ptrdiff_t>(begin),
-                      partners_.begin() + static_cast<std::ptrdiff_t>(end));
-        for (; begin < end; ++begin) sorted[begin] = {item, partners_[begin]};
+    for (const std::uint32_t end : place_) {
+        if (end - begin > kFew)
+            std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+                      sorted.begin() + static_cast<std::ptrdiff_t>(end));
+        begin = end;
+    }
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+        const Pair pair = sorted[i];
+        std::size_t j = i;
+        for (; j > 0 && pair < sorted[j - 1]; --j) sorted[j] = sorted[j - 1];
+        sorted[j] = pair;
     }
 }
 

@@ -7,20 +7,19 @@
 namespace crofton::collide {
 
 // A counting sort by the first item, then a small sort of each item's partners. Use: begin, count each part, place, add
-// each part, sort.
+// each part, finish.
 class PairList {
   public:
     void begin(std::size_t item_count);
-    // Rewrites the pairs of slots as pairs of items in order; a pair that the filters refuse becomes {0, 0}.
-    void count(std::span<Pair> pairs, std::span<const std::uint32_t> items, std::span<const Filter> filters);
-    void place();
-    void add(std::span<const Pair> pairs);
-    void sort(Vector<Pair>& sorted);
+    // Rewrites pairs of slots as pairs of items in order; a pair that the filters refuse becomes {0, 0}.
+    void count(std::span<std::uint32_t> first, std::span<std::uint32_t> second, std::span<const std::uint32_t> items,
+               std::span<const Filter> filters);
+    void place(Vector<Pair>& sorted);
+    void add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<Pair>& sorted);
+    void finish(Vector<Pair>& sorted) const;
 
   private:
-    Vector<std::uint64_t> place_;  // by item: how many, then where the next goes
-    Vector<std::uint32_t> partners_;
-    std::uint64_t total_ = 0;
+    Vector<std::uint32_t> place_;  // by item: how many, then where the next goes
 };
 
 // Merges two sorted lists: what is only in `now`, in both, and only in `before`.

@@ -12,6 +12,7 @@ namespace crofton::collide {
 namespace {
 
 constexpr std::size_t kSamples = 256;
+constexpr std::size_t kMiddleSamples = 64;  // taken in every update
 constexpr int kMortonBits = 9;  // per axis
 constexpr int kClassBits = 3;
 constexpr std::size_t kChunk = 4096;  // of the curve that is arranged anew
@@ -21,13 +22,18 @@ bool is_finite(const Obb& box) {
            std::isfinite(box.half_extents.x) && std::isfinite(box.half_extents.y) && std::isfinite(box.half_extents.z);
 }
 
-// Sorted values of `measure` over an even sample of the boxes that are finite; empty when there are none.
+// Values of `measure` over an even sample of the boxes that are finite; empty when there are none.
 template <class Values, class Measure>
-void sample(std::span<const Obb> boxes, Values& values, Measure measure) {
+void sample(std::span<const Obb> boxes, std::size_t count, Values& values, Measure measure) {
     values.clear();
-    const std::size_t step = std::max<std::size_t>(1, boxes.size() / kSamples);
-    for (std::size_t i = 0; i < boxes.size() && values.size() < kSamples; i += step)
+    const std::size_t step = std::max<std::size_t>(1, boxes.size() / count);
+    for (std::size_t i = 0; i < boxes.size() && values.size() < count; i += step)
         if (is_finite(boxes[i])) values.push_back(measure(boxes[i]));
+}
+
+template <class Values, class Measure>
+void sorted_sample(std::span<const Obb> boxes, Values& values, Measure measure) {
+    sample(boxes, kSamples, values, measure);
     std::sort(values.begin(), values.end());
 }
 
@@ -59,8 +65,11 @@ glm::dvec3 middle_of(std::span<const Obb> boxes) {
     glm::dvec3 middle(0.0);
     FixedSample values;
     for (int i = 0; i < 3; ++i) {
-        sample(boxes, values, [&](const Obb& box) { return box.center[i]; });
-        if (values.count > 0) middle[i] = std::clamp(values.values[values.count / 2], -kMaxCoordinate, kMaxCoordinate);
+        sample(boxes, kMiddleSamples, values, [&](const Obb& box) { return box.center[i]; });
+        if (values.count == 0) break;
+        const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.count / 2);
+        std::nth_element(values.begin(), median, values.end());
+        middle[i] = std::clamp(*median, -kMaxCoordinate, kMaxCoordinate);
     }
     return middle;
 }
@@ -70,7 +79,7 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
     glm::dvec3 low(0.0), scale(0.0);
     constexpr double kCells = 1 << kMortonBits;
     for (int i = 0; i < 3; ++i) {
-        sample(boxes, values, [&](const Obb& box) { return box.center[i]; });
+        sorted_sample(boxes, values, [&](const Obb& box) { return box.center[i]; });
         if (values.count == 0) break;
         // Between the 2nd and the 98th percentile, widened to hold an even spread: a few far boxes share the outermost
         // cells.
@@ -79,7 +88,7 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
         low[i] = from - margin;
         scale[i] = to > from ? kCells / (to - from + 2.0 * margin) : 0.0;
     }
-    sample(boxes, values, size_of);
+    sorted_sample(boxes, values, size_of);
     const double median = values.count > 0 ? values.values[values.count / 2] : 1.0;
 
     keyed_.resize(boxes.size());
