@@ -1,3 +1,4 @@
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -37,15 +38,23 @@ void finish(const BlockVerdict& verdict, std::size_t count, Boxes box, std::uint
     }
 }
 
-// Any two boxes by index: blocks of offsets are made on the way.
-template <class Boxes>
-BatchStatistics intersect_all(std::size_t count, Boxes box, std::span<std::uint8_t> hits) {
+void fetch(const Obb& box) {
+    const char* const bytes = reinterpret_cast<const char*>(&box);
+    hwy::Prefetch(bytes);
+    hwy::Prefetch(bytes + sizeof(Obb) - 1);
+}
+
+// Any two boxes by index: blocks of offsets are made on the way. `ahead(i)` is called some time before pair i is read.
+template <class Boxes, class Ahead>
+BatchStatistics intersect_all(std::size_t count, Boxes box, Ahead ahead, std::span<std::uint8_t> hits) {
+    constexpr std::size_t kAhead = 2 * kBoxBlock;
     BatchStatistics statistics;
     BoxBlock a, b;
     for (std::size_t begin = 0; begin < count; begin += kBoxBlock) {
         const std::size_t size = std::min(kBoxBlock, count - begin);
         for (std::size_t lane = 0; lane < kBoxBlock; ++lane) {
             const std::size_t i = begin + std::min(lane, size - 1);
+            ahead(std::min(i + kAhead, count - 1));
             const Obb &first = box(0, i), &second = box(1, i);
             put_center(second.center - first.center, lane, b);
             put_shape(first, lane, a);
@@ -111,7 +120,8 @@ BatchStatistics intersects(const PackedBoxes& a, const PackedBoxes& b, std::span
 BatchStatistics intersects(std::span<const Obb> a, std::span<const Obb> b, std::span<std::uint8_t> hits) {
     CROFTON_ASSERT(a.size() == b.size() && hits.size() == a.size(), "one answer a pair");
     return intersect_all(
-        a.size(), [&](int side, std::size_t i) -> const Obb& { return side == 0 ? a[i] : b[i]; }, hits);
+        a.size(), [&](int side, std::size_t i) -> const Obb& { return side == 0 ? a[i] : b[i]; }, [](std::size_t) {},
+        hits);
 }
 
 BatchStatistics intersects(std::span<const Obb> boxes, std::span<const Pair> pairs, std::span<std::uint8_t> hits) {
@@ -119,6 +129,10 @@ BatchStatistics intersects(std::span<const Obb> boxes, std::span<const Pair> pai
     return intersect_all(
         pairs.size(),
         [&](int side, std::size_t i) -> const Obb& { return boxes[side == 0 ? pairs[i].first : pairs[i].second]; },
+        [&](std::size_t i) {
+            fetch(boxes[pairs[i].first]);
+            fetch(boxes[pairs[i].second]);
+        },
         hits);
 }
 
