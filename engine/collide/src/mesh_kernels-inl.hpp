@@ -21,12 +21,19 @@ using V = hn::Vec<D>;
 // orthonormal to 1e-6, and a margin.
 constexpr float kBoxError = 4e-6f;
 
-HWY_INLINE float half_sum(const tree::MeshBox& box) {
+// A box, its rows padded for vector loads.
+struct QueryBox {
+    alignas(16) float center[4];
+    alignas(16) float axes[3][4];
+    float half[3];
+};
+
+HWY_INLINE float half_sum(const QueryBox& box) {
     return box.half[0] + box.half[1] + box.half[2];
 }
 
-HWY_INLINE tree::MeshBox box_of(const tree::MeshNode& node, std::uint32_t lane) {
-    tree::MeshBox box;
+HWY_INLINE QueryBox box_of(const tree::MeshNode& node, std::uint32_t lane) {
+    QueryBox box;
     for (int k = 0; k < 3; ++k) {
         box.center[k] = node.center[k][lane];
         box.half[k] = node.half[k][lane];
@@ -35,34 +42,35 @@ HWY_INLINE tree::MeshBox box_of(const tree::MeshNode& node, std::uint32_t lane) 
     return box;
 }
 
-HWY_INLINE void rotate(const float (&m)[3][3], const float* v, float* out) {
-    for (int i = 0; i < 3; ++i) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
-}
-
-// A box of b in a's frame.
-HWY_INLINE tree::MeshBox to_a(const MeshPair& pair, const tree::MeshBox& b) {
-    tree::MeshBox box;
-    rotate(pair.rotation, b.center, box.center);
+HWY_INLINE QueryBox box_of(const tree::MeshBox& root) {
+    QueryBox box;
     for (int k = 0; k < 3; ++k) {
-        box.center[k] += pair.translation[k];
-        rotate(pair.rotation, b.axes[k], box.axes[k]);
-        box.half[k] = b.half[k];
+        box.center[k] = root.center[k];
+        box.half[k] = root.half[k];
+        for (int i = 0; i < 3; ++i) box.axes[k][i] = root.axes[k][i];
     }
     return box;
 }
 
-// A box of a in b's frame.
-HWY_INLINE tree::MeshBox to_b(const MeshPair& pair, const tree::MeshBox& a) {
-    float back[3][3], offset[3];
-    for (int i = 0; i < 3; ++i) {
-        offset[i] = a.center[i] - pair.translation[i];
-        for (int j = 0; j < 3; ++j) back[i][j] = pair.rotation[j][i];
+// motion's linear part times v.
+HWY_INLINE void turn(const MeshPair::Motion& motion, const float* v, float* out) {
+    const hn::CappedTag<float, 4> d;
+    for (std::size_t l = 0; l < 4; l += hn::Lanes(d)) {
+        const auto column = [&](int i) HWY_ATTR { return hn::Load(d, motion.column[i] + l); };
+        hn::Store(hn::MulAdd(column(0), hn::Set(d, v[0]),
+                             hn::MulAdd(column(1), hn::Set(d, v[1]), hn::Mul(column(2), hn::Set(d, v[2])))),
+                  d, out + l);
     }
-    tree::MeshBox box;
-    rotate(back, offset, box.center);
+}
+
+// The box in the other mesh's frame.
+HWY_INLINE QueryBox carried(const MeshPair::Motion& motion, const QueryBox& from) {
+    QueryBox box;
+    turn(motion, from.center, box.center);
+    for (int i = 0; i < 3; ++i) box.center[i] += motion.offset[i];
     for (int k = 0; k < 3; ++k) {
-        rotate(back, a.axes[k], box.axes[k]);
-        box.half[k] = a.half[k];
+        turn(motion, from.axes[k], box.axes[k]);
+        box.half[k] = from.half[k];
     }
     return box;
 }
@@ -76,7 +84,7 @@ struct Lanes {
     V error;
 };
 
-HWY_INLINE Lanes prepare(D d, const tree::MeshNode& node, std::size_t l, const tree::MeshBox& q, float slop) {
+HWY_INLINE Lanes prepare(D d, const tree::MeshNode& node, std::size_t l, const QueryBox& q, float slop) {
     Lanes s;
     V offset[3], axis[3][3];
     for (int i = 0; i < 3; ++i) {
@@ -98,13 +106,13 @@ HWY_INLINE Lanes prepare(D d, const tree::MeshNode& node, std::size_t l, const t
 }
 
 // The gap along face normal i of q, and along face normal j of the lanes; negative: overlap.
-HWY_INLINE V gap_of_query_face(D d, const Lanes& s, const tree::MeshBox& q, int i) {
+HWY_INLINE V gap_of_query_face(D d, const Lanes& s, const QueryBox& q, int i) {
     const V reach = hn::MulAdd(
         s.half[0], s.magnitude[i][0],
         hn::MulAdd(s.half[1], s.magnitude[i][1], hn::MulAdd(s.half[2], s.magnitude[i][2], hn::Set(d, q.half[i]))));
     return hn::Sub(hn::Abs(s.t[i]), hn::Add(reach, s.error));
 }
-HWY_INLINE V gap_of_lane_face(D d, const Lanes& s, const tree::MeshBox& q, int j) {
+HWY_INLINE V gap_of_lane_face(D d, const Lanes& s, const QueryBox& q, int j) {
     const V along = hn::MulAdd(s.t[0], s.r[0][j], hn::MulAdd(s.t[1], s.r[1][j], hn::Mul(s.t[2], s.r[2][j])));
     const V reach =
         hn::MulAdd(hn::Set(d, q.half[0]), s.magnitude[0][j],
@@ -115,7 +123,7 @@ HWY_INLINE V gap_of_lane_face(D d, const Lanes& s, const tree::MeshBox& q, int j
 
 // Bit l is set unless lane l's box is surely farther than slop from q. Edge axes are not of unit length: there `slop`,
 // like the error, counts in full, which is on the safe side.
-HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const tree::MeshBox& q, float slop) {
+HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const QueryBox& q, float slop) {
     const D d;
     std::uint32_t apart = 0;
     for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
@@ -150,7 +158,7 @@ HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const tree::Me
 
 // A lower bound of the squared distance of q to each lane's box: in either frame the gaps along the three perpendicular
 // face normals add up by Pythagoras. The last factor covers the rounding of the squares.
-HWY_INLINE void distance_bounds(const tree::MeshNode& node, const tree::MeshBox& q, float slop, float* bounds) {
+HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, float slop, float* bounds) {
     const D d;
     const V zero = hn::Zero(d);
     for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {

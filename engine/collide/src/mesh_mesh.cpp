@@ -4,6 +4,7 @@
 #include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/core/assert.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "closest_points.hpp"
 #include "mesh_pair.hpp"
@@ -36,38 +37,44 @@ MeshPair make_pair(const tree::MeshTree& a, const tree::MeshTree& b, const Pose&
         pair.leaves[side] = trees[side]->leaves().data();
         pair.root[side] = &trees[side]->root_box();
     }
+    const glm::dvec3 back = -(glm::transpose(pose.rotation) * pose.translation);
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
             pair.exact_rotation[i][j] = pose.rotation[j][i];
-            pair.rotation[i][j] = static_cast<float>(pose.rotation[j][i]);
+            pair.to_a.column[j][i] = static_cast<float>(pose.rotation[j][i]);
+            pair.to_b.column[j][i] = static_cast<float>(pose.rotation[i][j]);
         }
         pair.exact_translation[i] = pose.translation[i];
-        pair.translation[i] = static_cast<float>(pose.translation[i]);
+        pair.to_a.offset[i] = static_cast<float>(pose.translation[i]);
+        pair.to_b.offset[i] = static_cast<float>(back[i]);
     }
     pair.slop = slop_of(a, b, pose);
     pair.tolerance = static_cast<float>(tolerance * (1.0 + 1e-6));
     return pair;
 }
 
-// Runs the traversal; `found(leaf and lane of a, of b)` is called for pairs that meet and returns true to stop.
+// A pair of triangles that meet.
+struct Hit {
+    const tree::MeshLeaf &in_a, &in_b;
+    std::uint32_t lane_a, lane_b;
+
+    [[nodiscard]] TrianglePair indices() const { return {in_a.triangle[lane_a], in_b.triangle[lane_b]}; }
+};
+
+// Runs the traversal; `found(Hit)` returns true to stop.
 template <class Found>
-void for_each_hit(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& pose, MeshStatistics* statistics,
-                  Found found) {
+void for_each_hit(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& pose, bool at_once,
+                  MeshStatistics* statistics, Found found) {
     std::uint64_t exact_tests = 0;
-    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict verdict) {
-        const tree::MeshLeaf &in_a = a.leaves()[leaf_a], &in_b = b.leaves()[leaf_b];
-        for (std::uint32_t lanes = verdict.hits | verdict.open; lanes != 0; lanes &= lanes - 1) {
-            const auto lane_b = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            if (verdict.open >> lane_b & 1u) {
-                ++exact_tests;
-                if (!intersects(triangle_of(in_a, lane_a), triangle_of(in_b, lane_b, pose))) continue;
-            }
-            if (found(in_a, lane_a, in_b, lane_b)) return true;
-        }
-        return false;
+    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool certain) {
+        const Hit hit{a.leaves()[of_a.leaf], b.leaves()[of_b.leaf], of_a.lane, of_b.lane};
+        exact_tests += !certain;
+        if (!certain && !intersects(triangle_of(hit.in_a, hit.lane_a), triangle_of(hit.in_b, hit.lane_b, pose)))
+            return false;
+        return found(hit);
     };
     TraversalCounts counts;
-    visit_overlaps(make_pair(a, b, pose), visit, counts);
+    visit_overlaps(make_pair(a, b, pose), at_once, visit, counts);
     if (statistics == nullptr) return;
     statistics->box_tests += counts.box_tests;
     statistics->triangle_tests += counts.triangle_tests;
@@ -84,35 +91,30 @@ glm::dvec3 unit_normal(const Triangle& t) {
 
 bool intersects(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, MeshStatistics* statistics) {
     bool hit = false;
-    for_each_hit(a, b, b_to_a, statistics, [&](auto&&...) { return hit = true; });
+    for_each_hit(a, b, b_to_a, true, statistics, [&](const Hit&) { return hit = true; });
     return hit;
 }
 
 void intersecting_triangles(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
                             Vector<TrianglePair>& pairs, MeshStatistics* statistics) {
     pairs.clear();
-    for_each_hit(
-        a, b, b_to_a, statistics,
-        [&](const tree::MeshLeaf& in_a, std::uint32_t lane_a, const tree::MeshLeaf& in_b, std::uint32_t lane_b) {
-            pairs.push_back({in_a.triangle[lane_a], in_b.triangle[lane_b]});
-            return false;
-        });
+    for_each_hit(a, b, b_to_a, false, statistics, [&](const Hit& hit) {
+        pairs.push_back(hit.indices());
+        return false;
+    });
     std::sort(pairs.begin(), pairs.end());
 }
 
 void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, Vector<MeshContact>& found,
               MeshStatistics* statistics) {
     found.clear();
-    for_each_hit(
-        a, b, b_to_a, statistics,
-        [&](const tree::MeshLeaf& in_a, std::uint32_t lane_a, const tree::MeshLeaf& in_b, std::uint32_t lane_b) {
-            const Triangle first = triangle_of(in_a, lane_a), second = triangle_of(in_b, lane_b, b_to_a);
-            const TrianglePair indices{in_a.triangle[lane_a], in_b.triangle[lane_b]};
-            MeshContact contact{indices, contact_segment(first, second), unit_normal(second)};
-            if (contact.normal == glm::dvec3(0.0)) contact.normal = unit_normal(first);
-            found.push_back(contact);
-            return false;
-        });
+    for_each_hit(a, b, b_to_a, false, statistics, [&](const Hit& hit) {
+        const Triangle first = triangle_of(hit.in_a, hit.lane_a), second = triangle_of(hit.in_b, hit.lane_b, b_to_a);
+        MeshContact contact{hit.indices(), contact_segment(first, second), unit_normal(second)};
+        if (contact.normal == glm::dvec3(0.0)) contact.normal = unit_normal(first);
+        found.push_back(contact);
+        return false;
+    });
     std::sort(found.begin(), found.end(),
               [](const MeshContact& x, const MeshContact& y) { return x.triangles < y.triangles; });
 }
@@ -122,24 +124,20 @@ MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Po
     MeshDistance result;
     ClosestPoints best;
     best.squared = limit * limit;
-    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict verdict) {
-        const tree::MeshLeaf &in_a = a.leaves()[leaf_a], &in_b = b.leaves()[leaf_b];
-        const Triangle first = triangle_of(in_a, lane_a);
-        for (std::uint32_t lanes = verdict.open; lanes != 0; lanes &= lanes - 1) {
-            const auto lane_b = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const Triangle second = triangle_of(in_b, lane_b, b_to_a);
-            const TrianglePair indices{in_a.triangle[lane_a], in_b.triangle[lane_b]};
-            if (statistics != nullptr) ++statistics->exact_tests;
-            if (intersects(first, second)) {
-                const SegmentOfContact segment = contact_segment(first, second);
-                result = {0.0, segment.begin, segment.begin, indices};
-                best.squared = 0.0;
-                return true;
-            }
-            const double before = best.squared;
-            closest_of_triangles(first, second, best);
-            if (best.squared < before) result = {std::sqrt(best.squared), best.on_a, best.on_b, indices};
+    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool) {
+        const tree::MeshLeaf &in_a = a.leaves()[of_a.leaf], &in_b = b.leaves()[of_b.leaf];
+        const Triangle first = triangle_of(in_a, of_a.lane), second = triangle_of(in_b, of_b.lane, b_to_a);
+        const TrianglePair indices{in_a.triangle[of_a.lane], in_b.triangle[of_b.lane]};
+        if (statistics != nullptr) ++statistics->exact_tests;
+        if (intersects(first, second)) {
+            const SegmentOfContact segment = contact_segment(first, second);
+            result = {0.0, segment.begin, segment.begin, indices};
+            best.squared = 0.0;
+            return true;
         }
+        const double before = best.squared;
+        closest_of_triangles(first, second, best);
+        if (best.squared < before) result = {std::sqrt(best.squared), best.on_a, best.on_b, indices};
         return false;
     };
     TraversalCounts counts;
@@ -154,17 +152,14 @@ MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Po
 bool closer_than(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, double tolerance,
                  MeshStatistics* statistics) {
     bool close = false;
-    const auto visit = [&](std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict verdict) {
-        const tree::MeshLeaf &in_a = a.leaves()[leaf_a], &in_b = b.leaves()[leaf_b];
-        const Triangle first = triangle_of(in_a, lane_a);
-        for (std::uint32_t lanes = verdict.open; lanes != 0 && !close; lanes &= lanes - 1) {
-            const Triangle second = triangle_of(in_b, static_cast<std::uint32_t>(std::countr_zero(lanes)), b_to_a);
-            if (statistics != nullptr) ++statistics->exact_tests;
-            ClosestPoints best;
-            close = intersects(first, second);
-            if (!close) closest_of_triangles(first, second, best);
-            close = close || best.squared < tolerance * tolerance;
-        }
+    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool) {
+        const Triangle first = triangle_of(a.leaves()[of_a.leaf], of_a.lane),
+                       second = triangle_of(b.leaves()[of_b.leaf], of_b.lane, b_to_a);
+        if (statistics != nullptr) ++statistics->exact_tests;
+        ClosestPoints best;
+        close = intersects(first, second);
+        if (!close) closest_of_triangles(first, second, best);
+        close = close || best.squared < tolerance * tolerance;
         return close;
     };
     const MeshPair pair = make_pair(a, b, b_to_a, tolerance);

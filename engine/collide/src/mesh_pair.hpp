@@ -10,8 +10,12 @@ struct MeshPair {
     const tree::MeshNode* nodes[2];
     const tree::MeshLeaf* leaves[2];
     const tree::MeshBox* root[2];
-    float rotation[3][3];  // [row][column], b to a
-    float translation[3];
+    // x ↦ columns · x + offset, padded for vector loads; [0]: from b's frame to a's, [1]: from a's to b's.
+    struct Motion {
+        alignas(16) float column[3][4];
+        alignas(16) float offset[4];
+    };
+    Motion to_a, to_b;
     double exact_rotation[3][3], exact_translation[3];
     // Bound of the float rounding of any point or box that is carried from one mesh's frame to the other's.
     float slop;
@@ -23,20 +27,23 @@ struct LaneVerdict {
     std::uint32_t hits = 0, open = 0;
 };
 
-// A triangle of a leaf of a against those of a leaf of b that are set in the verdict; true ends the traversal.
-using LeafVisitor =
-    FunctionRef<bool(std::uint32_t leaf_a, std::uint32_t lane_a, std::uint32_t leaf_b, LaneVerdict lanes)>;
+struct LeafTriangle {
+    std::uint32_t leaf = 0, lane = 0;
+};
+// A triangle of a and one of b that meet, or where `certain` is false may meet; true ends the traversal.
+using PairVisitor = FunctionRef<bool(LeafTriangle of_a, LeafTriangle of_b, bool certain)>;
 
 struct TraversalCounts {
     std::uint64_t box_tests = 0, triangle_tests = 0;
 };
 
-// Calls `visit` for every pair of triangles that meets or may meet, until it returns true.
-void visit_overlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts);
+// Calls `visit` for every pair of triangles that meets or may meet, until it returns true. `at_once`: as soon as found,
+// for visitors that stop at the first.
+void visit_overlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts);
 
 // Calls `visit` for pairs that may be nearer than the bound `limit`, nearest boxes first; `limit` is the visitor's to
 // lower.
-void visit_nearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts);
+void visit_nearest(const MeshPair& pair, const double& limit, PairVisitor visit, TraversalCounts& counts);
 
 // A stack this deep is never exceeded: depth ≤ 11 levels in each tree (2^28 triangles, eight-wide median splits), each
 // step down leaves at most seven siblings.

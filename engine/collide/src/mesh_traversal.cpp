@@ -27,11 +27,15 @@ struct Step {
 HWY_INLINE std::uint32_t child_of(const MeshPair& pair, int side, Reference r) {
     return r.node == kRoot ? 0 : pair.nodes[side][r.node].child[r.lane];
 }
-HWY_INLINE tree::MeshBox box_at(const MeshPair& pair, int side, Reference r) {
-    return r.node == kRoot ? *pair.root[side] : box_of(pair.nodes[side][r.node], r.lane);
+HWY_INLINE QueryBox box_at(const MeshPair& pair, int side, Reference r) {
+    return r.node == kRoot ? box_of(*pair.root[side]) : box_of(pair.nodes[side][r.node], r.lane);
+}
+// The box of one mesh as the other's nodes see it.
+HWY_INLINE QueryBox query_box(const MeshPair& pair, const Reference& a, const Reference& b, bool into_a) {
+    return into_a ? carried(pair.to_a, box_at(pair, 1, b)) : carried(pair.to_b, box_at(pair, 0, a));
 }
 HWY_INLINE float size_of(const MeshPair& pair, int side, Reference r) {
-    if (r.node == kRoot) return half_sum(*pair.root[side]);
+    if (r.node == kRoot) return half_sum(box_of(*pair.root[side]));
     const tree::MeshNode& node = pair.nodes[side][r.node];
     return node.half[0][r.lane] + node.half[1][r.lane] + node.half[2][r.lane];
 }
@@ -52,18 +56,30 @@ HWY_INLINE void load_pair(const MeshPair& pair, std::uint32_t a, std::uint32_t b
     leaves.b.leaf = b;
 }
 
+// Hands on what the gathered pairs come to, and empties them.
+HWY_INLINE bool settle(TrianglePairs& gathered, PairVisitor visit) {
+    const LaneVerdict verdict = judge(gathered);
+    gathered.count = 0;
+    for (std::uint32_t lanes = verdict.hits | verdict.open; lanes != 0; lanes &= lanes - 1) {
+        const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
+        if (visit(gathered.of_a[lane], gathered.of_b[lane], verdict.hits >> lane & 1u)) return true;
+    }
+    return false;
+}
+
 HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves,
-                             LeafVisitor visit, TraversalCounts& counts) {
+                             TrianglePairs& gathered, PairVisitor visit, TraversalCounts& counts) {
     load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
-    const std::uint32_t used = all_lanes(leaf_b);
     for (std::uint32_t mask = candidates(leaves.a, leaves.b) & all_lanes(leaf_a); mask != 0; mask &= mask - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
-        LaneVerdict verdict = judge(leaves.a, lane, leaves.b);
-        verdict.hits &= used;
-        verdict.open &= used;
-        if ((verdict.hits | verdict.open) != 0 && visit(a, lane, b, verdict)) return true;
+        std::uint32_t near = partners(leaves.a, lane, leaves.b) & all_lanes(leaf_b);
+        for (; near != 0; near &= near - 1) {
+            gather(leaves.a, lane, leaves.b,
+                   static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)), gathered);
+            if (gathered.count == tree::kMeshWidth && settle(gathered, visit)) return true;
+        }
     }
     return false;
 }
@@ -81,22 +97,24 @@ HWY_INLINE bool descends_a(const MeshPair& pair, const Step& step, std::uint32_t
     return (child_b & tree::kMeshLeaf) || size_of(pair, 0, step.a) >= size_of(pair, 1, step.b);
 }
 
-void VisitOverlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts) {
+void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts) {
     Step stack[kMeshStackSize];
     std::uint32_t height = 0;
     stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
     const float slop = pair.slop + pair.tolerance;
     LeafPair leaves;
+    TrianglePairs gathered;
     while (height > 0) {
         const Step step = stack[--height];
         const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
         if (a & b & tree::kMeshLeaf) {
-            if (visit_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, visit, counts)) return;
+            if (visit_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, gathered, visit, counts)) return;
+            if (at_once && gathered.count > 0 && settle(gathered, visit)) return;
             continue;
         }
         const bool into_a = descends_a(pair, step, a, b);
         const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
-        const tree::MeshBox box = into_a ? to_a(pair, box_at(pair, 1, step.b)) : to_b(pair, box_at(pair, 0, step.a));
+        const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
         for (std::uint32_t mask = overlap_mask(node, box, slop); mask != 0; mask &= mask - 1) {
             const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
@@ -104,21 +122,25 @@ void VisitOverlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& cou
             prefetch_child(pair, into_a ? 0 : 1, node.child[lane]);
         }
     }
+    settle(gathered, visit);
 }
 
 bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves, const double& limit,
-                       LeafVisitor visit, TraversalCounts& counts) {
+                       PairVisitor visit, TraversalCounts& counts) {
     load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
     for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        const std::uint32_t mask = near_mask(leaves.a, lane, leaves.b, limit) & all_lanes(leaf_b);
-        if (mask != 0 && visit(a, lane, b, {0, mask})) return true;
+        std::uint32_t mask = near_mask(leaves.a, lane, leaves.b, limit) & all_lanes(leaf_b);
+        for (; mask != 0; mask &= mask - 1) {
+            const auto other = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
+            if (visit({a, lane}, {b, other}, false)) return true;
+        }
     }
     return false;
 }
 
-void VisitNearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts) {
+void VisitNearest(const MeshPair& pair, const double& limit, PairVisitor visit, TraversalCounts& counts) {
     Step stack[kMeshStackSize];
     std::uint32_t height = 0;
     LeafPair leaves;
@@ -134,7 +156,7 @@ void VisitNearest(const MeshPair& pair, const double& limit, LeafVisitor visit, 
         }
         const bool into_a = descends_a(pair, step, a, b);
         const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
-        const tree::MeshBox box = into_a ? to_a(pair, box_at(pair, 1, step.b)) : to_b(pair, box_at(pair, 0, step.a));
+        const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
         HWY_ALIGN float bounds[tree::kMeshWidth];
         distance_bounds(node, box, pair.slop, bounds);
@@ -158,10 +180,10 @@ namespace crofton::collide {
 HWY_EXPORT(VisitOverlaps);
 HWY_EXPORT(VisitNearest);
 
-void visit_overlaps(const MeshPair& pair, LeafVisitor visit, TraversalCounts& counts) {
-    HWY_DYNAMIC_DISPATCH(VisitOverlaps)(pair, visit, counts);
+void visit_overlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts) {
+    HWY_DYNAMIC_DISPATCH(VisitOverlaps)(pair, at_once, visit, counts);
 }
-void visit_nearest(const MeshPair& pair, const double& limit, LeafVisitor visit, TraversalCounts& counts) {
+void visit_nearest(const MeshPair& pair, const double& limit, PairVisitor visit, TraversalCounts& counts) {
     HWY_DYNAMIC_DISPATCH(VisitNearest)(pair, limit, visit, counts);
 }
 
