@@ -156,9 +156,32 @@ HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const QueryBox
     return ~apart & ((1u << node.count) - 1u);
 }
 
+// The gap along any unit direction bounds the distance from below; along that of the nearest points found so far hardly
+// anything far from them remains. Rounding of the projection scales with the offset, which may be long: 2^-20 of it.
+HWY_INLINE V gap_along(D d, const tree::MeshNode& node, std::size_t l, const Lanes& s, const QueryBox& q,
+                       const float* direction) {
+    V shift = hn::Zero(d), length = hn::Zero(d), reach = s.error;
+    for (int i = 0; i < 3; ++i) {
+        const V offset = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, q.center[i]));
+        shift = hn::MulAdd(offset, hn::Set(d, direction[i]), shift);
+        length = hn::Add(length, hn::Abs(offset));
+    }
+    for (int k = 0; k < 3; ++k) {
+        V along = hn::Zero(d);
+        for (int i = 0; i < 3; ++i)
+            along = hn::MulAdd(hn::Load(d, node.axes[k][i] + l), hn::Set(d, direction[i]), along);
+        reach = hn::MulAdd(s.half[k], hn::Abs(along), reach);
+        const float* const axis = q.axes[k];
+        const float along_q = axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2];
+        reach = hn::Add(reach, hn::Set(d, q.half[k] * (along_q < 0.0f ? -along_q : along_q)));
+    }
+    return hn::Sub(hn::Abs(shift), hn::MulAdd(length, hn::Set(d, 0x1p-20f), reach));
+}
+
 // A lower bound of the squared distance of q to each lane's box: in either frame the gaps along the three perpendicular
 // face normals add up by Pythagoras. The last factor covers the rounding of the squares.
-HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, float slop, float* bounds) {
+HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, float slop, const float* direction,
+                                float* bounds) {
     const D d;
     const V zero = hn::Zero(d);
     for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
@@ -169,7 +192,9 @@ HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, f
             in_query = hn::MulAdd(a, a, in_query);
             in_lane = hn::MulAdd(b, b, in_lane);
         }
-        hn::Store(hn::Mul(hn::Max(in_query, in_lane), hn::Set(d, 0.99999f)), d, bounds + l);
+        const V gap = hn::Max(zero, gap_along(d, node, l, s, q, direction));
+        const V squared = hn::Max(hn::Mul(gap, gap), hn::Max(in_query, in_lane));
+        hn::Store(hn::Mul(squared, hn::Set(d, 0.99999f)), d, bounds + l);
     }
 }
 

@@ -119,11 +119,28 @@ void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to
               [](const MeshContact& x, const MeshContact& y) { return x.triangles < y.triangles; });
 }
 
+namespace {
+
+Nearest towards(const glm::dvec3& from, const glm::dvec3& to, double squared) {
+    const glm::dvec3 way = to - from;
+    const double length = glm::length(way);
+    Nearest nearest{squared, {}};
+    for (int i = 0; i < 3 && length > 1e-100; ++i) nearest.direction[i] = static_cast<float>(way[i] / length);
+    return nearest;
+}
+
+glm::dvec3 center_of(const tree::MeshBox& box) {
+    return {static_cast<double>(box.center[0]), static_cast<double>(box.center[1]), static_cast<double>(box.center[2])};
+}
+
+}  // namespace
+
 MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, double limit,
                       MeshStatistics* statistics) {
     MeshDistance result;
     ClosestPoints best;
     best.squared = limit * limit;
+    Nearest nearest = towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())), best.squared);
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool) {
         const tree::MeshLeaf &in_a = a.leaves()[of_a.leaf], &in_b = b.leaves()[of_b.leaf];
         const Triangle first = triangle_of(in_a, of_a.lane), second = triangle_of(in_b, of_b.lane, b_to_a);
@@ -132,16 +149,18 @@ MeshDistance distance(const tree::MeshTree& a, const tree::MeshTree& b, const Po
         if (intersects(first, second)) {
             const SegmentOfContact segment = contact_segment(first, second);
             result = {0.0, segment.begin, segment.begin, indices};
-            best.squared = 0.0;
             return true;
         }
         const double before = best.squared;
         closest_of_triangles(first, second, best);
-        if (best.squared < before) result = {std::sqrt(best.squared), best.on_a, best.on_b, indices};
+        if (best.squared < before) {
+            result = {std::sqrt(best.squared), best.on_a, best.on_b, indices};
+            nearest = towards(best.on_a, best.on_b, best.squared);
+        }
         return false;
     };
     TraversalCounts counts;
-    visit_nearest(make_pair(a, b, b_to_a), best.squared, visit, counts);
+    visit_nearest(make_pair(a, b, b_to_a), nearest, visit, counts);
     if (statistics != nullptr) {
         statistics->box_tests += counts.box_tests;
         statistics->triangle_tests += counts.triangle_tests;
@@ -163,9 +182,10 @@ bool closer_than(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b
         return close;
     };
     const MeshPair pair = make_pair(a, b, b_to_a, tolerance);
-    const double limit = tolerance * tolerance;
+    const Nearest nearest = towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())),
+                                    tolerance * tolerance);
     TraversalCounts counts;
-    visit_nearest(pair, limit, visit, counts);
+    visit_nearest(pair, nearest, visit, counts);
     if (statistics != nullptr) {
         statistics->box_tests += counts.box_tests;
         statistics->triangle_tests += counts.triangle_tests;

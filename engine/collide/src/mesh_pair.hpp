@@ -41,9 +41,14 @@ struct TraversalCounts {
 // for visitors that stop at the first.
 void visit_overlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts);
 
-// Calls `visit` for pairs that may be nearer than the bound `limit`, nearest boxes first; `limit` is the visitor's to
-// lower.
-void visit_nearest(const MeshPair& pair, const double& limit, PairVisitor visit, TraversalCounts& counts);
+// What a search for the nearest pair knows so far; the visitor's to improve.
+struct Nearest {
+    double squared;      // pairs at this distance or farther are left out
+    float direction[3];  // from a to b, unit to 2^-22, or zero: boxes are also told apart along it
+};
+
+// Calls `visit` for pairs that may be nearer than `nearest`, nearest boxes first.
+void visit_nearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts);
 
 // A stack this deep is never exceeded: depth ≤ 11 levels in each tree (2^28 triangles, eight-wide median splits), each
 // step down leaves at most seven siblings.

@@ -9,6 +9,7 @@
 #include "leaf_kernels-inl.hpp"
 #include "mesh_kernels-inl.hpp"
 #include "mesh_pair.hpp"
+#include "triangle_distance-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
@@ -125,32 +126,46 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
     settle(gathered, visit);
 }
 
-bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves, const double& limit,
-                       PairVisitor visit, TraversalCounts& counts) {
-    load_pair(pair, a, b, leaves);
-    const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
-    counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
-    for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        std::uint32_t mask = near_mask(leaves.a, lane, leaves.b, limit) & all_lanes(leaf_b);
-        for (; mask != 0; mask &= mask - 1) {
-            const auto other = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
-            if (visit({a, lane}, {b, other}, false)) return true;
-        }
+HWY_INLINE bool settle_near(TrianglePairs& gathered, const Nearest& nearest, PairVisitor visit) {
+    const LaneVerdict verdict = judge(gathered);
+    std::uint32_t lanes = verdict.hits | verdict.open | closer_lanes(gathered, nearest.squared);
+    gathered.count = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
+        if (visit(gathered.of_a[lane], gathered.of_b[lane], verdict.hits >> lane & 1u)) return true;
     }
     return false;
 }
 
-void VisitNearest(const MeshPair& pair, const double& limit, PairVisitor visit, TraversalCounts& counts) {
+bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves,
+                       TrianglePairs& gathered, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
+    load_pair(pair, a, b, leaves);
+    const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
+    counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+    for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
+        std::uint32_t near = near_mask(leaves.a, lane, leaves.b, nearest.squared) & all_lanes(leaf_b);
+        for (; near != 0; near &= near - 1) {
+            gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
+                   gathered);
+            if (gathered.count == tree::kMeshWidth && settle_near(gathered, nearest, visit)) return true;
+        }
+    }
+    return gathered.count > 0 && settle_near(gathered, nearest, visit);
+}
+
+void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
     Step stack[kMeshStackSize];
     std::uint32_t height = 0;
     LeafPair leaves;
+    TrianglePairs gathered;
     stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
     while (height > 0) {
         const Step step = stack[--height];
-        if (static_cast<double>(step.bound) > limit) continue;
+        if (static_cast<double>(step.bound) > nearest.squared) continue;
         const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
         if (a & b & tree::kMeshLeaf) {
-            if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, limit, visit, counts))
+            if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, gathered, nearest, visit,
+                                  counts))
                 return;
             continue;
         }
@@ -159,11 +174,13 @@ void VisitNearest(const MeshPair& pair, const double& limit, PairVisitor visit, 
         const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
         HWY_ALIGN float bounds[tree::kMeshWidth];
-        distance_bounds(node, box, pair.slop, bounds);
+        alignas(16) float direction[4] = {nearest.direction[0], nearest.direction[1], nearest.direction[2]};
+        if (!into_a) turn(pair.to_b, nearest.direction, direction);
+        distance_bounds(node, box, pair.slop, direction, bounds);
         // The nearest child goes on top; insertion keeps equal ones in lane order.
         const std::uint32_t base = height;
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-            if (static_cast<double>(bounds[lane]) > limit) continue;
+            if (static_cast<double>(bounds[lane]) > nearest.squared) continue;
             std::uint32_t place = height++;
             for (; place > base && stack[place - 1].bound < bounds[lane]; --place) stack[place] = stack[place - 1];
             stack[place] = into_a ? Step{{a, lane}, step.b, bounds[lane]} : Step{step.a, {b, lane}, bounds[lane]};
@@ -183,8 +200,8 @@ HWY_EXPORT(VisitNearest);
 void visit_overlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts) {
     HWY_DYNAMIC_DISPATCH(VisitOverlaps)(pair, at_once, visit, counts);
 }
-void visit_nearest(const MeshPair& pair, const double& limit, PairVisitor visit, TraversalCounts& counts) {
-    HWY_DYNAMIC_DISPATCH(VisitNearest)(pair, limit, visit, counts);
+void visit_nearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
+    HWY_DYNAMIC_DISPATCH(VisitNearest)(pair, nearest, visit, counts);
 }
 
 }  // namespace crofton::collide
