@@ -102,7 +102,8 @@ void intersecting_triangles(const tree::MeshTree& a, const tree::MeshTree& b, co
         pairs.push_back(hit.indices());
         return false;
     });
-    std::sort(pairs.begin(), pairs.end());
+    const auto key = [](const TrianglePair& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
+    std::sort(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
 }
 
 void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, Vector<MeshContact>& found,

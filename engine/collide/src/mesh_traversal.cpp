@@ -59,6 +59,7 @@ HWY_INLINE void load_pair(const MeshPair& pair, std::uint32_t a, std::uint32_t b
 
 // Hands on what the gathered pairs come to, and empties them.
 HWY_INLINE bool settle(TrianglePairs& gathered, PairVisitor visit) {
+    if (gathered.count == 0) return false;
     const LaneVerdict verdict = judge(gathered);
     gathered.count = 0;
     for (std::uint32_t lanes = verdict.hits | verdict.open; lanes != 0; lanes &= lanes - 1) {
@@ -86,11 +87,19 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
 }
 
 HWY_INLINE void prefetch_child(const MeshPair& pair, int side, std::uint32_t child) {
-    const char* address = child & tree::kMeshLeaf
-                              ? reinterpret_cast<const char*>(pair.leaves[side] + (child & ~tree::kMeshLeaf))
-                              : reinterpret_cast<const char*>(pair.nodes[side] + child);
-    for (int line = 0; line < 6; ++line) hwy::Prefetch(address + 64 * line);
+    const bool is_leaf = child & tree::kMeshLeaf;
+    const char* address = is_leaf ? reinterpret_cast<const char*>(pair.leaves[side] + (child & ~tree::kMeshLeaf))
+                                  : reinterpret_cast<const char*>(pair.nodes[side] + child);
+    const std::size_t size = is_leaf ? sizeof(tree::MeshLeaf) : sizeof(tree::MeshNode);
+    for (std::size_t byte = 0; byte < size; byte += 64) hwy::Prefetch(address + byte);
 }
+
+// Pairs of leaves wait here, in order, until what they need has come from memory.
+struct LeafQueue {
+    static constexpr std::size_t kCapacity = 8;
+    std::uint32_t a[kCapacity], b[kCapacity];
+    std::size_t begin = 0, count = 0;
+};
 
 // Descends the larger box: the other's box is carried into its frame and tested against eight children at once.
 HWY_INLINE bool descends_a(const MeshPair& pair, const Step& step, std::uint32_t child_a, std::uint32_t child_b) {
@@ -105,12 +114,22 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
     const float slop = pair.slop + pair.tolerance;
     LeafPair leaves;
     TrianglePairs gathered;
+    LeafQueue queue;
+    const auto visit_first = [&]() HWY_ATTR {
+        const std::size_t place = queue.begin;
+        queue.begin = (place + 1) % LeafQueue::kCapacity;
+        --queue.count;
+        return visit_leaves(pair, queue.a[place], queue.b[place], leaves, gathered, visit, counts);
+    };
     while (height > 0) {
         const Step step = stack[--height];
         const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
         if (a & b & tree::kMeshLeaf) {
-            if (visit_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, gathered, visit, counts)) return;
-            if (at_once && gathered.count > 0 && settle(gathered, visit)) return;
+            if (queue.count == LeafQueue::kCapacity && visit_first()) return;
+            const std::size_t place = (queue.begin + queue.count++) % LeafQueue::kCapacity;
+            queue.a[place] = a & ~tree::kMeshLeaf;
+            queue.b[place] = b & ~tree::kMeshLeaf;
+            if (at_once && (visit_first() || settle(gathered, visit))) return;
             continue;
         }
         const bool into_a = descends_a(pair, step, a, b);
@@ -123,6 +142,8 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
             prefetch_child(pair, into_a ? 0 : 1, node.child[lane]);
         }
     }
+    while (queue.count > 0)
+        if (visit_first()) return;
     settle(gathered, visit);
 }
 
