@@ -14,8 +14,9 @@ __extension__ typedef __int128 Int128;
 using Random = std::mt19937_64;
 
 // Boxes on a lattice, so that the separating-axis theorem can be put into integers of 128 bits: axes in steps of 2^-22,
-// extents of 2^-24, offsets of 2^-46. Everything compared is then a multiple of 2^-90 below 2^8.
-constexpr int kAxisBits = 22, kExtentBits = 24, kOffsetBits = 46;
+// extents of 2^-24, offsets of 2^-52. Reaches are then multiples of 2^-90, distances of 2^-96, both below 2^8.
+constexpr int kAxisBits = 22, kExtentBits = 24, kOffsetBits = 52;
+constexpr int kReachToDistance = kOffsetBits - kAxisBits - kExtentBits;
 
 double on_lattice(double value, int bits) {
     return std::ldexp(std::nearbyint(std::ldexp(value, bits)), -bits);
@@ -46,7 +47,7 @@ bool meet_in_integers(const Obb& a, const Obb& b) {
             for (int g = 0; g < 6; ++g)
                 if (g != p && g != q)
                     reach += half[g] * magnitude(edge[g][0] * n[0] + edge[g][1] * n[1] + edge[g][2] * n[2]);
-            if (magnitude(distance) > reach) return false;
+            if (magnitude(distance) > reach << kReachToDistance) return false;
         }
     return true;
 }
@@ -76,7 +77,7 @@ Obb lattice_box(Random& random, const glm::dquat& frame) {
 // Where b, starting at a's centre, leaves a along `direction`, by bisection with the integers themselves.
 double touching_distance(const Obb& a, Obb b, const glm::dvec3& direction) {
     double meeting = 0.0, apart = 8.0;
-    for (int step = 0; step < 44; ++step) {
+    for (int step = 0; step < 52; ++step) {
         const double middle = 0.5 * (meeting + apart);
         for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(middle * direction[i], kOffsetBits);
         (meet_in_integers(a, b) ? meeting : apart) = middle;
@@ -86,25 +87,29 @@ double touching_distance(const Obb& a, Obb b, const glm::dvec3& direction) {
 
 struct Class {
     const char* name;
-    bool parallel;
+    bool parallel, float_centers;
 };
 
 VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool batch) {
     Random random(options.seed);
-    std::uniform_real_distribution<double> exponent(-14.0, -1.0), angle(-12.0, -1.0);
     const std::uint64_t trials = std::max<std::uint64_t>(100, options.trials / 20);
     std::vector<Obb> first, second;
     std::vector<std::uint8_t> truth, answers;
     for (std::uint64_t trial = 0; trial < trials; ++trial) {
         const glm::dquat frame = random_rotation(random);
-        const glm::dquat turn = glm::angleAxis(std::pow(10.0, angle(random)), glm::normalize(random_vector(random)));
+        // All decades in turn.
+        const double angle = std::pow(10.0, -1.0 - static_cast<double>(trial / 15 % 12));
+        const glm::dquat turn = glm::angleAxis(angle, glm::normalize(random_vector(random)));
         const Obb a = lattice_box(random, frame);
         Obb b = lattice_box(random, kind.parallel ? turn * frame : random_rotation(random));
         const glm::dvec3 direction =
             trial % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[static_cast<int>(trial % 3)]);
-        const double gap = std::pow(10.0, exponent(random)) * (random() % 2 ? 1.0 : -1.0);
+        const double gap = std::pow(10.0, -1.0 - static_cast<double>(trial % 15)) * (random() % 2 ? 1.0 : -1.0);
         const double distance = touching_distance(a, b, direction) + gap;
         for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(distance * direction[i], kOffsetBits);
+        // Floats of this size lie on the lattice, or are small enough to be put there.
+        if (kind.float_centers)
+            for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(static_cast<double>(static_cast<float>(b.center[i])), kOffsetBits);
         first.push_back(a);
         second.push_back(b);
         truth.push_back(meet_in_integers(a, b));
@@ -117,7 +122,7 @@ VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool ba
     std::uint64_t wrong = 0;
     for (std::uint64_t i = 0; i < trials; ++i) wrong += truth[i] != answers[i];
     return computed_row("boxes, " + std::string(kind.name) + (batch ? ", in batches" : ", one by one") +
-                            ", gaps of 1e-1 to 1e-14: " + std::to_string(trials) + " answers, none wrong",
+                            ", gaps of 1e-1 to 1e-15: " + std::to_string(trials) + " answers, none wrong",
                         "separating axes in 128-bit integers", 0.0, static_cast<double>(wrong), 0.0);
 }
 
@@ -125,7 +130,9 @@ VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool ba
 
 std::vector<VerifyRow> verify_collide(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
-    for (const Class& kind : {Class{"generic", false}, Class{"nearly parallel (1e-1 to 1e-12 rad)", true}})
+    for (const Class& kind : {Class{"generic", false, false}, Class{"generic, centres in float", false, true},
+                              Class{"nearly parallel (1e-1 to 1e-12 rad)", true, false},
+                              Class{"nearly parallel (1e-1 to 1e-12 rad), centres in float", true, true}})
         for (const bool batch : {false, true}) rows.push_back(wrong_answers(kind, options, batch));
     return rows;
 }

@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
+#include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
 #include <limits>
+#include <vector>
 
 #include "oracle/exact_boxes.hpp"
 #include "random_boxes.hpp"
@@ -93,7 +95,7 @@ TEST_SUITE("collide/obb_obb") {
         int wrong = 0, hits = 0;
         for (int trial = 0; trial < 20000; ++trial) {
             const auto [a, b] = nearly_touching(random, {.parallel = trial % 2 == 0, .no_gap = true});
-            const bool truth = oracle::boxes_meet_by_axes(a, b);
+            const bool truth = oracle::boxes_meet_by_integers(a, b);
             wrong += intersects(a, b) != truth;
             hits += truth;
         }
@@ -116,7 +118,7 @@ TEST_SUITE("collide/obb_obb") {
         CHECK(seen == 0x7fffu);
     }
 
-    TEST_CASE("the two oracles agree with each other and with us, degenerate boxes included") {
+    TEST_CASE("the oracles agree with each other and with us, degenerate boxes included") {
         std::mt19937_64 random(11);
         int hits = 0;
         for (int trial = 0; trial < 300; ++trial) {
@@ -126,25 +128,49 @@ TEST_SUITE("collide/obb_obb") {
             const bool truth = oracle::boxes_meet_by_vertices(a, b);
             hits += truth;
             CHECK(oracle::boxes_meet_by_axes(a, b) == truth);
+            CHECK(oracle::boxes_meet_by_integers(a, b) == truth);
             CHECK(intersects(a, b) == truth);
         }
         CHECK(hits > 50);
     }
 
-    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15 and angles of 1e-1 to 1e-12: no wrong answer in any class") {
+    // Gaps and angles of all decades in turn, hits and misses in each; one by one and in batches.
+    void check_class(const NearTouch& kind) {
         std::mt19937_64 random(2024);
-        int wrong[4] = {}, hits[4] = {};
+        std::vector<Obb> first, second;
+        std::vector<std::uint8_t> truth, batch(60000);
+        int hits[16] = {}, wrong = 0;
         for (int trial = 0; trial < 60000; ++trial) {
-            const int kind = trial % 4;
-            const auto [a, b] = nearly_touching(random, {.parallel = kind >= 2, .float_centers = kind % 2 == 1});
-            const bool truth = oracle::boxes_meet_by_axes(a, b);
-            wrong[kind] += intersects(a, b) != truth;
-            hits[kind] += truth;
+            NearTouch decade = kind;
+            decade.gap_decade = 1 + trial % 15;
+            decade.angle_decade = 1 + trial / 15 % 12;
+            const auto [a, b] = nearly_touching(random, decade);
+            first.push_back(a);
+            second.push_back(b);
+            truth.push_back(oracle::boxes_meet_by_integers(a, b));
+            hits[decade.gap_decade] += truth.back();
+            wrong += intersects(a, b) != bool(truth.back());
         }
-        for (int kind = 0; kind < 4; ++kind) {
-            CHECK(wrong[kind] == 0);
-            CHECK(hits[kind] > 6000);
-            CHECK(hits[kind] < 9000);
+        CHECK(wrong == 0);
+        intersects(first, second, batch);
+        CHECK(batch == truth);
+        for (int decade = 1; decade <= 15; ++decade) {
+            CAPTURE(decade);
+            CHECK(hits[decade] > 1000);
+            CHECK(hits[decade] < 3000);
         }
+    }
+
+    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15, generic, in double: none wrong") {
+        check_class({});
+    }
+    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15, generic, centres rounded to float: none wrong") {
+        check_class({.float_centers = true});
+    }
+    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15, turned by 1e-1 to 1e-12, in double: none wrong") {
+        check_class({.parallel = true});
+    }
+    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15, turned by 1e-1 to 1e-12, centres rounded to float: none wrong") {
+        check_class({.parallel = true, .float_centers = true});
     }
 }

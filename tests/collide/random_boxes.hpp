@@ -52,6 +52,8 @@ struct NearTouch {
     bool parallel = false;       // b's frame is a's, turned by 1e-1 … 1e-12 rad
     bool float_centers = false;  // centres rounded to float
     bool no_gap = false;         // as near to touching as double can put them
+    int gap_decade = 0;          // 1 … 15: a gap or overlap of 1e-1 … 1e-15; 0: any between
+    int angle_decade = 0;        // 1 … 12 likewise
 };
 
 inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTouch& kind) {
@@ -59,11 +61,13 @@ inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTo
     Obb a = random_box(random), b = random_box(random);
     if (kind.parallel) {
         const glm::dquat frame = random_rotation(random);
-        const double angle = std::pow(10.0, -1.0 - 11.0 * unit(random));
+        const double exponent = 1.0 + 11.0 * unit(random);
+        const double angle = std::pow(10.0, -(kind.angle_decade > 0 ? double(kind.angle_decade) : exponent));
         a.axes = glm::mat3(glm::mat3_cast(frame));
         b.axes = glm::mat3(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(random_vector(random))) * frame));
     }
-    const double gap = kind.no_gap ? 0.0 : std::pow(10.0, -1.0 - 14.0 * unit(random)) * (random() % 2 ? 1.0 : -1.0);
+    const double size = std::pow(10.0, -(kind.gap_decade > 0 ? double(kind.gap_decade) : 1.0 + 14.0 * unit(random)));
+    const double gap = kind.no_gap ? 0.0 : random() % 2 ? size : -size;
     // Along an axis in some trials, so that faces lie flat on each other.
     const glm::dvec3 direction = random() % 2 ? glm::normalize(random_vector(random)) : glm::dvec3(a.axes[2]);
     b.center = a.center + (touching_distance(a, b, direction) + gap) * direction;
