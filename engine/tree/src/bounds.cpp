@@ -204,31 +204,24 @@ Aabb bounds_of(const Node& node) {
     return around(node.origin, low, high);
 }
 
-Aabb bounds_of(const Leaf& leaf) {
+Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent) {
     if (leaf.count == 0) return {};
+    // Positions are within half a unit of the truth (and the difference's rounding, 2^-38 units), and so is each of the
+    // three edges' components.
+    const double slack = 0.51 * double{leaf.position_unit} + 1.51 * double{leaf.edge_unit};
     double low[3], high[3];
     for (int j = 0; j < 3; ++j) {
-        float least[kWidth], most[kWidth];
-        for (unsigned lane = 0; lane < kWidth; ++lane) {
-            const int extent = std::abs(int{leaf.edge[j][lane]}) + std::abs(int{leaf.edge[3 + j][lane]}) +
-                               std::abs(int{leaf.edge[6 + j][lane]});
-            // Both products are exact; the sums round once.
-            const float center = static_cast<float>(leaf.position[j][lane]) * leaf.position_unit,
-                        half = static_cast<float>(extent) * leaf.edge_unit;
-            least[lane] = center - half;
-            most[lane] = center + half;
-        }
-        for (unsigned lane = 1; lane < leaf.count; ++lane) {
-            least[0] = least[lane] < least[0] ? least[lane] : least[0];
-            most[0] = most[lane] > most[0] ? most[lane] : most[0];
-        }
-        // Positions are within half a unit of the truth (and the difference's rounding, 2^-38 units), and so is each of
-        // the three edges' components.
-        const double slack = 0.51 * double{leaf.position_unit} + 1.51 * double{leaf.edge_unit};
-        low[j] = double{least[0]} - std::fabs(double{least[0]}) * 0x1p-23 - slack;
-        high[j] = double{most[0]} + std::fabs(double{most[0]}) * 0x1p-23 + slack;
+        low[j] = double{extent.low[j]} - std::fabs(double{extent.low[j]}) * 0x1p-23 - slack;
+        high[j] = double{extent.high[j]} + std::fabs(double{extent.high[j]}) * 0x1p-23 + slack;
     }
     return around(leaf.origin, low, high);
+}
+
+Aabb bounds_of(const Leaf& leaf) {
+    const LeafId first = 0;
+    LeafExtent extent;
+    leaf_extents(&leaf, std::span(&first, 1), &extent);
+    return bounds_of(leaf, extent);
 }
 
 }  // namespace crofton::tree

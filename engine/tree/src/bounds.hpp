@@ -3,6 +3,8 @@
 #include <crofton/geometry/obb.hpp>
 #include <crofton/tree/layout.hpp>
 
+#include "leaf_extents.hpp"
+
 namespace crofton::tree {
 
 void clear(Node& node);
@@ -33,6 +35,7 @@ void clear_lane(Node& node, unsigned lane);
 void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count);
 
 [[nodiscard]] Aabb bounds_of(const Leaf& leaf);
+[[nodiscard]] Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent);
 [[nodiscard]] Aabb bounds_of(const Node& node);
 [[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane);
 

@@ -161,20 +161,25 @@ void BoxTree::refresh_node(Structure& structure, NodeId n) const {
         if (!bounds[lane].is_empty()) whole.include(bounds[lane]);
     }
     fit_frame(node, whole);
-    node.layers_every = ~std::uint32_t{0};
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
         [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane]);
         CROFTON_ASSERT(fits, "a frame around bounds must take them");
-        const std::uint32_t child = node.child[lane];
-        if (child & kLeafBit) {
-            const Leaf& leaf = structure.leaves[child & ~kLeafBit];
-            write_layers(node, lane, leaf.layers, leaf.layers, leaf.count);
-        } else {
-            const Node& below = structure.nodes[child];
-            write_layers(node, lane, below.layers_any, below.layers_all, below.count);
-        }
-        node.layers_every &= node.layers_all[lane];
+        refresh_layers(structure, n, lane);
     }
+}
+
+void BoxTree::refresh_layers(Structure& structure, NodeId n, unsigned lane) const {
+    Node& node = structure.nodes[n];
+    const std::uint32_t child = node.child[lane];
+    if (child & kLeafBit) {
+        const Leaf& leaf = structure.leaves[child & ~kLeafBit];
+        write_layers(node, lane, leaf.layers, leaf.layers, leaf.count);
+    } else {
+        const Node& below = structure.nodes[child];
+        write_layers(node, lane, below.layers_any, below.layers_all, below.count);
+    }
+    node.layers_every = ~std::uint32_t{0};
+    for (unsigned i = 0; i < node.count; ++i) node.layers_every &= node.layers_all[i];
 }
 
 Aabb BoxTree::child_bounds(NodeId node, unsigned lane) const {

@@ -1,4 +1,5 @@
 // Moving, inserting and removing items.
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,7 +10,16 @@
 
 namespace crofton::tree {
 
+namespace {
+
 constexpr std::size_t kMaxItems = std::size_t{1} << 30;
+
+template <class T>
+void prefetch_all(const T& value) {
+    for (std::size_t at = 0; at < sizeof(T); at += 64) hwy::Prefetch(reinterpret_cast<const char*>(&value) + at);
+}
+
+}  // namespace
 
 Result<void> BoxTree::move(ItemId item, const Obb& box) {
     return move(std::span(&item, 1), std::span(&box, 1));
@@ -22,7 +32,14 @@ Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> b
         if (auto known = check_item(items[i]); !known) return known;
         if (auto valid = crofton::validate(boxes[i], items[i]); !valid) return valid;
     }
+    // Scattered items wait for memory: ask for slots and boxes, then for leaves, ahead of their use.
+    constexpr std::size_t kFar = 24, kNear = 8;
     for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i + kFar < items.size()) {
+            hwy::Prefetch(&now_.item_slots[items[i + kFar]]);
+            prefetch_all(boxes_[items[i + kFar]]);
+        }
+        if (i + kNear < items.size()) prefetch_all(now_.leaves[now_.item_slots[items[i + kNear]] / kWidth]);
         const ItemId item = items[i];
         boxes_[item] = boxes[i];
         write_item(now_, item);
@@ -40,6 +57,7 @@ Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
     leaf.layers[slot % kWidth] = layer_mask;
     leaf.layers_every = ~std::uint32_t{0};
     for (unsigned lane = 0; lane < leaf.count; ++lane) leaf.layers_every &= leaf.layers[lane];
+    layers_changed_ = true;
     mark(slot / kWidth);
     note_change(item);
     return {};
@@ -70,6 +88,7 @@ void BoxTree::vacate(ItemId item) {
     now_.slot_items[l * kWidth + last] = kNone;
     now_.item_slots[item] = kNone;
     forget_run(leaf.parent);
+    layers_changed_ = true;
     mark(l);
 }
 

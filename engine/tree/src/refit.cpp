@@ -5,6 +5,7 @@
 #include <crofton/tree/box_tree.hpp>
 
 #include "bounds.hpp"
+#include "leaf_extents.hpp"
 #include "rebuild.hpp"
 
 namespace crofton::tree {
@@ -22,33 +23,65 @@ void BoxTree::note_change(ItemId item) {
 void BoxTree::refit() {
     dirty_nodes_.clear();
     dirty_node_bits_.resize((now_.nodes.size() + 63) / 64, 0);
-    const auto push = [&](Vector<NodeId>& list, NodeId n) {
-        std::uint64_t& word = dirty_node_bits_[n / 64];
-        const std::uint64_t bit = std::uint64_t{1} << (n % 64);
-        if (word & bit) return;
-        word |= bit;
-        list.push_back(n);
-    };
-    for (std::size_t w = 0; w < dirty_leaves_.size(); ++w)
-        for (std::uint64_t word = std::exchange(dirty_leaves_[w], 0); word; word &= word - 1) {
-            const auto l = static_cast<LeafId>(64 * w + static_cast<unsigned>(std::countr_zero(word)));
-            Leaf& leaf = now_.leaves[l];
-            // Far from its origin a leaf loses digits.
-            const Aabb bounds = bounds_of(leaf);
-            const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
-            if (double{leaf.reach} > 8.0 * (size.x + size.y + size.z)) rewrite_leaf(now_, l);
-            push(dirty_nodes_, leaf.parent);
-        }
+    refit_leaves();
     // Level by level up; a node is done once all its dirty children are, for those above are asked again.
     while (!dirty_nodes_.empty()) {
         dirty_parents_.clear();
         for (const NodeId n : dirty_nodes_) dirty_node_bits_[n / 64] &= ~(std::uint64_t{1} << (n % 64));
-        for (const NodeId n : dirty_nodes_) {
-            refresh_node(now_, n);
-            if (now_.nodes[n].parent != kNone) push(dirty_parents_, now_.nodes[n].parent);
-        }
+        for (std::size_t i = 0; i < dirty_nodes_.size(); ++i) refit_node(dirty_nodes_[i]);
         dirty_nodes_.swap(dirty_parents_);
     }
+    layers_changed_ = false;
+}
+
+// The bounds of leaves that have changed, into their parents' lanes.
+void BoxTree::refit_leaves() {
+    dirty_list_.clear();
+    for (std::size_t w = 0; w < dirty_leaves_.size(); ++w)
+        for (std::uint64_t word = std::exchange(dirty_leaves_[w], 0); word; word &= word - 1)
+            dirty_list_.push_back(static_cast<LeafId>(64 * w + static_cast<unsigned>(std::countr_zero(word))));
+    constexpr std::size_t kBatch = 64;
+    LeafExtent extents[kBatch];
+    for (std::size_t first = 0; first < dirty_list_.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, dirty_list_.size() - first);
+        leaf_extents(now_.leaves.data(), std::span(dirty_list_).subspan(first, count), extents);
+        for (std::size_t i = 0; i < count; ++i) {
+            const LeafId l = dirty_list_[first + i];
+            const Leaf& leaf = now_.leaves[l];
+            Aabb bounds = bounds_of(leaf, extents[i]);
+            const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
+            // Far from its origin a leaf loses digits.
+            if (double{leaf.reach} > 8.0 * (size.x + size.y + size.z)) {
+                rewrite_leaf(now_, l);
+                bounds = bounds_of(leaf);
+            }
+            set_child(leaf.parent, leaf.lane_in_parent, bounds, dirty_nodes_);
+        }
+    }
+}
+
+// A node whose lanes are up to date, into its parent's lane.
+void BoxTree::refit_node(NodeId n) {
+    Aabb bounds = bounds_of(now_.nodes[n]);
+    const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
+    if (double{now_.nodes[n].reach} > 8.0 * (size.x + size.y + size.z)) {
+        refresh_node(now_, n);
+        bounds = bounds_of(now_.nodes[n]);
+    }
+    const NodeId parent = now_.nodes[n].parent;
+    if (parent != kNone) set_child(parent, now_.nodes[n].lane_in_parent, bounds, dirty_parents_);
+}
+
+// A child's bound, and layers if any have changed, into its lane; the node then is to be refitted. All lanes anew if its
+// frame does not take the bound.
+void BoxTree::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
+    if (!write_lane(now_.nodes[n], lane, bounds)) refresh_node(now_, n);
+    if (layers_changed_) refresh_layers(now_, n, lane);
+    std::uint64_t& word = dirty_node_bits_[n / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (n % 64);
+    if (word & bit) return;
+    word |= bit;
+    dirty.push_back(n);
 }
 
 bool BoxTree::maintain(std::size_t budget) {

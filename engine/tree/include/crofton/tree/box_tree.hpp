@@ -101,7 +101,11 @@ class BoxTree {
     void finish_nodes(Structure& structure) const;
     [[nodiscard]] static std::uint32_t items_without_gaps(const Structure& structure, LeafRange range);
     void forget_run(NodeId node);
+    void refresh_layers(Structure& structure, NodeId node, unsigned lane) const;
     void refresh_path(NodeId node);
+    void refit_leaves();
+    void refit_node(NodeId node);
+    void set_child(NodeId node, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty);
     void mark(LeafId leaf);
     void note_change(ItemId item);
     void place(ItemId item);
@@ -123,8 +127,10 @@ class BoxTree {
     Vector<ItemId> free_items_;
     Structure now_;
     Vector<std::uint64_t> dirty_leaves_;  // one bit a leaf
+    Vector<LeafId> dirty_list_;
     Vector<NodeId> dirty_nodes_, dirty_parents_;
     Vector<std::uint64_t> dirty_node_bits_;
+    bool layers_changed_ = false;  // since the last refit: then layers are looked at again, otherwise only bounds
     std::unique_ptr<Rebuild> rebuild_;
 };
 
