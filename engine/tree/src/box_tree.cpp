@@ -188,7 +188,7 @@ Aabb BoxTree::child_bounds(NodeId node, unsigned lane) const {
 }
 
 Result<void> BoxTree::check_item(ItemId item) const {
-    if (item >= boxes_.size() || now_.item_slots[item] == kNone)
+    if (!is_present(item))
         return fail(ErrorCode::out_of_range, item, "box tree: no such item, or it has been removed");
     return {};
 }

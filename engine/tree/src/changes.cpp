@@ -28,15 +28,18 @@ Result<void> BoxTree::move(ItemId item, const Obb& box) {
 Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> boxes) {
     if (items.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "box tree: as many boxes as items are needed");
+    // Scattered items wait for memory: ask for slots and boxes, then for leaves, ahead of their use.
+    constexpr std::size_t kFar = 32, kNear = 12;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (auto known = check_item(items[i]); !known) return known;
+        if (i + kFar < items.size() && items[i + kFar] < boxes_.size())
+            hwy::Prefetch(&now_.item_slots[items[i + kFar]]);
+        if (!is_present(items[i])) return check_item(items[i]);
         if (auto valid = crofton::validate(boxes[i], items[i]); !valid) return valid;
     }
-    // Scattered items wait for memory: ask for slots and boxes, then for leaves, ahead of their use.
-    constexpr std::size_t kFar = 24, kNear = 8;
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (i + kFar < items.size()) {
             hwy::Prefetch(&now_.item_slots[items[i + kFar]]);
+            hwy::Prefetch(&layer_masks_[items[i + kFar]]);
             prefetch_all(boxes_[items[i + kFar]]);
         }
         if (i + kNear < items.size()) prefetch_all(now_.leaves[now_.item_slots[items[i + kNear]] / kWidth]);

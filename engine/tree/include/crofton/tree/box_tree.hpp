@@ -119,6 +119,9 @@ class BoxTree {
     void take_over();
     [[nodiscard]] Result<void> validate(Trust trust) const;
     [[nodiscard]] Result<void> validate_leaves(Trust trust) const;
+    [[nodiscard]] bool is_present(ItemId item) const {
+        return item < boxes_.size() && now_.item_slots[item] != kNone;
+    }
     [[nodiscard]] Result<void> check_item(ItemId item) const;
 
     measure::Criterion criterion_;
