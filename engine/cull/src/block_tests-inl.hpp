@@ -1,5 +1,7 @@
 // Nodes and leaves against one view's planes, 16 lanes at a time. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
+#include <bit>
+#include <cstring>
 #include <crofton/tree/layout.hpp>
 
 #include "kernel_view.hpp"
@@ -23,11 +25,15 @@ using VF = hn::Vec<DF>;
 using VU = hn::Vec<DU>;
 using MF = hn::Mask<DF>;
 
+// Bit l for lane l. As one load of what was stored: bytes put together one by one cost more than the tests.
 template <class M>
 HWY_INLINE std::uint32_t bits_of(M mask) {
+    static_assert(std::endian::native == std::endian::little);
     alignas(8) std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(DF(), mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
+    std::uint16_t bits;
+    std::memcpy(&bits, bytes, 2);
+    return bits;
 }
 
 struct NodeTest {
@@ -190,92 +196,101 @@ HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::u
     return result;
 }
 
+// Planes in the boxes' own coordinates: plane i is f_i(t) = base_i + unit · Σ slope_ik t_k ≥ 0 on the cube |t| ≤ 1, and
+// slack_i bounds the error of f_i anywhere there.
+template <class Lanes>
+struct BoxRows {
+    struct Row {
+        VF base, slack, reach, slope[3];
+    };
+    Row rows[KernelView::kMaxPlanes];
+    unsigned count = 0;
+    VF unit;
+
+    HWY_INLINE BoxRows(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local)
+        : unit(boxes.unit) {
+        for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+            Row& row = rows[count++];
+            row.base = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
+            row.slack = boxes.slack(local[i]);
+            row.reach = hn::Zero(DF());
+            for (unsigned k = 0; k < 3; ++k) {
+                row.slope[k] = boxes.slope(view.planes[i], k);
+                row.reach = hn::Add(row.reach, hn::Abs(row.slope[k]));
+            }
+        }
+    }
+};
+
 // Those of the wanted lanes whose boxes certainly have a point inside all planes: from the centre towards the plane
 // that it is farthest outside of, to a little beyond it, and on towards the plane that is worst then; coordinates that
 // have come to a face stay there while the way leads across it. Of the boxes that cross an edge of the frustum about
 // one in fifty needs more than six steps.
 template <class Lanes>
-HWY_INLINE MF has_witness(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
-                          MF wanted) {
+HWY_INLINE MF has_witness(const BoxRows<Lanes>& box, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     VF t[3] = {zero, zero, zero};
     MF found = hn::FirstN(d, 0);
     for (int round = 0;; ++round) {
-        VF worst = hn::Set(d, 3e38f), slope[3] = {zero, zero, zero};
-        MF inside = boxes.present;
-        for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
-            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            const VF a = hn::Mul(boxes.slope(view.planes[i], 0), boxes.unit),
-                     b = hn::Mul(boxes.slope(view.planes[i], 1), boxes.unit),
-                     c = hn::Mul(boxes.slope(view.planes[i], 2), boxes.unit);
-            const VF value = hn::MulAdd(
-                a, t[0],
-                hn::MulAdd(
-                    b, t[1],
-                    hn::MulAdd(c, t[2], plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset))));
-            inside = hn::And(inside, hn::Ge(value, boxes.slack(local[i])));
+        VF worst = hn::Set(d, 3e38f), reach = zero, slope[3] = {zero, zero, zero};
+        MF inside = wanted;
+        for (unsigned i = 0; i < box.count; ++i) {
+            const auto& row = box.rows[i];
+            const VF along =
+                hn::MulAdd(row.slope[0], t[0], hn::MulAdd(row.slope[1], t[1], hn::Mul(row.slope[2], t[2])));
+            const VF value = hn::MulAdd(along, box.unit, row.base);
+            inside = hn::And(inside, hn::Ge(value, row.slack));
             const MF worse = hn::Lt(value, worst);
             worst = hn::IfThenElse(worse, value, worst);
-            slope[0] = hn::IfThenElse(worse, a, slope[0]);
-            slope[1] = hn::IfThenElse(worse, b, slope[1]);
-            slope[2] = hn::IfThenElse(worse, c, slope[2]);
+            reach = hn::IfThenElse(worse, row.reach, reach);
+            for (unsigned k = 0; k < 3; ++k) slope[k] = hn::IfThenElse(worse, row.slope[k], slope[k]);
         }
         found = hn::Or(found, inside);
         if (round == 6 || hn::AllFalse(d, hn::AndNot(found, wanted))) break;
         // Along the gradient, clamped to the box; any t in [−1, 1]³ is as good a guess as another.
-        const VF reach = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
-        VF square = hn::Set(d, 1e-30f);
+        VF square = hn::Set(d, 1e-20f);
         for (unsigned k = 0; k < 3; ++k) {
             const MF blocked = hn::Ge(hn::Mul(t[k], slope[k]), hn::Abs(slope[k]));
             slope[k] = hn::IfThenZeroElse(blocked, slope[k]);
             square = hn::MulAdd(slope[k], slope[k], square);
         }
-        const VF step = hn::Div(hn::MulAdd(reach, hn::Set(d, 0.05f), hn::Neg(worst)), square);
-        for (unsigned k = 0; k < 3; ++k) t[k] = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[k], t[k])));
+        const VF beyond = hn::MulAdd(hn::Mul(reach, box.unit), hn::Set(d, 0.05f), hn::Neg(worst));
+        const VF step = hn::Div(beyond, hn::Mul(square, box.unit));
+        for (unsigned k = 0; k < 3; ++k)
+            t[k] = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[k], t[k])));
     }
-    return hn::And(found, wanted);
+    return found;
 }
 
-// Those of the wanted lanes whose boxes a separating axis across an edge of the frustum and an edge of the box
-// certainly keeps apart. In the box's coordinates t, plane i is f_i(t) = base_i + Σ slope_ik t_k ≥ 0, and a sum with
-// weights ≥ 0 of two of them that is negative on the whole cube is a proof. The best weights let one slope vanish. For
-// any weights the sum's largest value is at most what the floats of f_i, f_j give plus Σ weight · slack; slack bounds
-// the error of f_i anywhere on the cube. Evaluating it here rounds at most eight times 2^-24 of Σ weight · (|base| +
-// reach): 2^-19; what underflow eats is far below 1e-30, since weights are at most 1.7 · 2^15.
+// Those of the wanted lanes whose boxes a separating axis across an edge of the frustum and an edge of the box certainly
+// keeps apart. A sum with weights ≥ 0 of two f_i that is negative on the whole cube is a proof. The best weights let one
+// slope vanish. For any weights the sum's largest value is at most what the floats of f_i, f_j give plus Σ weight ·
+// slack. Evaluating it here rounds at most eight times 2^-24 of Σ weight · (|base| + reach): 2^-19; what underflow eats
+// is far below 1e-30, since weights are at most 1.7 · 2^15.
 template <class Lanes>
-HWY_INLINE MF is_separated(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
-                           MF wanted) {
+HWY_INLINE MF is_separated(const BoxRows<Lanes>& box, MF wanted) {
     const DF d;
-    struct Row {
-        VF base, margin, slope[3];
-    };
-    Row rows[KernelView::kMaxPlanes];
-    unsigned count = 0;
-    for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
-        const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-        Row& row = rows[count++];
-        row.base = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
-        VF reach = hn::Abs(row.base);
-        for (unsigned k = 0; k < 3; ++k) {
-            row.slope[k] = boxes.slope(view.planes[i], k);
-            reach = hn::MulAdd(hn::Abs(row.slope[k]), boxes.unit, reach);
-        }
-        row.margin = hn::MulAdd(reach, hn::Set(d, 0x1p-19f), boxes.slack(local[i]));
+    VF top[KernelView::kMaxPlanes];  // base with all that it may be off by
+    for (unsigned i = 0; i < box.count; ++i) {
+        const auto& row = box.rows[i];
+        const VF size = hn::MulAdd(row.reach, box.unit, hn::Abs(row.base));
+        top[i] = hn::Add(row.base, hn::MulAdd(size, hn::Set(d, 0x1p-19f), row.slack));
     }
     MF separated = hn::FirstN(d, 0);
-    for (unsigned i = 0; i < count; ++i)
-        for (unsigned j = i + 1; j < count; ++j) {
+    for (unsigned i = 0; i < box.count; ++i)
+        for (unsigned j = i + 1; j < box.count; ++j) {
+            const VF(&a)[3] = box.rows[i].slope;
+            const VF(&b)[3] = box.rows[j].slope;
             for (unsigned k = 0; k < 3; ++k) {
                 const unsigned p = (k + 1) % 3, q = (k + 2) % 3;
-                const Row &a = rows[i], &b = rows[j];
-                const VF weight_a = hn::Abs(b.slope[k]), weight_b = hn::Abs(a.slope[k]);
-                const VF along_p = hn::MulAdd(weight_a, a.slope[p], hn::Mul(weight_b, b.slope[p])),
-                         along_q = hn::MulAdd(weight_a, a.slope[q], hn::Mul(weight_b, b.slope[q]));
-                const VF reach = hn::Mul(hn::Add(hn::Abs(along_p), hn::Abs(along_q)), boxes.unit);
-                const VF bound = hn::MulAdd(weight_a, hn::Add(a.base, a.margin),
-                                            hn::MulAdd(weight_b, hn::Add(b.base, b.margin), reach));
-                const MF opposed = hn::Lt(hn::Mul(a.slope[k], b.slope[k]), hn::Zero(d));
+                const VF weight_a = hn::Abs(b[k]), weight_b = hn::Abs(a[k]);
+                const VF along_p = hn::MulAdd(weight_a, a[p], hn::Mul(weight_b, b[p])),
+                         along_q = hn::MulAdd(weight_a, a[q], hn::Mul(weight_b, b[q]));
+                const VF reach = hn::Mul(hn::Add(hn::Abs(along_p), hn::Abs(along_q)), box.unit);
+                const VF bound = hn::MulAdd(weight_a, top[i], hn::MulAdd(weight_b, top[j], reach));
+                const MF opposed = hn::Lt(hn::Mul(a[k], b[k]), hn::Zero(d));
                 separated = hn::Or(separated, hn::And(opposed, hn::Lt(bound, hn::Set(d, -1e-30f))));
             }
             if (hn::AllFalse(d, hn::AndNot(separated, wanted))) return wanted;
@@ -288,10 +303,11 @@ template <class Lanes>
 HWY_INLINE void settle(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
                        BoxTest& test) {
     const DF d;
-    const MF meets = has_witness(view, boxes, planes, local, test.unsettled);
+    const BoxRows<Lanes> box(view, boxes, planes, local);
+    const MF meets = has_witness(box, test.unsettled);
     test.straddling = hn::Or(test.straddling, meets);
     test.unsettled = hn::AndNot(meets, test.unsettled);
-    if (!hn::AllFalse(d, test.unsettled)) test.improper = is_separated(view, boxes, planes, local, test.unsettled);
+    if (!hn::AllFalse(d, test.unsettled)) test.improper = is_separated(box, test.unsettled);
     test.undecided = hn::Or(test.undecided, hn::AndNot(test.improper, test.unsettled));
 }
 

@@ -83,12 +83,13 @@ HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
 
 HWY_INLINE std::size_t list_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     const DU du;
+    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w) {
         if (bits[w] == 0) continue;
         for (std::size_t l = 0; l < 64; l += hn::Lanes(du)) {
             const auto mask = mask_of(bits[w] >> l);
-            hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(64 * w + l)), mask), du, ids + count);
+            hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, static_cast<std::uint32_t>(64 * w + l))), mask), du, ids + count);
             count += hn::CountTrue(du, mask);
         }
     }
