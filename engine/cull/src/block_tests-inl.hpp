@@ -1,8 +1,8 @@
 // Nodes and leaves against one view's planes, 16 lanes at a time. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
 #include <bit>
-#include <cstring>
 #include <crofton/tree/layout.hpp>
+#include <cstring>
 
 #include "kernel_view.hpp"
 
@@ -258,17 +258,16 @@ HWY_INLINE MF has_witness(const BoxRows<Lanes>& box, MF wanted) {
         }
         const VF beyond = hn::MulAdd(hn::Mul(reach, box.unit), hn::Set(d, 0.05f), hn::Neg(worst));
         const VF step = hn::Div(beyond, hn::Mul(square, box.unit));
-        for (unsigned k = 0; k < 3; ++k)
-            t[k] = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[k], t[k])));
+        for (unsigned k = 0; k < 3; ++k) t[k] = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[k], t[k])));
     }
     return found;
 }
 
-// Those of the wanted lanes whose boxes a separating axis across an edge of the frustum and an edge of the box certainly
-// keeps apart. A sum with weights ≥ 0 of two f_i that is negative on the whole cube is a proof. The best weights let one
-// slope vanish. For any weights the sum's largest value is at most what the floats of f_i, f_j give plus Σ weight ·
-// slack. Evaluating it here rounds at most eight times 2^-24 of Σ weight · (|base| + reach): 2^-19; what underflow eats
-// is far below 1e-30, since weights are at most 1.7 · 2^15.
+// Those of the wanted lanes whose boxes a separating axis across an edge of the frustum and an edge of the box
+// certainly keeps apart. A sum with weights ≥ 0 of two f_i that is negative on the whole cube is a proof. The best
+// weights let one slope vanish. For any weights the sum's largest value is at most what the floats of f_i, f_j give
+// plus Σ weight · slack. Evaluating it here rounds at most eight times 2^-24 of Σ weight · (|base| + reach): 2^-19;
+// what underflow eats is far below 1e-30, since weights are at most 1.7 · 2^15.
 template <class Lanes>
 HWY_INLINE MF is_separated(const BoxRows<Lanes>& box, MF wanted) {
     const DF d;

@@ -89,7 +89,8 @@ HWY_INLINE std::size_t list_bits(const std::uint64_t* bits, std::size_t words, s
         if (bits[w] == 0) continue;
         for (std::size_t l = 0; l < 64; l += hn::Lanes(du)) {
             const auto mask = mask_of(bits[w] >> l);
-            hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, static_cast<std::uint32_t>(64 * w + l))), mask), du, ids + count);
+            hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, static_cast<std::uint32_t>(64 * w + l))), mask), du,
+                       ids + count);
             count += hn::CountTrue(du, mask);
         }
     }

@@ -191,24 +191,34 @@ class Enumeration {
 
 template <class Box>
 bool meets(const Frustum& frustum, const Box& box, const Constraint* constraints) {
-    const std::span<const Constraint> all(constraints, frustum.plane_count);
+    // Planes that the whole box is inside of change nothing.
+    Frustum crossed;
+    crossed.origin = frustum.origin;
+    Constraint open[Frustum::kMaxPlanes];
+    for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
+        if (constraints[i].base - constraints[i].reach() > 12.0 * kUnit * constraints[i].size() + kTiny) continue;
+        open[crossed.plane_count] = constraints[i];
+        crossed.planes[crossed.plane_count++] = frustum.planes[i];
+    }
+    const std::uint32_t count = crossed.plane_count;
+    const std::span<const Constraint> all(open, count);
     std::array<std::uint32_t, Frustum::kMaxPlanes> outside;
     std::uint32_t outside_count = 0;
-    for (std::uint32_t i = 0; i < frustum.plane_count; ++i)
+    for (std::uint32_t i = 0; i < count; ++i)
         if (!(all[i].base > kRounding * kUnit * all[i].base_size + kTiny)) outside[outside_count++] = i;
     if (outside_count == 0) return true;  // the centre is inside
     if (finds_witness(all, 3)) return true;
     // Σ y_i base_i < 0 takes a plane that the centre is outside of.
     for (std::uint32_t n = 0; n < outside_count; ++n)
-        for (std::uint32_t j = 0; j < frustum.plane_count; ++j)
+        for (std::uint32_t j = 0; j < count; ++j)
             if (j != outside[n] && edge_separates(all[outside[n]], all[j])) return false;
     if (finds_witness(all, 16)) return true;
     for (std::uint32_t n = 0; n < outside_count; ++n)
-        for (std::uint32_t j = 0; j < frustum.plane_count; ++j)
-            for (std::uint32_t k = j + 1; k < frustum.plane_count; ++k)
+        for (std::uint32_t j = 0; j < count; ++j)
+            for (std::uint32_t k = j + 1; k < count; ++k)
                 if (j != outside[n] && k != outside[n] && vertex_separates(all[outside[n]], all[j], all[k]))
                     return false;
-    return Enumeration<Box>(frustum, box, constraints).has_vertex();
+    return Enumeration<Box>(crossed, box, open).has_vertex();
 }
 
 template bool meets(const Frustum&, const Obb&, const Constraint*);
