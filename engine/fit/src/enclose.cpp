@@ -37,13 +37,42 @@ float float_below(double value) {
     return static_cast<double>(nearest) > value ? std::nextafter(nearest, 0.0f) : nearest;
 }
 
+float float_at_least(double value) {
+    const float nearest = static_cast<float>(std::max(0.0, value));
+    return static_cast<double>(nearest) < value ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+                                                : nearest;
+}
+
+// Grows the half extent along axis k until the point is inside, by exact tests.
+void grow(Obb& box, const Slabs& slabs, int k, const glm::dvec3& p) {
+    float& reach = box.half_extents[k];
+    const glm::dvec3 normal = slabs.normals[k], d = p - box.center;
+    if (surely_inside(normal, d, static_cast<double>(reach), slabs.determinant)) return;
+    if (contains_along(box, p, k)) return;
+    // The centre's own rounding may ask for more than a few steps.
+    const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
+    reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
+    if (contains_along(box, p, k)) return;
+    // Around flat points `needed` may be nothing but rounding, and single steps from zero would take for ever: the
+    // bound of surely_inside says how much is enough.
+    const glm::dvec3 parts = glm::abs(normal * d);
+    const double rounding = 16.0 * kUnit * (parts.x + parts.y + parts.z) / slabs.determinant;
+    reach = std::max(reach, float_below(needed + rounding));
+    while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
+}
+
+glm::dvec3 center_of(const PointCloud& cloud, const glm::mat3& axes, const Slabs& slabs, const glm::dvec3& low,
+                     const glm::dvec3& high) {
+    return cloud.origin() + glm::dmat3(axes) * ((low + (high - low) * 0.5) / slabs.determinant);
+}
+
 }  // namespace
 
 Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
     const Slabs slabs(axes);
     Obb box;
     box.axes = axes;
-    glm::dvec3 middle, half, length;
+    glm::dvec3 low, high, length;
     glm::dmat3 directions;
     for (int k = 0; k < 3; ++k) {
         length[k] = glm::length(slabs.normals[k]);
@@ -51,34 +80,50 @@ Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
     }
     const Supports supports = cloud.supports(directions);
     for (int k = 0; k < 3; ++k) {
-        const double high = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k)]);
-        const double low = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k + 1)]);
-        middle[k] = (low + (high - low) * 0.5) / slabs.determinant * cloud.unit();
-        half[k] = std::max(0.0, (high - low) * 0.5) / slabs.determinant * cloud.unit();
+        high[k] = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k)]) * cloud.unit();
+        low[k] = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k + 1)]) * cloud.unit();
     }
-    box.center = cloud.origin() + glm::dmat3(axes) * middle;
+    box.center = center_of(cloud, axes, slabs, low, high);
     // From just below the least float that can do, grow by single steps as exact tests demand.
     glm::dvec3 limit;
     for (int k = 0; k < 3; ++k) {
-        box.half_extents[k] = float_below(half[k] * (1.0 - 1e-12));
+        const double half = std::max(0.0, (high[k] - low[k]) * 0.5) / slabs.determinant;
+        box.half_extents[k] = float_below(half * (1.0 - 1e-12));
         limit[k] = static_cast<double>(box.half_extents[k]) * slabs.determinant / length[k];
     }
-    cloud.visit_beyond(directions, box.center, limit, [&](int k, const glm::dvec3& p) {
+    cloud.visit_beyond(directions, box.center, limit, [&](int k, const glm::dvec3& p) { grow(box, slabs, k, p); });
+    return box;
+}
+
+Obb enclose_few(const PointCloud& cloud, const glm::mat3& axes) {
+    const Slabs slabs(axes);
+    Obb box;
+    box.axes = axes;
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const glm::dvec3 t = (cloud.point(i) - cloud.origin()) * slabs.normals;
+        low = glm::min(low, t);
+        high = glm::max(high, t);
+    }
+    box.center = center_of(cloud, axes, slabs, low, high);
+    // Between which bounds the farthest point lies, by the error that surely_inside derives.
+    glm::dvec3 at_least(0.0), at_most(0.0);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const glm::dvec3 d = cloud.point(i) - box.center, size = glm::abs(d);
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3& normal = slabs.normals[k];
+            const double t = std::abs(normal.x * d.x + normal.y * d.y + normal.z * d.z);
+            const double error = 7.0 * kUnit * glm::dot(glm::abs(normal), size);
+            at_least[k] = std::max(at_least[k], t - error);
+            at_most[k] = std::max(at_most[k], t + error);
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
         float& reach = box.half_extents[k];
-        const glm::dvec3 normal = slabs.normals[k], d = p - box.center;
-        if (surely_inside(normal, d, static_cast<double>(reach), slabs.determinant)) return;
-        if (contains_along(box, p, k)) return;
-        // The centre's own rounding may ask for more than a few steps.
-        const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
-        reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
-        if (contains_along(box, p, k)) return;
-        // Around flat points `needed` may be nothing but rounding, and single steps from zero would take for ever: the
-        // bound of surely_inside says how much is enough.
-        const glm::dvec3 parts = glm::abs(normal * d);
-        const double rounding = 16.0 * kUnit * (parts.x + parts.y + parts.z) / slabs.determinant;
-        reach = std::max(reach, float_below(needed + rounding));
-        while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
-    });
+        reach = float_at_least(at_least[k] / slabs.determinant * (1.0 - 24.0 * kUnit));
+        if (at_most[k] <= static_cast<double>(reach) * (slabs.determinant * (1.0 - 24.0 * kUnit))) continue;
+        for (std::size_t i = 0; i < cloud.size(); ++i) grow(box, slabs, k, cloud.point(i));
+    }
     return box;
 }
 

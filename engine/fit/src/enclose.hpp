@@ -11,6 +11,9 @@ namespace crofton::fit {
 // contains(box, p) holds for all points of the cloud.
 [[nodiscard]] Obb enclose(PointCloud& cloud, const glm::mat3& axes);
 
+// The same by plain passes over all points: quicker where they are few.
+[[nodiscard]] Obb enclose_few(const PointCloud& cloud, const glm::mat3& axes);
+
 // Orthonormal axes rounded to float, for a box of these edges. A rounded axis is tilted by up to 6e-8, which widens the
 // box across it, much where it is long and the box thin there: where that costs the criterion more than `tolerance`,
 // relatively, floats within a few units are tried for a smaller tilt. Exact where the axes are coordinate axes.

@@ -20,9 +20,17 @@ const glm::dmat3 kDirections[] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
 
 // Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
 constexpr double kFlat = 1e-13;
+constexpr Weights kArea{0.0, 1.0, 0.0};
 
-constexpr Effort kFast{3, 3, 4, false}, kTight{5, 4, 40, true}, kTightFew{5, 3, 40, true};
-constexpr std::size_t kFew = 512;  // points of a cluster; more may have more local optima
+// What the rounding of axes to float may cost, relatively, before neighbouring floats are tried.
+constexpr double kAxisTolerance = 1e-5;
+
+// A box this thin, relatively, is searched again in double: float coordinates are too coarse across it.
+constexpr double kThin = 1e-3;
+
+constexpr FewEffort kFast{1, 6, 2}, kTight{4, 9, 4}, kTightFew{2, 6, 4};
+constexpr int kFastQueries = 4, kTightQueries = 40;
+constexpr std::size_t kFew = 256;  // points of a cluster, which is searched as a whole
 
 class Deadline {
   public:
@@ -55,52 +63,51 @@ void Fitter::gather(const Weights& weights, std::size_t frames, std::size_t dire
     if (candidates_.size() > frames) candidates_.resize(frames);
 }
 
+// By volume all frames of a flat set may look alike: there the area decides.
 Weights Fitter::effective(const Weights& weights) {
     if (weights.pairs + weights.sum > 0.0) return weights;
-    Weights area{0.0, 1.0, 0.0};
     gather(weights, 1);
-    return candidates_[0].value <= kFlat ? area : weights;
+    return candidates_[0].value <= kFlat ? kArea : weights;
 }
 
-// Local optima on a growing subset. A candidate's value on the subset is at most its value on the cloud, so the cloud
-// is asked only about the candidate that looks best; its support points join the subset, until the best is what it
-// looks.
-Candidate Fitter::local(const Weights& weights, const Effort& effort) {
-    gather(weights, effort.starts, effort.directions);
-    Candidate best;
-    best.value = std::numeric_limits<double>::infinity();
-    // How many points the subset had when each candidate was last searched from, and whether it has been polished: that
-    // is worth its time only where turning about the axes has come to rest.
-    fresh_.assign(candidates_.size(), 0);
-    polished_.assign(candidates_.size(), 0);
-    for (Candidate& candidate : candidates_) candidate.value = 0.0;
-    for (int queries = 0; queries < effort.queries;) {
-        std::size_t i = 0;
-        for (std::size_t j = 1; j < candidates_.size(); ++j)
-            if (candidates_[j].value < candidates_[i].value) i = j;
-        Candidate& candidate = candidates_[i];
-        if (candidate.value >= best.value * (1.0 - 1e-12) && (!effort.slide || polished_[i] != 0)) break;
-        if (fresh_[i] != subset_.size()) {
-            fresh_[i] = subset_.size();
-            descend(weights, subset_, candidate, buffers_);
-            if (polished_[i] != 0) polish(weights, subset_, candidate, buffers_, kCoarseSteps);
-            continue;
-        }
-        if (effort.slide && polished_[i] == 0 && candidate.value >= best.value * (1.0 - 1e-12)) {
-            polished_[i] = 1;
-            polish(weights, subset_, candidate, buffers_, kCoarseSteps);
-            continue;
-        }
-        ++queries;
-        const Supports supports = cloud_.supports(candidate.axes);
-        const double value = value_of(weights, supports, candidate.axes);
-        if (value < best.value) best = {candidate.axes, value};
+Candidate Fitter::local_of_subset(const Weights& weights, const FewEffort& effort) {
+    few_.assign(subset_);
+    Candidate found = few_.search(weights, effort);
+    const glm::dvec3 extent = widths(subset_, found.axes);
+    if (std::min({extent.x, extent.y, extent.z}) < kThin * std::max({extent.x, extent.y, extent.z})) {
+        descend(weights, subset_, found, buffers_);
+        polish(weights, subset_, found, buffers_, kCoarseSteps);
+    } else {
+        found.value = weights(extent.x, extent.y, extent.z);
+    }
+    return found;
+}
+
+Candidate Fitter::local(const Weights& weights, const FewEffort& effort, int queries) {
+    gather(weights, 1);
+    Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
+    for (int query = 0; query < queries; ++query) {
+        const Candidate found = local_of_subset(weights, effort);
+        const Supports supports = cloud_.supports(found.axes);
+        const double value = value_of(weights, supports, found.axes);
+        if (value < best.value) best = {found.axes, value};
         const std::size_t before = subset_.size();
         subset_.insert(subset_.end(), supports.begin(), supports.end());
         make_canonical(subset_);
-        if (subset_.size() == before && (!effort.slide || polished_[i] != 0)) break;
+        if (subset_.size() == before || best.value <= found.value * (1.0 + 1e-9)) break;
     }
     return best;
+}
+
+Obb Fitter::fit_few(const Weights& weights, const FewEffort& effort) {
+    cloud_.sorted(subset_);
+    Candidate found = local_of_subset(weights, effort);
+    Weights by = weights;
+    if (weights.pairs + weights.sum == 0.0 && found.value <= kFlat) {
+        by = kArea;
+        found = local_of_subset(by, effort);
+    }
+    return enclose_few(cloud_, rounded(found.axes, widths(subset_, found.axes), by, kAxisTolerance));
 }
 
 SearchResult Fitter::global(const Weights& weights, const SearchLimits& limits) {
@@ -122,9 +129,12 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     }
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
-    const Weights weights = effective(normalised_weights(options.criterion, cloud_.unit()).weights);
-    const Effort& effort = options.quality == Quality::fast ? kFast : points.size() <= kFew ? kTightFew : kTight;
-    return box_of(local(weights, effort).axes, weights, 1e-5);
+    const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
+    const bool fast = options.quality == Quality::fast;
+    if (points.size() <= kFew) return fit_few(asked, fast ? kFast : kTightFew);
+    const Weights weights = effective(asked);
+    return box_of(local(weights, fast ? kFast : kTight, fast ? kFastQueries : kTightQueries).axes, weights,
+                  kAxisTolerance);
 }
 
 template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const Options&);

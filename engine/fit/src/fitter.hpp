@@ -4,18 +4,11 @@
 #include <crofton/fit/fit.hpp>
 
 #include "branch_and_bound.hpp"
+#include "few_search.hpp"
 #include "local_search.hpp"
 #include "point_cloud.hpp"
 
 namespace crofton::fit {
-
-// How much a local search may cost.
-struct Effort {
-    std::size_t directions;  // triples of directions whose extreme points it begins with, at most 5
-    std::size_t starts;      // frames it descends from
-    int queries;             // times it may ask the whole cloud for the support points of a frame
-    bool slide;              // whether it polishes
-};
 
 class Fitter {
   public:
@@ -27,7 +20,11 @@ class Fitter {
   private:
     // Extreme points along the directions of a k-DOP, and frames built from them, best first.
     void gather(const Weights& weights, std::size_t frames, std::size_t directions = 5);
-    [[nodiscard]] Candidate local(const Weights& weights, const Effort& effort);
+    // A good frame for the points of subset_, or for all: few extreme points are searched, and grow by the support
+    // points of the frames found, `queries` times at most.
+    [[nodiscard]] Candidate local_of_subset(const Weights& weights, const FewEffort& effort);
+    [[nodiscard]] Candidate local(const Weights& weights, const FewEffort& effort, int queries);
+    [[nodiscard]] Obb fit_few(const Weights& weights, const FewEffort& effort);
     [[nodiscard]] SearchResult global(const Weights& weights, const SearchLimits& limits);
     [[nodiscard]] Obb box_of(const glm::dmat3& axes, const Weights& weights, double tolerance);
     [[nodiscard]] Weights effective(const Weights& weights);
@@ -37,8 +34,7 @@ class Fitter {
     Vector<glm::dvec3> subset_;
     Vector<glm::dmat3> frames_;
     Vector<Candidate> candidates_;
-    Vector<std::size_t> fresh_;
-    Vector<unsigned char> polished_;
+    FewSearch few_;
 };
 
 }  // namespace crofton::fit

@@ -8,6 +8,8 @@
 #include <string>
 #include <type_traits>
 
+#include "few_kernels.hpp"
+
 namespace crofton::fit {
 namespace {
 
@@ -82,8 +84,9 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
     std::frexp(std::max({half.x, half.y, half.z}), &exponent);
     unit_ = std::ldexp(1.0, exponent);
     scale_ = std::ldexp(1.0, -exponent);
-    // quick_range: |direction_i| ≤ 1, |p_i − origin_i| ≤ unit; a direction rounded to float, an origin rounded to float
-    // (what that shifts is added back), 4.1 roundoffs of the kernel: less than 6 · 3 roundoffs, and a few least floats.
+    // quick_extents: |direction_i| ≤ 1, |p_i − origin_i| ≤ unit; a direction rounded to float, an origin rounded to
+    // float (what that shifts is added back), 4.1 roundoffs of the kernel: less than 6 · 3 roundoffs, and a few least
+    // floats.
     float_origin_ = glm::vec3(origin_);
     scan_slack_ = floats_ ? 18.0 * 0x1p-24 + 1e-44 * scale_ : kSlack;
     boxes_.resize(6 * chunks_);
@@ -100,6 +103,30 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
     reach_.resize(3 * chunks_);
     wanted_.resize(chunks_);
     return {};
+}
+
+void PointCloud::sorted(Vector<glm::dvec3>& points) {
+    points.clear();
+    constexpr std::size_t kQuadratic = 160;  // from here on sorting is quicker
+    if (floats_ == nullptr || count_ > kQuadratic) {
+        for (std::size_t i = 0; i < count_; ++i) points.push_back(normalised(i));
+        make_canonical(points);
+        return;
+    }
+    const std::size_t padded = (count_ + kernels::kLanes - 1) / kernels::kLanes * kernels::kLanes;
+    ranks_.resize(4 * padded);
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < padded; ++i) ranks_[k * padded + i] = floats_[3 * (i < count_ ? i : 0) + k];
+    float* const x = ranks_.data();
+    float* const ranks = x + 3 * padded;
+    kernels::ranks({x, x + padded, x + 2 * padded, count_}, ranks);
+    // Duplicates share a rank; the ranks after it stay empty.
+    constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    order_.assign(count_, kNone);
+    for (std::size_t i = 0; i < count_; ++i)
+        order_[static_cast<std::size_t>(static_cast<int>(ranks[i]))] = static_cast<std::uint32_t>(i);
+    for (const std::uint32_t i : order_)
+        if (i != kNone) points.push_back(normalised(i));
 }
 
 void PointCloud::project(const glm::dmat3& directions) {

@@ -5,6 +5,7 @@
 #include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/aabb.hpp>
+#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -35,6 +36,10 @@ class PointCloud {
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     [[nodiscard]] double unit() const { return unit_; }
+    [[nodiscard]] glm::dvec3 point(std::size_t i) const { return world(i); }
+
+    // The distinct points, normalised, in canonical order. For few points: quadratic up to a hundred or so.
+    void sorted(Vector<glm::dvec3>& points);
 
     // The columns are any three directions with |components| ≤ 1.
     [[nodiscard]] Supports supports(const glm::dmat3& directions);
@@ -64,7 +69,8 @@ class PointCloud {
     const double* doubles_ = nullptr;
     std::size_t count_ = 0, chunks_ = 0;
     Vector<unsigned char> wanted_;
-    Vector<float> float_bounds_;
+    Vector<float> float_bounds_, ranks_;
+    Vector<std::uint32_t> order_;
     Vector<double> double_bounds_, boxes_, middle_, reach_;
     Aabb bounds_;
     glm::dvec3 origin_{0.0};

@@ -1,0 +1,397 @@
+#include "few_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "few_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::fit::kernels::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr float kHuge = 1e30f;
+
+using Tag = hn::CappedTag<float, kLanes>;
+using Lane = hn::Vec<Tag>;
+
+struct Vec3 {
+    Lane x, y, z;
+};
+
+HWY_INLINE Vec3 set(Tag d, const float v[3]) {
+    return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
+}
+HWY_INLINE Lane dot(const Vec3& a, const Vec3& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+HWY_INLINE Vec3 scaled(const Vec3& a, Lane s) {
+    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+HWY_INLINE Vec3 broadcast(Tag d, const FewPoints& points, std::size_t i) {
+    return {hn::Set(d, points.x[i]), hn::Set(d, points.y[i]), hn::Set(d, points.z[i])};
+}
+
+struct Range {
+    Lane low, high;
+
+    HWY_INLINE void include(Lane t) {
+        low = hn::Min(low, t);
+        high = hn::Max(high, t);
+    }
+    [[nodiscard]] HWY_INLINE Lane width() const { return hn::Sub(high, low); }
+};
+HWY_INLINE Range nothing(Tag d) {
+    return {hn::Set(d, kHuge), hn::Set(d, -kHuge)};
+}
+
+HWY_INLINE Lane value(Tag d, const FloatWeights& w, Lane a, Lane b, Lane c) {
+    const auto ab = hn::Mul(a, b), a_plus_b = hn::Add(a, b);
+    const auto product = hn::Mul(hn::Set(d, w.product), hn::Mul(ab, c));
+    const auto pairs = hn::Mul(hn::Set(d, w.pairs), hn::Add(ab, hn::Mul(a_plus_b, c)));
+    return hn::Add(hn::Add(product, pairs), hn::Mul(hn::Set(d, w.sum), hn::Add(a_plus_b, c)));
+}
+
+HWY_INLINE Lane value_in_frame(Tag d, const FewPoints& points, const FloatWeights& weights, const Vec3& a,
+                               const Vec3& b, const Vec3& c) {
+    Range along_a = nothing(d), along_b = along_a, along_c = along_a;
+    for (std::size_t i = 0; i < points.count; ++i) {
+        const Vec3 p = broadcast(d, points, i);
+        along_a.include(dot(a, p));
+        along_b.include(dot(b, p));
+        along_c.include(dot(c, p));
+    }
+    return value(d, weights, along_a.width(), along_b.width(), along_c.width());
+}
+
+void extremes_impl(const FewPoints& points, const Directions& directions, float* least, float* greatest) {
+    const Tag d;
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        const Vec3 direction = {hn::LoadU(d, directions.x + lane), hn::LoadU(d, directions.y + lane),
+                                hn::LoadU(d, directions.z + lane)};
+        Range range = nothing(d);
+        auto low = hn::Zero(d), high = hn::Zero(d);
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const auto t = dot(direction, broadcast(d, points, i));
+            const auto index = hn::Set(d, static_cast<float>(i));
+            low = hn::IfThenElse(hn::Lt(t, range.low), index, low);
+            high = hn::IfThenElse(hn::Gt(t, range.high), index, high);
+            range.include(t);
+        }
+        hn::StoreU(low, d, least + lane);
+        hn::StoreU(high, d, greatest + lane);
+    }
+}
+
+void ranks_impl(const FewPoints& points, float* ranks) {
+    const Tag d;
+    const auto one = hn::Set(d, 1.0f);
+    for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
+        const auto x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i), z = hn::LoadU(d, points.z + i);
+        auto before = hn::Zero(d);
+        for (std::size_t j = 0; j < points.count; ++j) {
+            const Vec3 p = broadcast(d, points, j);
+            const auto by_z = hn::And(hn::Eq(p.y, y), hn::Lt(p.z, z));
+            const auto by_y = hn::And(hn::Eq(p.x, x), hn::Or(hn::Lt(p.y, y), by_z));
+            before = hn::Add(before, hn::IfThenElseZero(hn::Or(hn::Lt(p.x, x), by_y), one));
+        }
+        hn::StoreU(before, d, ranks + i);
+    }
+}
+
+void frames_impl(const FewPoints& points, const FloatWeights& weights, const float* frames, std::size_t count,
+                 float* values, float* rows) {
+    const Tag d;
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        auto best = hn::Set(d, kHuge), row = hn::Zero(d);
+        for (std::size_t i = lane; i < count; i += kLanes) {
+            const auto axis = [&](std::size_t k) {
+                const float* at = frames + 3 * k * count + i;
+                return Vec3{hn::LoadU(d, at), hn::LoadU(d, at + count), hn::LoadU(d, at + 2 * count)};
+            };
+            const auto found = value_in_frame(d, points, weights, axis(0), axis(1), axis(2));
+            row = hn::IfThenElse(hn::Lt(found, best), hn::Set(d, static_cast<float>(i / kLanes)), row);
+            best = hn::Min(best, found);
+        }
+        hn::StoreU(best, d, values + lane);
+        hn::StoreU(row, d, rows + lane);
+    }
+}
+
+struct Angle {
+    float cosine, sine;
+};
+// 12, 8, 5 and 2.5 degrees; then 3, 2, 1.2 and 0.6.
+constexpr Angle kTurns[2][4] = {
+    {{0.97814760f, 0.20791169f}, {0.99026807f, 0.13917310f}, {0.99619470f, 0.08715574f}, {0.99904822f, 0.04361939f}},
+    {{0.99862953f, 0.05233596f}, {0.99939083f, 0.03489950f}, {0.99978068f, 0.02094242f}, {0.99994517f, 0.01047178f}}};
+
+void settle_impl(const FewPoints& points, const FloatWeights& weights, float* scratch, FrameLanes& frames) {
+    const Tag d;
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        Vec3 axes[3];
+        for (std::size_t k = 0; k < 3; ++k)
+            axes[k] = {hn::LoadU(d, frames.axes[3 * k] + lane), hn::LoadU(d, frames.axes[3 * k + 1] + lane),
+                       hn::LoadU(d, frames.axes[3 * k + 2] + lane)};
+        auto best = hn::Set(d, kHuge);
+        for (std::size_t step = 0; step < 6; ++step) {
+            Vec3 &axis = axes[step % 3], &right = axes[(step + 1) % 3], &up = axes[(step + 2) % 3];
+            Range depths = nothing(d), along_right = depths, along_up = depths;
+            for (std::size_t i = 0; i < points.count; ++i) {
+                const Vec3 p = broadcast(d, points, i);
+                depths.include(dot(axis, p));
+                const auto x = dot(right, p), y = dot(up, p);
+                along_right.include(x);
+                along_up.include(y);
+                hn::StoreU(x, d, scratch + 2 * kLanes * i);
+                hn::StoreU(y, d, scratch + 2 * kLanes * i + kLanes);
+            }
+            const auto depth = depths.width();
+            best = value(d, weights, along_right.width(), along_up.width(), depth);
+            auto cosine = hn::Set(d, 1.0f), sine = hn::Zero(d);
+            for (const Angle& angle : kTurns[step / 3]) {
+                const auto c = hn::Set(d, angle.cosine), s = hn::Set(d, angle.sine);
+                Range a = nothing(d), b = a, a_back = a, b_back = a;
+                for (std::size_t i = 0; i < points.count; ++i) {
+                    const auto x = hn::LoadU(d, scratch + 2 * kLanes * i);
+                    const auto y = hn::LoadU(d, scratch + 2 * kLanes * i + kLanes);
+                    const auto cx = hn::Mul(c, x), sx = hn::Mul(s, x), cy = hn::Mul(c, y), sy = hn::Mul(s, y);
+                    a.include(hn::Add(cx, sy));
+                    b.include(hn::Sub(cy, sx));
+                    a_back.include(hn::Sub(cx, sy));
+                    b_back.include(hn::Add(cy, sx));
+                }
+                const auto forth = value(d, weights, a.width(), b.width(), depth);
+                const auto back = value(d, weights, a_back.width(), b_back.width(), depth);
+                const auto forth_better = hn::Lt(forth, best);
+                best = hn::Min(best, forth);
+                cosine = hn::IfThenElse(forth_better, c, cosine);
+                sine = hn::IfThenElse(forth_better, s, sine);
+                const auto back_better = hn::Lt(back, best);
+                best = hn::Min(best, back);
+                cosine = hn::IfThenElse(back_better, c, cosine);
+                sine = hn::IfThenElse(back_better, hn::Neg(s), sine);
+            }
+            const Vec3 c_right = scaled(right, cosine), s_up = scaled(up, sine);
+            const Vec3 c_up = scaled(up, cosine), s_right = scaled(right, sine);
+            right = {hn::Add(c_right.x, s_up.x), hn::Add(c_right.y, s_up.y), hn::Add(c_right.z, s_up.z)};
+            up = {hn::Sub(c_up.x, s_right.x), hn::Sub(c_up.y, s_right.y), hn::Sub(c_up.z, s_right.z)};
+        }
+        hn::StoreU(best, d, frames.values + lane);
+        for (std::size_t k = 0; k < 3; ++k) {
+            hn::StoreU(axes[k].x, d, frames.axes[3 * k] + lane);
+            hn::StoreU(axes[k].y, d, frames.axes[3 * k + 1] + lane);
+            hn::StoreU(axes[k].z, d, frames.axes[3 * k + 2] + lane);
+        }
+    }
+}
+
+void supports_impl(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
+    const Tag d;
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        Range range[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 axis = {hn::LoadU(d, frames.axes[3 * k] + lane), hn::LoadU(d, frames.axes[3 * k + 1] + lane),
+                               hn::LoadU(d, frames.axes[3 * k + 2] + lane)};
+            range[k] = nothing(d);
+            auto low = hn::Zero(d), high = hn::Zero(d);
+            for (std::size_t i = 0; i < points.count; ++i) {
+                const auto t = dot(axis, broadcast(d, points, i));
+                const auto index = hn::Set(d, static_cast<float>(i));
+                low = hn::IfThenElse(hn::Lt(t, range[k].low), index, low);
+                high = hn::IfThenElse(hn::Gt(t, range[k].high), index, high);
+                range[k].include(t);
+            }
+            hn::StoreU(high, d, supports + 2 * k * kLanes + lane);
+            hn::StoreU(low, d, supports + (2 * k + 1) * kLanes + lane);
+        }
+        hn::StoreU(value(d, weights, range[0].width(), range[1].width(), range[2].width()), d, frames.values + lane);
+    }
+}
+
+// cos and sin of sixteen angles that divide a right angle.
+constexpr float kCosine[kLanes] = {1.0f,        0.99518472f, 0.98078527f, 0.95694035f, 0.92387952f, 0.88192129f,
+                                   0.83146960f, 0.77301043f, 0.70710677f, 0.63439327f, 0.55557024f, 0.47139674f,
+                                   0.38268343f, 0.29028466f, 0.19509032f, 0.09801714f};
+constexpr float kSine[kLanes] = {0.0f,        0.09801714f, 0.19509032f, 0.29028466f, 0.38268343f, 0.47139674f,
+                                 0.55557024f, 0.63439327f, 0.70710677f, 0.77301043f, 0.83146960f, 0.88192129f,
+                                 0.92387952f, 0.95694035f, 0.98078527f, 0.99518472f};
+
+// Values of sixteen rectangles' frames; of each of the four sides the index of its first support point, right, up,
+// left, down in sequence, where `supports` is given.
+template <bool kSupports>
+HWY_INLINE void rectangles(const float* px, const float* py, std::size_t count, float depth,
+                           const FloatWeights& weights, const float* cosines, const float* sines, float* values,
+                           float* supports) {
+    const Tag d;
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        const auto c = hn::LoadU(d, cosines + lane), s = hn::LoadU(d, sines + lane);
+        Range along = nothing(d), up = along;
+        auto right_most = hn::Zero(d), left_most = right_most, top_most = right_most, bottom_most = right_most;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto x = hn::Set(d, px[i]), y = hn::Set(d, py[i]);
+            const auto a = hn::Add(hn::Mul(c, x), hn::Mul(s, y)), b = hn::Sub(hn::Mul(c, y), hn::Mul(s, x));
+            if constexpr (kSupports) {
+                const auto index = hn::Set(d, static_cast<float>(i));
+                right_most = hn::IfThenElse(hn::Gt(a, along.high), index, right_most);
+                left_most = hn::IfThenElse(hn::Lt(a, along.low), index, left_most);
+                top_most = hn::IfThenElse(hn::Gt(b, up.high), index, top_most);
+                bottom_most = hn::IfThenElse(hn::Lt(b, up.low), index, bottom_most);
+            }
+            along.include(a);
+            up.include(b);
+        }
+        hn::StoreU(value(d, weights, along.width(), up.width(), hn::Set(d, depth)), d, values + lane);
+        if constexpr (kSupports) {
+            hn::StoreU(right_most, d, supports + lane);
+            hn::StoreU(top_most, d, supports + kLanes + lane);
+            hn::StoreU(left_most, d, supports + 2 * kLanes + lane);
+            hn::StoreU(bottom_most, d, supports + 3 * kLanes + lane);
+        }
+    }
+}
+
+HWY_INLINE std::size_t index_of_least(const float* values) {
+    const Tag d;
+    auto least = hn::LoadU(d, values);
+    for (std::size_t lane = hn::Lanes(d); lane < kLanes; lane += hn::Lanes(d))
+        least = hn::Min(least, hn::LoadU(d, values + lane));
+    least = hn::MinOfLanes(d, least);
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        const auto at = hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, values + lane), least));
+        if (at >= 0) return lane + static_cast<std::size_t>(at);
+    }
+    return 0;
+}
+
+void turn_impl(const FewPoints& points, const FloatWeights& weights, float* scratch, Turn& turn) {
+    const Tag d;
+    const std::size_t padded = (points.count + kLanes - 1) / kLanes * kLanes;
+    float* const px = scratch;
+    float* const py = scratch + padded;
+    const Vec3 axis = set(d, turn.axis), right = set(d, turn.right), up = set(d, turn.up);
+    Range depths = nothing(d);
+    for (std::size_t i = 0; i < padded; i += hn::Lanes(d)) {
+        const Vec3 p = {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+        depths.include(dot(axis, p));
+        hn::StoreU(dot(right, p), d, px + i);
+        hn::StoreU(dot(up, p), d, py + i);
+    }
+    const float depth = hn::GetLane(hn::MaxOfLanes(d, depths.high)) - hn::GetLane(hn::MinOfLanes(d, depths.low));
+    float values[kLanes], supports[4 * kLanes];
+    rectangles<true>(px, py, points.count, depth, weights, kCosine, kSine, values, supports);
+    const std::size_t coarse = index_of_least(values);
+    // The chords between the support points two steps before the best angle to two steps after it, of each side.
+    float cosines[kLanes], sines[kLanes];
+    for (std::size_t side = 0; side < 4; ++side)
+        for (std::size_t step = 0; step < 4; ++step) {
+            const std::size_t from = (side * kLanes + coarse + 4 * kLanes - 2 + step) % (4 * kLanes);
+            const int p = static_cast<int>(supports[from]);
+            const int q = static_cast<int>(supports[(from + 1) % (4 * kLanes)]);
+            cosines[4 * side + step] = px[q] - px[p];
+            sines[4 * side + step] = py[q] - py[p];
+        }
+    const auto tiny = hn::Set(d, 1e-12f);
+    const auto coarse_cosine = hn::Set(d, kCosine[coarse]), coarse_sine = hn::Set(d, kSine[coarse]);
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        const auto c = hn::LoadU(d, cosines + lane), s = hn::LoadU(d, sines + lane);
+        const auto squared = hn::Add(hn::Mul(c, c), hn::Mul(s, s)), length = hn::Sqrt(squared);
+        const auto chord = hn::Gt(squared, tiny);
+        hn::StoreU(hn::IfThenElse(chord, hn::Div(c, length), coarse_cosine), d, cosines + lane);
+        hn::StoreU(hn::IfThenElse(chord, hn::Div(s, length), coarse_sine), d, sines + lane);
+    }
+    rectangles<false>(px, py, points.count, depth, weights, cosines, sines, values, nullptr);
+    const std::size_t best = index_of_least(values);
+    turn.cosine = cosines[best];
+    turn.sine = sines[best];
+    turn.value = values[best];
+}
+
+void slides_impl(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
+    const Tag d;
+    const Vec3 start = set(d, slides.start), across = set(d, slides.across), edge = set(d, slides.edge);
+    const auto one = hn::Set(d, 1.0f);
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+        const auto t = hn::LoadU(d, slides.t + lane);
+        const auto shrink = hn::Div(one, hn::Sqrt(hn::Add(one, hn::Mul(t, t))));
+        const Vec3 moved = scaled(across, t);
+        const Vec3 n =
+            scaled({hn::Add(start.x, moved.x), hn::Add(start.y, moved.y), hn::Add(start.z, moved.z)}, shrink);
+        const Vec3 m = cross(edge, n);
+        const auto squared = dot(m, m);
+        const auto usable = hn::Gt(squared, hn::Set(d, 1e-4f));
+        const Vec3 unit = scaled(m, hn::Div(one, hn::Sqrt(hn::IfThenElse(usable, squared, one))));
+        const auto result = value_in_frame(d, points, weights, n, unit, cross(n, unit));
+        hn::StoreU(hn::IfThenElse(usable, result, hn::Set(d, kHuge)), d, slides.values + lane);
+    }
+}
+
+void depths_impl(const FewPoints& points, const float frame[9], float* depths, std::size_t stride) {
+    const Tag d;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 axis = set(d, frame + 3 * k);
+        float* const below = depths + 2 * k * stride;
+        float* const above = below + stride;
+        Range range = nothing(d);
+        for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
+            const Vec3 p = {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+            const auto t = dot(axis, p);
+            range.include(t);
+            hn::StoreU(t, d, below + i);
+        }
+        const auto high = hn::MaxOfLanes(d, range.high), low = hn::MinOfLanes(d, range.low);
+        for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
+            const auto t = hn::LoadU(d, below + i);
+            hn::StoreU(hn::Sub(high, t), d, below + i);
+            hn::StoreU(hn::Sub(t, low), d, above + i);
+        }
+    }
+}
+
+}  // namespace crofton::fit::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::fit::kernels {
+
+HWY_EXPORT(extremes_impl);
+HWY_EXPORT(frames_impl);
+HWY_EXPORT(ranks_impl);
+HWY_EXPORT(settle_impl);
+HWY_EXPORT(supports_impl);
+HWY_EXPORT(turn_impl);
+HWY_EXPORT(slides_impl);
+HWY_EXPORT(depths_impl);
+
+void extremes(const FewPoints& points, const Directions& directions, float* least, float* greatest) {
+    HWY_DYNAMIC_DISPATCH(extremes_impl)(points, directions, least, greatest);
+}
+void best_frames(const FewPoints& points, const FloatWeights& weights, const float* frames, std::size_t count,
+                 float* values, float* rows) {
+    HWY_DYNAMIC_DISPATCH(frames_impl)(points, weights, frames, count, values, rows);
+}
+void settle(const FewPoints& points, const FloatWeights& weights, float* scratch, FrameLanes& frames) {
+    HWY_DYNAMIC_DISPATCH(settle_impl)(points, weights, scratch, frames);
+}
+void supports_of_frames(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
+    HWY_DYNAMIC_DISPATCH(supports_impl)(points, weights, frames, supports);
+}
+void ranks(const FewPoints& points, float* ranks) {
+    HWY_DYNAMIC_DISPATCH(ranks_impl)(points, ranks);
+}
+void turn(const FewPoints& points, const FloatWeights& weights, float* scratch, Turn& turn) {
+    HWY_DYNAMIC_DISPATCH(turn_impl)(points, weights, scratch, turn);
+}
+void values_of_slides(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
+    HWY_DYNAMIC_DISPATCH(slides_impl)(points, weights, slides);
+}
+void depths_below_faces(const FewPoints& points, const float frame[9], float* depths, std::size_t stride) {
+    HWY_DYNAMIC_DISPATCH(depths_impl)(points, frame, depths, stride);
+}
+
+}  // namespace crofton::fit::kernels
+#endif
