@@ -122,6 +122,36 @@ void frames_impl(const FewPoints& points, const FloatWeights& weights, const flo
     }
 }
 
+// Index of the first lane, over all vectors, that holds the extreme.
+void support_impl(const FewPoints& points, const FloatWeights& weights, const float frame[9], float supports[6],
+                  float& result) {
+    const Tag d;
+    float widths[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 axis = set(d, frame + 3 * k);
+        Range range = nothing(d);
+        auto low = hn::Zero(d), high = hn::Zero(d);
+        for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
+            const auto t =
+                dot(axis, {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)});
+            const auto index = hn::Iota(d, static_cast<float>(i));
+            low = hn::IfThenElse(hn::Lt(t, range.low), index, low);
+            high = hn::IfThenElse(hn::Gt(t, range.high), index, high);
+            range.include(t);
+        }
+        // Of lanes that hold the extreme, the least index: padding repeats the first point, which then has index 0.
+        const auto none = hn::Set(d, kHuge);
+        const auto least = hn::MinOfLanes(d, range.low), greatest = hn::MaxOfLanes(d, range.high);
+        supports[2 * k] = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(range.high, greatest), high, none)));
+        supports[2 * k + 1] = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(range.low, least), low, none)));
+        widths[k] = hn::GetLane(greatest) - hn::GetLane(least);
+    }
+    result = widths[0] * widths[1];
+    const float sum = widths[0] + widths[1];
+    result = weights.product * (result * widths[2]) + weights.pairs * (result + sum * widths[2]) +
+             weights.sum * (sum + widths[2]);
+}
+
 struct Angle {
     float cosine, sine;
 };
@@ -361,6 +391,7 @@ namespace crofton::fit::kernels {
 HWY_EXPORT(extremes_impl);
 HWY_EXPORT(frames_impl);
 HWY_EXPORT(ranks_impl);
+HWY_EXPORT(support_impl);
 HWY_EXPORT(settle_impl);
 HWY_EXPORT(supports_impl);
 HWY_EXPORT(turn_impl);
@@ -379,6 +410,10 @@ void settle(const FewPoints& points, const FloatWeights& weights, float* scratch
 }
 void supports_of_frames(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
     HWY_DYNAMIC_DISPATCH(supports_impl)(points, weights, frames, supports);
+}
+void supports_of_frame(const FewPoints& points, const FloatWeights& weights, const float frame[9], float supports[6],
+                       float& value) {
+    HWY_DYNAMIC_DISPATCH(support_impl)(points, weights, frame, supports, value);
 }
 void ranks(const FewPoints& points, float* ranks) {
     HWY_DYNAMIC_DISPATCH(ranks_impl)(points, ranks);

@@ -80,6 +80,7 @@ const DirectionTable& directions() {
     return table;
 }
 
+constexpr double kNoValue = 1e30;
 constexpr float kFlush = 3e-6f;  // depths up to this lie on the face: rounding of float coordinates stays below
 constexpr double kGain = 1e-6;   // relative; what is less is rounding
 
@@ -248,11 +249,10 @@ bool FewSearch::slide(Candidate& candidate) {
 }
 
 Candidate FewSearch::search(const Weights& weights, const FewEffort& effort) {
-    weights_ = {static_cast<float>(weights.product), static_cast<float>(weights.pairs),
-                static_cast<float>(weights.sum)};
+    set(weights);
     gather();
     find_starts();
-    Candidate best{glm::dmat3(1.0), 1e30};
+    Candidate best{glm::dmat3(1.0), kNoValue};
     std::array<glm::dmat3, kLanes> tried;
     std::size_t tries = 0;
     for (unsigned open = (1u << kLanes) - 1u; open != 0 && tries < effort.finalists;) {
@@ -260,39 +260,51 @@ Candidate FewSearch::search(const Weights& weights, const FewEffort& effort) {
         for (std::size_t i = next + 1; i < kLanes; ++i)
             if ((open >> i & 1u) != 0 && starts_.values[i] < starts_.values[next]) next = i;
         open &= ~(1u << next);
-        Candidate candidate{glm::dmat3(1.0), static_cast<double>(starts_.values[next])};
+        glm::dmat3 frame;
         for (std::size_t j = 0; j < 9; ++j)
-            candidate.axes[static_cast<int>(j / 3)][static_cast<int>(j % 3)] =
-                static_cast<double>(starts_.axes[j][next]);
-        if (std::any_of(tried.begin(), tried.begin() + tries,
-                        [&](const glm::dmat3& a) { return alike(a, candidate.axes); }))
+            frame[static_cast<int>(j / 3)][static_cast<int>(j % 3)] = static_cast<double>(starts_.axes[j][next]);
+        if (std::any_of(tried.begin(), tried.begin() + tries, [&](const glm::dmat3& a) { return alike(a, frame); }))
             continue;
-        tried[tries++] = candidate.axes;
-        for (int round = 0; round < 3; ++round) {
-            finish(effort, candidate);
-            // What do all points say?
-            kernels::FrameLanes lanes{};
-            for (std::size_t i = 0; i < kLanes; ++i)
-                for (std::size_t j = 0; j < 9; ++j)
-                    lanes.axes[j][i] =
-                        static_cast<float>(candidate.axes[static_cast<int>(j / 3)][static_cast<int>(j % 3)]);
-            float supports[6 * kLanes];
-            kernels::supports_of_frames(all(), weights_, lanes, supports);
-            mark(supports, 6 * kLanes);
-            if (static_cast<double>(lanes.values[0]) < best.value)
-                best = {candidate.axes, static_cast<double>(lanes.values[0])};
-            if (!grown_) break;
-            collect();
-            candidate.value = static_cast<double>(lanes.values[0]);
-        }
+        tried[tries++] = frame;
+        const Candidate found = descend(effort, {frame, static_cast<double>(starts_.values[next])});
+        if (found.value < best.value) best = found;
     }
     return best;
 }
 
-void FewSearch::finish(const FewEffort& effort, Candidate& candidate) {
-    turn_to_rest(candidate, effort.turns);
-    for (int round = 0; round < effort.rounds && slide(candidate); ++round) {
+Candidate FewSearch::improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame) {
+    set(weights);
+    gather();
+    return descend(effort, {frame, look(frame)});
+}
+
+void FewSearch::set(const Weights& weights) {
+    weights_ = {static_cast<float>(weights.product), static_cast<float>(weights.pairs),
+                static_cast<float>(weights.sum)};
+}
+
+// Best on the subset, until all points agree.
+Candidate FewSearch::descend(const FewEffort& effort, Candidate candidate) {
+    Candidate best = candidate;
+    for (int round = 0; round < 3; ++round) {
+        turn_to_rest(candidate, effort.turns);
+        for (int slides = 0; slides < effort.rounds && slide(candidate); ++slides) {
+        }
+        candidate.value = look(candidate.axes);
+        if (candidate.value < best.value) best = candidate;
+        if (!grown_) break;
+        collect();
     }
+    return best;
+}
+
+// What all points say of a frame; its support points join the subset.
+double FewSearch::look(const glm::dmat3& frame) {
+    float axes[9], supports[6], value = 0.0f;
+    for (int k = 0; k < 3; ++k) to_floats(frame[k], axes + 3 * k);
+    kernels::supports_of_frame(all(), weights_, axes, supports, value);
+    mark(supports, 6);
+    return static_cast<double>(value);
 }
 
 }  // namespace crofton::fit

@@ -20,6 +20,8 @@ class FewSearch {
     void assign(std::span<const glm::dvec3> points);
     // The best frame found. Its value is rounded to float.
     [[nodiscard]] Candidate search(const Weights& weights, const FewEffort& effort);
+    // The best frame near a given one.
+    [[nodiscard]] Candidate improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame);
 
   private:
     // Those of all points that matter: extreme in some direction asked for so far.
@@ -31,7 +33,9 @@ class FewSearch {
     void collect();
     void gather();
     void find_starts();
-    void finish(const FewEffort& effort, Candidate& candidate);
+    void set(const Weights& weights);
+    [[nodiscard]] Candidate descend(const FewEffort& effort, Candidate candidate);
+    [[nodiscard]] double look(const glm::dmat3& frame);
     void turn_to_rest(Candidate& candidate, int turns);
     // True if the value fell.
     bool slide(Candidate& candidate);

@@ -28,8 +28,8 @@ constexpr double kAxisTolerance = 1e-5;
 // A box this thin, relatively, is searched again in double: float coordinates are too coarse across it.
 constexpr double kThin = 1e-3;
 
-constexpr FewEffort kFast{1, 6, 2}, kTight{4, 9, 4}, kTightFew{2, 6, 4};
-constexpr int kFastQueries = 4, kTightQueries = 40;
+constexpr FewEffort kFastFew{1, 6, 2}, kTightFew{2, 6, 4};
+constexpr Effort kFast{kFastFew, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
 constexpr std::size_t kFew = 256;  // points of a cluster, which is searched as a whole
 
 class Deadline {
@@ -47,32 +47,34 @@ class Deadline {
 
 }  // namespace
 
-void Fitter::gather(const Weights& weights, std::size_t frames, std::size_t directions) {
+void Fitter::gather(std::size_t triples) {
     subset_.clear();
-    for (const glm::dmat3& triple : std::span(kDirections).first(directions)) {
+    for (const glm::dmat3& triple : std::span(kDirections).first(triples)) {
         const Supports supports = cloud_.supports(triple);
         subset_.insert(subset_.end(), supports.begin(), supports.end());
     }
     make_canonical(subset_);
+}
+
+Candidate Fitter::rough(const Weights& weights) {
     frames_.assign(1, glm::dmat3(1.0));
     tetrahedral_frames(subset_, frames_);
-    candidates_.clear();
-    for (const glm::dmat3& frame : frames_) candidates_.push_back({frame, value_of(weights, subset_, frame)});
-    std::stable_sort(candidates_.begin(), candidates_.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.value < b.value; });
-    if (candidates_.size() > frames) candidates_.resize(frames);
+    Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
+    for (const glm::dmat3& frame : frames_)
+        if (const double value = value_of(weights, subset_, frame); value < best.value) best = {frame, value};
+    return best;
 }
 
 // By volume all frames of a flat set may look alike: there the area decides.
 Weights Fitter::effective(const Weights& weights) {
     if (weights.pairs + weights.sum > 0.0) return weights;
-    gather(weights, 1);
-    return candidates_[0].value <= kFlat ? kArea : weights;
+    gather(5);
+    return rough(weights).value <= kFlat ? kArea : weights;
 }
 
-Candidate Fitter::local_of_subset(const Weights& weights, const FewEffort& effort) {
+Candidate Fitter::search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near) {
     few_.assign(subset_);
-    Candidate found = few_.search(weights, effort);
+    Candidate found = near == nullptr ? few_.search(weights, effort) : few_.improve(weights, effort, *near);
     const glm::dvec3 extent = widths(subset_, found.axes);
     if (std::min({extent.x, extent.y, extent.z}) < kThin * std::max({extent.x, extent.y, extent.z})) {
         descend(weights, subset_, found, buffers_);
@@ -83,11 +85,14 @@ Candidate Fitter::local_of_subset(const Weights& weights, const FewEffort& effor
     return found;
 }
 
-Candidate Fitter::local(const Weights& weights, const FewEffort& effort, int queries) {
-    gather(weights, 1);
+// The subset's best frame looks at least as good as it is. Where all points agree, it is the best of all that the
+// search can tell.
+Candidate Fitter::local(const Weights& weights, const Effort& effort) {
+    gather(effort.triples);
     Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
-    for (int query = 0; query < queries; ++query) {
-        const Candidate found = local_of_subset(weights, effort);
+    for (int query = 0; query < effort.queries; ++query) {
+        const bool anew = query < effort.searches;
+        const Candidate found = search_subset(weights, effort.few, anew ? nullptr : &best.axes);
         const Supports supports = cloud_.supports(found.axes);
         const double value = value_of(weights, supports, found.axes);
         if (value < best.value) best = {found.axes, value};
@@ -101,18 +106,18 @@ Candidate Fitter::local(const Weights& weights, const FewEffort& effort, int que
 
 Obb Fitter::fit_few(const Weights& weights, const FewEffort& effort) {
     cloud_.sorted(subset_);
-    Candidate found = local_of_subset(weights, effort);
+    Candidate found = search_subset(weights, effort, nullptr);
     Weights by = weights;
     if (weights.pairs + weights.sum == 0.0 && found.value <= kFlat) {
         by = kArea;
-        found = local_of_subset(by, effort);
+        found = search_subset(by, effort, nullptr);
     }
     return enclose_few(cloud_, rounded(found.axes, widths(subset_, found.axes), by, kAxisTolerance));
 }
 
 SearchResult Fitter::global(const Weights& weights, const SearchLimits& limits) {
-    gather(weights, 1);
-    return branch_and_bound(cloud_, weights, subset_, candidates_[0].axes, limits, buffers_);
+    gather(5);
+    return branch_and_bound(cloud_, weights, subset_, rough(weights).axes, limits, buffers_);
 }
 
 Obb Fitter::box_of(const glm::dmat3& axes, const Weights& weights, double tolerance) {
@@ -131,10 +136,9 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
     const bool fast = options.quality == Quality::fast;
-    if (points.size() <= kFew) return fit_few(asked, fast ? kFast : kTightFew);
+    if (points.size() <= kFew) return fit_few(asked, fast ? kFastFew : kTightFew);
     const Weights weights = effective(asked);
-    return box_of(local(weights, fast ? kFast : kTight, fast ? kFastQueries : kTightQueries).axes, weights,
-                  kAxisTolerance);
+    return box_of(local(weights, fast ? kFast : kTight).axes, weights, kAxisTolerance);
 }
 
 template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const Options&);

@@ -10,6 +10,14 @@
 
 namespace crofton::fit {
 
+// How much a local search on many points may cost.
+struct Effort {
+    FewEffort few;
+    std::size_t triples;  // of directions that give the first extreme points
+    int searches;         // from all frames; after them only from the best
+    int queries;          // times it may ask all points for the support points of a frame
+};
+
 class Fitter {
   public:
     template <class Point>
@@ -18,12 +26,14 @@ class Fitter {
     [[nodiscard]] Result<ExactFit> exact(std::span<const Point> points, const ExactOptions& options);
 
   private:
-    // Extreme points along the directions of a k-DOP, and frames built from them, best first.
-    void gather(const Weights& weights, std::size_t frames, std::size_t directions = 5);
-    // A good frame for the points of subset_, or for all: few extreme points are searched, and grow by the support
-    // points of the frames found, `queries` times at most.
-    [[nodiscard]] Candidate local_of_subset(const Weights& weights, const FewEffort& effort);
-    [[nodiscard]] Candidate local(const Weights& weights, const FewEffort& effort, int queries);
+    // Into subset_: extreme points along `triples` triples of the directions of a k-DOP, at most 5.
+    void gather(std::size_t triples);
+    // Of the frames built from subset_, the best for it.
+    [[nodiscard]] Candidate rough(const Weights& weights);
+    // A good frame for subset_; near a given one, if any.
+    [[nodiscard]] Candidate search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near);
+    // A good frame for all: few extreme points are searched, and grow by the support points of the frames found.
+    [[nodiscard]] Candidate local(const Weights& weights, const Effort& effort);
     [[nodiscard]] Obb fit_few(const Weights& weights, const FewEffort& effort);
     [[nodiscard]] SearchResult global(const Weights& weights, const SearchLimits& limits);
     [[nodiscard]] Obb box_of(const glm::dmat3& axes, const Weights& weights, double tolerance);
@@ -33,7 +43,6 @@ class Fitter {
     SearchBuffers buffers_;
     Vector<glm::dvec3> subset_;
     Vector<glm::dmat3> frames_;
-    Vector<Candidate> candidates_;
     FewSearch few_;
 };
 

@@ -15,6 +15,7 @@ namespace {
 
 // Rounding of normalised coordinates and of their projections stays far below this.
 constexpr double kSlack = 1e-13;
+constexpr std::size_t kFewChunks = 16;  // the rounded extents of so few are quicker than picking among them
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class T>
@@ -174,53 +175,59 @@ void PointCloud::quick_extents(const glm::dmat3& directions) {
 Supports PointCloud::supports(const glm::dmat3& directions) {
     project(directions);
     Supports best{};
-    glm::dvec3 high(-kInfinity), low(kInfinity);
-    const auto scan = [&](std::size_t chunk, int k) {
+    std::array<double, 6> farthest;
+    farthest.fill(-kInfinity);
+    const auto scan = [&](std::size_t chunk, std::size_t side) {
+        const int k = static_cast<int>(side / 2);
+        const double sign = side % 2 == 0 ? 1.0 : -1.0;
+        const glm::dvec3 direction = sign * directions[k];
+        glm::dvec3& found = best[side];
+        double height = farthest[side];
         const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
-        glm::dvec3 &top = best[static_cast<std::size_t>(2 * k)], &bottom = best[static_cast<std::size_t>(2 * k + 1)];
         for (std::size_t i = chunk * kernels::kChunk; i < end; ++i) {
             const glm::dvec3 p = normalised(i);
-            const double t = glm::dot(p, directions[k]);
-            if (t >= high[k] && (t > high[k] || lexicographic(p, top))) {
-                high[k] = t;
-                top = p;
-            }
-            if (t <= low[k] && (t < low[k] || lexicographic(p, bottom))) {
-                low[k] = t;
-                bottom = p;
+            const double t = glm::dot(p, direction);
+            if (t >= height && (t > height || lexicographic(p, found))) {
+                height = t;
+                found = p;
             }
         }
+        farthest[side] = height;
     };
     // The most promising chunks first, so that the others can be skipped.
-    for (int k = 0; k < 3; ++k) {
-        const double* middle = middle_.data() + static_cast<std::size_t>(k) * chunks_;
-        const double* reach = reach_.data() + static_cast<std::size_t>(k) * chunks_;
-        std::size_t top = 0, bottom = 0;
-        for (std::size_t i = 1; i < chunks_; ++i) {
-            if (middle[i] + reach[i] > middle[top] + reach[top]) top = i;
-            if (middle[i] - reach[i] < middle[bottom] - reach[bottom]) bottom = i;
-        }
-        scan(top, k);
-        if (bottom != top) scan(bottom, k);
+    std::array<std::size_t, 6> promising;
+    promising.fill(chunks_);
+    for (std::size_t side = 0; side < 6 && chunks_ > kFewChunks; ++side) {
+        const double* middle = middle_.data() + side / 2 * chunks_;
+        const double* reach = reach_.data() + side / 2 * chunks_;
+        const double sign = side % 2 == 0 ? 1.0 : -1.0;
+        std::size_t& first = promising[side];
+        first = 0;
+        for (std::size_t i = 1; i < chunks_; ++i)
+            if (sign * middle[i] + reach[i] > sign * middle[first] + reach[first]) first = i;
+        scan(first, side);
     }
     for (std::size_t i = 0; i < chunks_; ++i) {
         bool skip = true;
         for (std::size_t k = 0; k < 3; ++k) {
             const double middle = middle_[k * chunks_ + i], reach = reach_[k * chunks_ + i] + kSlack;
-            skip = skip && middle + reach < high[static_cast<int>(k)] && middle - reach > low[static_cast<int>(k)];
+            skip = skip && middle + reach < farthest[2 * k] && reach - middle < farthest[2 * k + 1];
         }
         wanted_[i] = !skip;
     }
     quick_extents(directions);
     // What the rounded extents promise at least, then exactly where they leave a doubt.
-    for (int k = 0; k < 3; ++k) {
-        const double* lows = middle_.data() + static_cast<std::size_t>(k) * chunks_;
-        const double* highs = reach_.data() + static_cast<std::size_t>(k) * chunks_;
-        const double least = std::min(low[k], *std::min_element(lows, lows + chunks_) + scan_slack_) + scan_slack_;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double* lows = middle_.data() + k * chunks_;
+        const double* highs = reach_.data() + k * chunks_;
+        const double least =
+            std::min(-farthest[2 * k + 1], *std::min_element(lows, lows + chunks_) + scan_slack_) + scan_slack_;
         const double greatest =
-            std::max(high[k], *std::max_element(highs, highs + chunks_) - scan_slack_) - scan_slack_;
-        for (std::size_t i = 0; i < chunks_; ++i)
-            if (highs[i] >= greatest || lows[i] <= least) scan(i, k);
+            std::max(farthest[2 * k], *std::max_element(highs, highs + chunks_) - scan_slack_) - scan_slack_;
+        for (std::size_t i = 0; i < chunks_; ++i) {
+            if (highs[i] >= greatest && i != promising[2 * k]) scan(i, 2 * k);
+            if (lows[i] <= least && i != promising[2 * k + 1]) scan(i, 2 * k + 1);
+        }
     }
     return best;
 }
