@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <span>
 
 #if defined(CROFTON_HAVE_CGAL)
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -89,6 +90,38 @@ Points turned(const Points& points, std::uint32_t seed) {
     return result;
 }
 
+namespace {
+
+// Splits `order` at multiples of `grain` near the middle, across the longest side of the places' bounds, until a part
+// has at most `most`; hands each part to `take`.
+template <class Place, class Take>
+void split(std::vector<std::uint32_t>& order, std::size_t most, std::size_t grain, const Place& place,
+           const Take& take) {
+    std::vector<std::pair<std::size_t, std::size_t>> open = {{0, order.size()}};
+    while (!open.empty()) {
+        const auto [begin, end] = open.back();
+        open.pop_back();
+        if (end - begin <= most) {
+            take(std::span<const std::uint32_t>(order).subspan(begin, end - begin));
+            continue;
+        }
+        glm::vec3 low(1e30f), high(-1e30f);
+        for (std::size_t i = begin; i < end; ++i) {
+            low = glm::min(low, place(order[i]));
+            high = glm::max(high, place(order[i]));
+        }
+        const glm::vec3 size = high - low;
+        const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+        const std::size_t middle = begin + std::max<std::size_t>(1, (end - begin) / 2 / grain) * grain;
+        const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(begin), at(middle), at(end),
+                         [&](std::uint32_t a, std::uint32_t b) { return place(a)[axis] < place(b)[axis]; });
+        open.insert(open.end(), {{begin, middle}, {middle, end}});
+    }
+}
+
+}  // namespace
+
 std::optional<ClusteredMesh> load_clusters(const std::string& name, std::size_t triangles) {
     std::optional<Mesh> mesh = load(name);
     if (!mesh) return std::nullopt;
@@ -99,33 +132,31 @@ std::optional<ClusteredMesh> load_clusters(const std::string& name, std::size_t 
                mesh->positions[mesh->triangles[3 * t + 2]];
     };
     ClusteredMesh result;
-    std::vector<std::pair<std::size_t, std::size_t>> open = {{0, order.size()}};
-    while (!open.empty()) {
-        const auto [begin, end] = open.back();
-        open.pop_back();
-        if (end - begin > triangles) {
-            glm::vec3 low(1e30f), high(-1e30f);
-            for (std::size_t i = begin; i < end; ++i) {
-                low = glm::min(low, center(order[i]));
-                high = glm::max(high, center(order[i]));
-            }
-            const glm::vec3 size = high - low;
-            const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-            const std::size_t middle = (begin + end) / 2;
-            const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-            std::nth_element(at(begin), at(middle), at(end),
-                             [&](std::uint32_t a, std::uint32_t b) { return center(a)[axis] < center(b)[axis]; });
-            open.insert(open.end(), {{begin, middle}, {middle, end}});
-            continue;
-        }
+    split(order, triangles, 1, center, [&](std::span<const std::uint32_t> part) {
         std::vector<std::uint32_t> corners;
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::uint32_t k = 0; k < 3; ++k) corners.push_back(mesh->triangles[3 * order[i] + k]);
+        for (const std::uint32_t t : part)
+            for (std::uint32_t k = 0; k < 3; ++k) corners.push_back(mesh->triangles[3 * t + k]);
         std::sort(corners.begin(), corners.end());
         corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
         result.indices.insert(result.indices.end(), corners.begin(), corners.end());
         result.ends.push_back(static_cast<std::uint32_t>(result.indices.size()));
-    }
+    });
+    result.positions = std::move(mesh->positions);
+    return result;
+}
+
+std::optional<ClusteredMesh> load_vertex_clusters(const std::string& name, std::size_t size) {
+    std::optional<Mesh> mesh = load(name);
+    if (!mesh) return std::nullopt;
+    std::vector<std::uint32_t> order(mesh->positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    ClusteredMesh result;
+    split(
+        order, size, size, [&](std::uint32_t i) { return mesh->positions[i]; },
+        [&](std::span<const std::uint32_t> part) {
+            result.indices.insert(result.indices.end(), part.begin(), part.end());
+            result.ends.push_back(static_cast<std::uint32_t>(result.indices.size()));
+        });
     result.positions = std::move(mesh->positions);
     return result;
 }

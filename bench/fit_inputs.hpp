@@ -41,6 +41,9 @@ struct ClusteredMesh {
 };
 [[nodiscard]] std::optional<ClusteredMesh> load_clusters(const std::string& mesh, std::size_t triangles);
 
+// The vertices alone, split likewise into clusters of exactly `size` (what is left over makes smaller ones).
+[[nodiscard]] std::optional<ClusteredMesh> load_vertex_clusters(const std::string& mesh, std::size_t size);
+
 // The extreme points along the seven directions of DiTO-14 (Larsson and Källberg 2011): its pass over the points.
 [[nodiscard]] std::array<std::uint32_t, 14> dito14_pass(const Points& points);
 
