@@ -177,6 +177,86 @@ void extents_double(const double* points, std::size_t count, const unsigned char
     extents_of_chunks(points, count, wanted, directions, origin, out);
 }
 
+template <class D>
+HWY_INLINE void load_points(D d, const float* points, hn::Vec<D>& x, hn::Vec<D>& y, hn::Vec<D>& z) {
+    const hn::Rebind<float, D> df;
+    auto fx = hn::Undefined(df), fy = fx, fz = fx;
+    hn::LoadInterleaved3(df, points, fx, fy, fz);
+    x = hn::PromoteTo(d, fx);
+    y = hn::PromoteTo(d, fy);
+    z = hn::PromoteTo(d, fz);
+}
+template <class D>
+HWY_INLINE void load_points(D d, const double* points, hn::Vec<D>& x, hn::Vec<D>& y, hn::Vec<D>& z) {
+    hn::LoadInterleaved3(d, points, x, y, z);
+}
+
+template <class T>
+void slabs(const T* points, std::size_t count, const double center[3], const double normals[9], double low[3],
+           double high[3]) {
+    const hn::CappedTag<double, 8> d;
+    const std::size_t lanes = hn::Lanes(d);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+        low[k] = kInfinity;
+        high[k] = -kInfinity;
+    }
+    std::size_t i = 0;
+    if (count >= lanes) {
+        const auto cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]);
+        const auto ax = hn::Set(d, normals[0]), ay = hn::Set(d, normals[1]), az = hn::Set(d, normals[2]);
+        const auto bx = hn::Set(d, normals[3]), by = hn::Set(d, normals[4]), bz = hn::Set(d, normals[5]);
+        const auto ex = hn::Set(d, normals[6]), ey = hn::Set(d, normals[7]), ez = hn::Set(d, normals[8]);
+        auto low_a = hn::Set(d, kInfinity), low_b = low_a, low_e = low_a;
+        auto high_a = hn::Set(d, -kInfinity), high_b = high_a, high_e = high_a;
+        const auto include = [&](std::size_t at) {
+            auto x = cx, y = cx, z = cx;
+            load_points(d, points + 3 * at, x, y, z);
+            x = hn::Sub(x, cx);
+            y = hn::Sub(y, cy);
+            z = hn::Sub(z, cz);
+            const auto a = hn::Add(hn::Add(hn::Mul(ax, x), hn::Mul(ay, y)), hn::Mul(az, z));
+            const auto b = hn::Add(hn::Add(hn::Mul(bx, x), hn::Mul(by, y)), hn::Mul(bz, z));
+            const auto e = hn::Add(hn::Add(hn::Mul(ex, x), hn::Mul(ey, y)), hn::Mul(ez, z));
+            low_a = hn::Min(low_a, a);
+            low_b = hn::Min(low_b, b);
+            low_e = hn::Min(low_e, e);
+            high_a = hn::Max(high_a, a);
+            high_b = hn::Max(high_b, b);
+            high_e = hn::Max(high_e, e);
+        };
+        for (; i + lanes <= count; i += lanes) include(i);
+        // The last vector may overlap the one before.
+        if (i < count) include(count - lanes);
+        i = count;
+        low[0] = hn::GetLane(hn::MinOfLanes(d, low_a));
+        low[1] = hn::GetLane(hn::MinOfLanes(d, low_b));
+        low[2] = hn::GetLane(hn::MinOfLanes(d, low_e));
+        high[0] = hn::GetLane(hn::MaxOfLanes(d, high_a));
+        high[1] = hn::GetLane(hn::MaxOfLanes(d, high_b));
+        high[2] = hn::GetLane(hn::MaxOfLanes(d, high_e));
+    }
+    for (; i < count; ++i) {
+        double p[3];
+        for (std::size_t k = 0; k < 3; ++k) p[k] = static_cast<double>(points[3 * i + k]) - center[k];
+        for (int k = 0; k < 3; ++k) {
+            const double* n = normals + 3 * k;
+            const double t = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
+            low[k] = t < low[k] ? t : low[k];
+            high[k] = t > high[k] ? t : high[k];
+        }
+    }
+}
+
+void slabs_float(const float* points, std::size_t count, const double center[3], const double normals[9], double low[3],
+                 double high[3]) {
+    slabs(points, count, center, normals, low, high);
+}
+void slabs_double(const double* points, std::size_t count, const double center[3], const double normals[9],
+                  double low[3], double high[3]) {
+    slabs(points, count, center, normals, low, high);
+}
+
 }  // namespace crofton::fit::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -188,6 +268,8 @@ HWY_EXPORT(bounds_double);
 HWY_EXPORT(project);
 HWY_EXPORT(extents_float);
 HWY_EXPORT(extents_double);
+HWY_EXPORT(slabs_float);
+HWY_EXPORT(slabs_double);
 
 bool chunk_bounds(const float* points, std::size_t count, float limit, const ChunkBounds<float>& out) {
     return HWY_DYNAMIC_DISPATCH(bounds_float)(points, count, limit, out);
@@ -206,6 +288,15 @@ void chunk_extents(const float* points, std::size_t count, const unsigned char* 
 void chunk_extents(const double* points, std::size_t count, const unsigned char* wanted, const double* directions,
                    const double* origin, const ChunkBounds<double>& out) {
     HWY_DYNAMIC_DISPATCH(extents_double)(points, count, wanted, directions, origin, out);
+}
+
+void slab_extents(const float* points, std::size_t count, const double center[3], const double normals[9],
+                  double low[3], double high[3]) {
+    HWY_DYNAMIC_DISPATCH(slabs_float)(points, count, center, normals, low, high);
+}
+void slab_extents(const double* points, std::size_t count, const double center[3], const double normals[9],
+                  double low[3], double high[3]) {
+    HWY_DYNAMIC_DISPATCH(slabs_double)(points, count, center, normals, low, high);
 }
 
 }  // namespace crofton::fit::kernels

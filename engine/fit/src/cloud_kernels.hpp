@@ -36,4 +36,11 @@ void chunk_extents(const float* points, std::size_t count, const unsigned char* 
 void chunk_extents(const double* points, std::size_t count, const unsigned char* wanted, const double* directions,
                    const double* origin, const ChunkBounds<double>& out);
 
+// Least and greatest dot(normals[k], p − center) over the points, computed in double: each difference, product and sum
+// is rounded once.
+void slab_extents(const float* points, std::size_t count, const double center[3], const double normals[9],
+                  double low[3], double high[3]);
+void slab_extents(const double* points, std::size_t count, const double center[3], const double normals[9],
+                  double low[3], double high[3]);
+
 }  // namespace crofton::fit::kernels

@@ -99,29 +99,20 @@ Obb enclose_few(const PointCloud& cloud, const glm::mat3& axes) {
     const Slabs slabs(axes);
     Obb box;
     box.axes = axes;
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const glm::dvec3 t = (cloud.point(i) - cloud.origin()) * slabs.normals;
-        low = glm::min(low, t);
-        high = glm::max(high, t);
-    }
+    glm::dvec3 low, high;
+    cloud.slab_extents(slabs.normals, cloud.origin(), low, high);
     box.center = center_of(cloud, axes, slabs, low, high);
-    // Between which bounds the farthest point lies, by the error that surely_inside derives.
-    glm::dvec3 at_least(0.0), at_most(0.0);
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const glm::dvec3 d = cloud.point(i) - box.center, size = glm::abs(d);
-        for (int k = 0; k < 3; ++k) {
-            const glm::dvec3& normal = slabs.normals[k];
-            const double t = std::abs(normal.x * d.x + normal.y * d.y + normal.z * d.z);
-            const double error = 7.0 * kUnit * glm::dot(glm::abs(normal), size);
-            at_least[k] = std::max(at_least[k], t - error);
-            at_most[k] = std::max(at_most[k], t + error);
-        }
-    }
+    cloud.slab_extents(slabs.normals, box.center, low, high);
+    // Between which bounds the farthest point lies, by the error that surely_inside derives, with the largest of each
+    // difference for all.
+    const glm::dvec3 size =
+        glm::max(glm::abs(cloud.bounds().max - box.center), glm::abs(cloud.bounds().min - box.center));
     for (int k = 0; k < 3; ++k) {
         float& reach = box.half_extents[k];
-        reach = float_at_least(at_least[k] / slabs.determinant * (1.0 - 24.0 * kUnit));
-        if (at_most[k] <= static_cast<double>(reach) * (slabs.determinant * (1.0 - 24.0 * kUnit))) continue;
+        const double farthest = std::max(std::abs(low[k]), std::abs(high[k]));
+        const double error = 7.0 * kUnit * glm::dot(glm::abs(slabs.normals[k]), size);
+        reach = float_at_least((farthest - error) / slabs.determinant * (1.0 - 24.0 * kUnit));
+        if (farthest + error <= static_cast<double>(reach) * (slabs.determinant * (1.0 - 24.0 * kUnit))) continue;
         for (std::size_t i = 0; i < cloud.size(); ++i) grow(box, slabs, k, cloud.point(i));
     }
     return box;

@@ -75,7 +75,7 @@ Weights Fitter::effective(const Weights& weights) {
 Candidate Fitter::search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near) {
     few_.assign(subset_);
     Candidate found = near == nullptr ? few_.search(weights, effort) : few_.improve(weights, effort, *near);
-    const glm::dvec3 extent = widths(subset_, found.axes);
+    glm::dvec3 extent = widths(subset_, found.axes);
     if (std::min({extent.x, extent.y, extent.z}) < kThin * std::max({extent.x, extent.y, extent.z})) {
         descend(weights, subset_, found, buffers_);
         polish(weights, subset_, found, buffers_, kCoarseSteps);

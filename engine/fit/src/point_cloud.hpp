@@ -38,6 +38,14 @@ class PointCloud {
     [[nodiscard]] double unit() const { return unit_; }
     [[nodiscard]] glm::dvec3 point(std::size_t i) const { return world(i); }
 
+    // Least and greatest dot(normals[k], p − center) over all points by one pass, in input coordinates: each
+    // difference, product and sum rounded once.
+    void slab_extents(const glm::dmat3& normals, const glm::dvec3& center, glm::dvec3& low, glm::dvec3& high) const {
+        if (floats_)
+            kernels::slab_extents(floats_, count_, &center.x, &normals[0].x, &low.x, &high.x);
+        else
+            kernels::slab_extents(doubles_, count_, &center.x, &normals[0].x, &low.x, &high.x);
+    }
     // The distinct points, normalised, in canonical order. For few points: quadratic up to a hundred or so.
     void sorted(Vector<glm::dvec3>& points);
 
