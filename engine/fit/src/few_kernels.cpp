@@ -122,11 +122,8 @@ void frames_impl(const FewPoints& points, const FloatWeights& weights, const flo
     }
 }
 
-// Index of the first lane, over all vectors, that holds the extreme.
-void support_impl(const FewPoints& points, const FloatWeights& weights, const float frame[9], float supports[6],
-                  float& result) {
+void support_impl(const FewPoints& points, const float frame[9], float supports[6], float widths[3]) {
     const Tag d;
-    float widths[3];
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 axis = set(d, frame + 3 * k);
         Range range = nothing(d);
@@ -146,10 +143,6 @@ void support_impl(const FewPoints& points, const FloatWeights& weights, const fl
         supports[2 * k + 1] = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(range.low, least), low, none)));
         widths[k] = hn::GetLane(greatest) - hn::GetLane(least);
     }
-    result = widths[0] * widths[1];
-    const float sum = widths[0] + widths[1];
-    result = weights.product * (result * widths[2]) + weights.pairs * (result + sum * widths[2]) +
-             weights.sum * (sum + widths[2]);
 }
 
 struct Angle {
@@ -411,9 +404,8 @@ void settle(const FewPoints& points, const FloatWeights& weights, float* scratch
 void supports_of_frames(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
     HWY_DYNAMIC_DISPATCH(supports_impl)(points, weights, frames, supports);
 }
-void supports_of_frame(const FewPoints& points, const FloatWeights& weights, const float frame[9], float supports[6],
-                       float& value) {
-    HWY_DYNAMIC_DISPATCH(support_impl)(points, weights, frame, supports, value);
+void supports_of_frame(const FewPoints& points, const float frame[9], float supports[6], float widths[3]) {
+    HWY_DYNAMIC_DISPATCH(support_impl)(points, frame, supports, widths);
 }
 void ranks(const FewPoints& points, float* ranks) {
     HWY_DYNAMIC_DISPATCH(ranks_impl)(points, ranks);

@@ -47,9 +47,8 @@ void settle(const FewPoints& points, const FloatWeights& weights, float* scratch
 // −axis k.
 void supports_of_frames(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports);
 
-// The same for one frame, its three axes in sequence: one index a side. Vectors hold points here; the first of equals.
-void supports_of_frame(const FewPoints& points, const FloatWeights& weights, const float frame[9], float supports[6],
-                       float& value);
+// For one frame, its three axes in sequence: one support point a side, the first of equals, and the widths.
+void supports_of_frame(const FewPoints& points, const float frame[9], float supports[6], float widths[3]);
 
 // A turn of a frame about `axis`, to the angle that is best as far as sixteen angles and the edges beside the best of
 // them tell.

@@ -149,13 +149,13 @@ void FewSearch::gather() {
 
 void FewSearch::find_starts() {
     float values[kLanes], rows[kLanes];
-    kernels::best_frames(view(), weights_, frames().axes[0], kFrames, values, rows);
+    kernels::best_frames(view(), float_weights_, frames().axes[0], kFrames, values, rows);
     for (std::size_t i = 0; i < kLanes; ++i)
         for (std::size_t j = 0; j < 9; ++j)
             starts_.axes[j][i] = frames().axes[j][static_cast<std::size_t>(rows[i]) * kLanes + i];
-    kernels::settle(view(), weights_, scratch_.data(), starts_);
+    kernels::settle(view(), float_weights_, scratch_.data(), starts_);
     float supports[6 * kLanes];
-    kernels::supports_of_frames(all(), weights_, starts_, supports);
+    kernels::supports_of_frames(all(), float_weights_, starts_, supports);
     mark(supports, 6 * kLanes);
     collect();
 }
@@ -168,7 +168,7 @@ void FewSearch::turn_to_rest(Candidate& candidate, int turns) {
         to_floats(axis, turn.axis);
         to_floats(right, turn.right);
         to_floats(up, turn.up);
-        kernels::turn(view(), weights_, scratch_.data(), turn);
+        kernels::turn(view(), float_weights_, scratch_.data(), turn);
         const double value = static_cast<double>(turn.value);
         if (!(value < candidate.value * (1.0 - kGain))) {
             ++idle;
@@ -214,7 +214,7 @@ bool FewSearch::slide_along(const glm::dmat3& frame, const FlushEdge& first, con
         slides.t[i] = (i % 2 == 0 ? 0.08f : -0.08f) / static_cast<float>(std::size_t{1} << (i / 2));
     std::size_t least = 0;
     const auto evaluate = [&] {
-        kernels::values_of_slides(view(), weights_, slides);
+        kernels::values_of_slides(view(), float_weights_, slides);
         least = 0;
         for (std::size_t i = 1; i < kLanes; ++i) least = slides.values[i] < slides.values[least] ? i : least;
     };
@@ -248,11 +248,11 @@ bool FewSearch::slide(Candidate& candidate) {
     return better;
 }
 
-Candidate FewSearch::search(const Weights& weights, const FewEffort& effort) {
+FewSearch::Found FewSearch::search(const Weights& weights, const FewEffort& effort) {
     set(weights);
     gather();
     find_starts();
-    Candidate best{glm::dmat3(1.0), kNoValue};
+    Found best{glm::dmat3(1.0), glm::dvec3(0.0), kNoValue};
     std::array<glm::dmat3, kLanes> tried;
     std::size_t tries = 0;
     for (unsigned open = (1u << kLanes) - 1u; open != 0 && tries < effort.finalists;) {
@@ -266,45 +266,51 @@ Candidate FewSearch::search(const Weights& weights, const FewEffort& effort) {
         if (std::any_of(tried.begin(), tried.begin() + tries, [&](const glm::dmat3& a) { return alike(a, frame); }))
             continue;
         tried[tries++] = frame;
-        const Candidate found = descend(effort, {frame, static_cast<double>(starts_.values[next])});
+        const Found found = descend(effort, {frame, static_cast<double>(starts_.values[next])});
         if (found.value < best.value) best = found;
     }
     return best;
 }
 
-Candidate FewSearch::improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame) {
+FewSearch::Found FewSearch::improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame) {
     set(weights);
     gather();
-    return descend(effort, {frame, look(frame)});
+    const Found there = look(frame);
+    collect();
+    const Found found = descend(effort, {frame, there.value});
+    return found.value < there.value ? found : there;
 }
 
 void FewSearch::set(const Weights& weights) {
-    weights_ = {static_cast<float>(weights.product), static_cast<float>(weights.pairs),
-                static_cast<float>(weights.sum)};
+    weights_ = weights;
+    float_weights_ = {static_cast<float>(weights.product), static_cast<float>(weights.pairs),
+                      static_cast<float>(weights.sum)};
 }
 
 // Best on the subset, until all points agree.
-Candidate FewSearch::descend(const FewEffort& effort, Candidate candidate) {
-    Candidate best = candidate;
+FewSearch::Found FewSearch::descend(const FewEffort& effort, Candidate candidate) {
+    Found best{glm::dmat3(1.0), glm::dvec3(0.0), kNoValue};
     for (int round = 0; round < 3; ++round) {
         turn_to_rest(candidate, effort.turns);
         for (int slides = 0; slides < effort.rounds && slide(candidate); ++slides) {
         }
-        candidate.value = look(candidate.axes);
-        if (candidate.value < best.value) best = candidate;
+        const Found found = look(candidate.axes);
+        if (found.value < best.value) best = found;
         if (!grown_) break;
         collect();
+        candidate.value = found.value;
     }
     return best;
 }
 
 // What all points say of a frame; its support points join the subset.
-double FewSearch::look(const glm::dmat3& frame) {
-    float axes[9], supports[6], value = 0.0f;
+FewSearch::Found FewSearch::look(const glm::dmat3& frame) {
+    float axes[9], supports[6], widths[3];
     for (int k = 0; k < 3; ++k) to_floats(frame[k], axes + 3 * k);
-    kernels::supports_of_frame(all(), weights_, axes, supports, value);
+    kernels::supports_of_frame(all(), axes, supports, widths);
     mark(supports, 6);
-    return static_cast<double>(value);
+    const glm::dvec3 extent(glm::vec3(widths[0], widths[1], widths[2]));
+    return {frame, extent, weights_(extent.x, extent.y, extent.z)};
 }
 
 }  // namespace crofton::fit

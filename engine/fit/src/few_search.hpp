@@ -16,12 +16,18 @@ struct FewEffort {
 
 class FewSearch {
   public:
+    struct Found {
+        glm::dmat3 axes;
+        glm::dvec3 extent;  // widths along the axes, rounded to float
+        double value;
+    };
+
     // Takes points in canonical order; coordinates within [−1, 1]. Reads them until the next call.
     void assign(std::span<const glm::dvec3> points);
-    // The best frame found. Its value is rounded to float.
-    [[nodiscard]] Candidate search(const Weights& weights, const FewEffort& effort);
+    // The best frame found.
+    [[nodiscard]] Found search(const Weights& weights, const FewEffort& effort);
     // The best frame near a given one.
-    [[nodiscard]] Candidate improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame);
+    [[nodiscard]] Found improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame);
 
   private:
     // Those of all points that matter: extreme in some direction asked for so far.
@@ -34,8 +40,8 @@ class FewSearch {
     void gather();
     void find_starts();
     void set(const Weights& weights);
-    [[nodiscard]] Candidate descend(const FewEffort& effort, Candidate candidate);
-    [[nodiscard]] double look(const glm::dmat3& frame);
+    [[nodiscard]] Found descend(const FewEffort& effort, Candidate candidate);
+    [[nodiscard]] Found look(const glm::dmat3& frame);
     void turn_to_rest(Candidate& candidate, int turns);
     // True if the value fell.
     bool slide(Candidate& candidate);
@@ -47,7 +53,8 @@ class FewSearch {
     }
 
     std::span<const glm::dvec3> points_;
-    kernels::FloatWeights weights_{};
+    Weights weights_;
+    kernels::FloatWeights float_weights_{};
     Vector<float> x_, y_, z_, scratch_, depths_;
     Vector<unsigned char> marked_;
     bool grown_ = false;

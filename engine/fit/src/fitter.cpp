@@ -28,7 +28,7 @@ constexpr double kAxisTolerance = 1e-5;
 // A box this thin, relatively, is searched again in double: float coordinates are too coarse across it.
 constexpr double kThin = 1e-3;
 
-constexpr FewEffort kFastFew{1, 6, 2}, kTightFew{2, 6, 4};
+constexpr FewEffort kFastFew{1, 6, 2}, kTightFew{2, 9, 4}, kTightFewByVolume{3, 9, 4};
 constexpr Effort kFast{kFastFew, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
 constexpr std::size_t kFew = 256;  // points of a cluster, which is searched as a whole
 
@@ -72,15 +72,15 @@ Weights Fitter::effective(const Weights& weights) {
     return rough(weights).value <= kFlat ? kArea : weights;
 }
 
-Candidate Fitter::search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near) {
+FewSearch::Found Fitter::search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near) {
     few_.assign(subset_);
-    Candidate found = near == nullptr ? few_.search(weights, effort) : few_.improve(weights, effort, *near);
-    glm::dvec3 extent = widths(subset_, found.axes);
+    FewSearch::Found found = near == nullptr ? few_.search(weights, effort) : few_.improve(weights, effort, *near);
+    const glm::dvec3 extent = found.extent;
     if (std::min({extent.x, extent.y, extent.z}) < kThin * std::max({extent.x, extent.y, extent.z})) {
-        descend(weights, subset_, found, buffers_);
-        polish(weights, subset_, found, buffers_, kCoarseSteps);
-    } else {
-        found.value = weights(extent.x, extent.y, extent.z);
+        Candidate candidate{found.axes, found.value};
+        descend(weights, subset_, candidate, buffers_);
+        polish(weights, subset_, candidate, buffers_, kCoarseSteps);
+        found = {candidate.axes, widths(subset_, candidate.axes), candidate.value};
     }
     return found;
 }
@@ -92,27 +92,27 @@ Candidate Fitter::local(const Weights& weights, const Effort& effort) {
     Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
     for (int query = 0; query < effort.queries; ++query) {
         const bool anew = query < effort.searches;
-        const Candidate found = search_subset(weights, effort.few, anew ? nullptr : &best.axes);
+        const FewSearch::Found found = search_subset(weights, effort.few, anew ? nullptr : &best.axes);
         const Supports supports = cloud_.supports(found.axes);
         const double value = value_of(weights, supports, found.axes);
         if (value < best.value) best = {found.axes, value};
         const std::size_t before = subset_.size();
         subset_.insert(subset_.end(), supports.begin(), supports.end());
         make_canonical(subset_);
-        if (subset_.size() == before || best.value <= found.value * (1.0 + 1e-9)) break;
+        if (subset_.size() == before || best.value <= found.value * (1.0 + 1e-6)) break;
     }
     return best;
 }
 
 Obb Fitter::fit_few(const Weights& weights, const FewEffort& effort) {
     cloud_.sorted(subset_);
-    Candidate found = search_subset(weights, effort, nullptr);
+    FewSearch::Found found = search_subset(weights, effort, nullptr);
     Weights by = weights;
     if (weights.pairs + weights.sum == 0.0 && found.value <= kFlat) {
         by = kArea;
         found = search_subset(by, effort, nullptr);
     }
-    return enclose_few(cloud_, rounded(found.axes, widths(subset_, found.axes), by, kAxisTolerance));
+    return enclose_few(cloud_, rounded(found.axes, found.extent, by, kAxisTolerance));
 }
 
 SearchResult Fitter::global(const Weights& weights, const SearchLimits& limits) {
@@ -136,7 +136,8 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
     const bool fast = options.quality == Quality::fast;
-    if (points.size() <= kFew) return fit_few(asked, fast ? kFastFew : kTightFew);
+    if (points.size() <= kFew)
+        return fit_few(asked, fast ? kFastFew : asked.product > 0.0 ? kTightFewByVolume : kTightFew);
     const Weights weights = effective(asked);
     return box_of(local(weights, fast ? kFast : kTight).axes, weights, kAxisTolerance);
 }

@@ -31,7 +31,8 @@ class Fitter {
     // Of the frames built from subset_, the best for it.
     [[nodiscard]] Candidate rough(const Weights& weights);
     // A good frame for subset_; near a given one, if any.
-    [[nodiscard]] Candidate search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near);
+    [[nodiscard]] FewSearch::Found search_subset(const Weights& weights, const FewEffort& effort,
+                                                 const glm::dmat3* near);
     // A good frame for all: few extreme points are searched, and grow by the support points of the frames found.
     [[nodiscard]] Candidate local(const Weights& weights, const Effort& effort);
     [[nodiscard]] Obb fit_few(const Weights& weights, const FewEffort& effort);
