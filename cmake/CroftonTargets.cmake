@@ -13,6 +13,10 @@ function(crofton_own_target target)
     if(CROFTON_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${CROFTON_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
+        if(CROFTON_SANITIZE MATCHES undefined)
+            # The engine has no run-time type information for this check to read.
+            target_compile_options(${target} PRIVATE -fno-sanitize=vptr)
+        endif()
         target_link_options(${target} PUBLIC -fsanitize=${CROFTON_SANITIZE})
     endif()
 endfunction()

@@ -45,9 +45,11 @@ std::optional<Obb> box_of(const SceneNode& node) {
     if (local.is_empty()) return obb_of(world);
     const Ogre::Affine3& matrix = node._getFullTransform();
     scene::Transform transform;
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) transform.linear[column][row] = matrix[row][column];
-        transform.translation[row] = matrix[row][3];
+    for (unsigned row = 0; row < 3; ++row) {
+        const auto r = static_cast<int>(row);
+        for (int column = 0; column < 3; ++column)
+            transform.linear[column][r] = matrix[row][static_cast<unsigned>(column)];
+        transform.translation[r] = matrix[row][3];
     }
     const auto turned = scene::transformed_box(transform, obb_of(local), measure::minimal_perimeter());
     if (turned && world.is_empty()) return *turned;
