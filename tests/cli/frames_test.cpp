@@ -27,7 +27,10 @@ TEST_SUITE("cli/frames") {
         write_contents(scratch().file("index.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
         write_contents(scratch().file("empty.obj"), "# nothing\n");
         write_contents(scratch().file("cameras.json"), "[{\"position\": [0, 0, \"x\"]}]");
-        const std::pair<std::string, std::string> cases[] = {
+        struct Case {
+            std::string arguments, culprit;
+        };
+        const Case cases[] = {
             {"no-such-file.glb", "no-such-file.glb"},
             {"town --size 0x90", "0x90"},
             {"town --bounds ball", "ball"},
@@ -42,11 +45,11 @@ TEST_SUITE("cli/frames") {
             {scratch().file("empty.obj"), "empty.obj"},
             {"town --draw --no-draw", "draw"},
         };
-        for (const auto& [arguments, culprit] : cases) {
-            CAPTURE(arguments);
-            const CliRun run = run_cli("frames " + arguments + " --json " + output);
+        for (const Case& wrong : cases) {
+            CAPTURE(wrong.arguments);
+            const CliRun run = run_cli("frames " + wrong.arguments + " --json " + output);
             CHECK(run.status == 2);
-            CHECK(says(run.err, culprit));
+            CHECK(says(run.err, wrong.culprit));
             CHECK(run.out.empty());
             CHECK_FALSE(std::filesystem::exists(output));
             CHECK_FALSE(std::filesystem::exists(output + ".partial"));
@@ -122,7 +125,7 @@ TEST_SUITE("cli/frames") {
             0);
         const json expected = ids_of(json::parse(contents_of(recorded)));
         for (const std::string& choice : {std::string("--cull flat --camera random"),
-                                         std::string("--threads 2 --camera random"), "--camera " + recorded}) {
+                                          std::string("--threads 2 --camera random"), "--camera " + recorded}) {
             CAPTURE(choice);
             const CliRun run = run_cli(kSmallTown + "--frames 10 --seed 5 --no-draw --ids --json - " + choice);
             REQUIRE(run.status == 0);

@@ -79,7 +79,7 @@ TEST_SUITE("fit/fit") {
 
     TEST_CASE("one point, however often, gives a box of no size at that point") {
         for (const Quality quality : kQualities)
-            for (const std::size_t count : {1, 2, 100}) {
+            for (const std::size_t count : {1u, 2u, 100u}) {
                 const std::vector<glm::dvec3> points(count, glm::dvec3(1e8 + 0.3, -7.1, 1e-9));
                 const Obb box = fit::fit_obb(view(points), {.quality = quality}).value();
                 CHECK(box.center == points[0]);

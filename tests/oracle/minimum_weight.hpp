@@ -15,9 +15,9 @@ class MinimumWeightReference {
   public:
     explicit MinimumWeightReference(const Polygon& polygon) : points_(polygon.points.begin(), polygon.points.end()) {
         for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
-            std::vector<int> ring;
-            const int begin = r == 0 ? 0 : static_cast<int>(polygon.ring_ends[r - 1]);
-            for (int i = begin; i < static_cast<int>(polygon.ring_ends[r]); ++i) ring.push_back(i);
+            std::vector<std::size_t> ring;
+            const std::size_t begin = r == 0 ? 0 : polygon.ring_ends[r - 1];
+            for (std::size_t i = begin; i < polygon.ring_ends[r]; ++i) ring.push_back(i);
             double area = 0.0;
             for (std::size_t i = 0; i < ring.size(); ++i) {
                 const auto &p = points_[ring[i]], &q = points_[ring[(i + 1) % ring.size()]];
@@ -36,9 +36,9 @@ class MinimumWeightReference {
     }
 
   private:
-    using Rings = std::vector<std::vector<int>>;
+    using Rings = std::vector<std::vector<std::size_t>>;
 
-    int orientation(int a, int b, int c) const {
+    int orientation(std::size_t a, std::size_t b, std::size_t c) const {
         const auto &p = points_[a], &q = points_[b], &r = points_[c];
         const double det = (p.x - r.x) * (q.y - r.y) - (p.y - r.y) * (q.x - r.x);
         const double size = std::fabs((p.x - r.x) * (q.y - r.y)) + std::fabs((p.y - r.y) * (q.x - r.x));
@@ -46,16 +46,16 @@ class MinimumWeightReference {
         const mpq_class px(p.x), py(p.y), qx(q.x), qy(q.y), rx(r.x), ry(r.y);
         return sgn((px - rx) * (qy - ry) - (py - ry) * (qx - rx));
     }
-    bool less(int a, int b) const {
+    bool less(std::size_t a, std::size_t b) const {
         return points_[a].x < points_[b].x || (points_[a].x == points_[b].x && points_[a].y < points_[b].y);
     }
-    bool between(int a, int b, int c) const {  // c inside the segment ab
+    bool between(std::size_t a, std::size_t b, std::size_t c) const {  // c inside the segment ab
         return orientation(a, b, c) == 0 && (less(a, b) ? less(a, c) && less(c, b) : less(b, c) && less(c, a));
     }
-    bool crosses_nothing(int a, int b, const Rings& rings) const {
+    bool crosses_nothing(std::size_t a, std::size_t b, const Rings& rings) const {
         for (const auto& ring : rings) {
             for (std::size_t i = 0; i < ring.size(); ++i) {
-                const int c = ring[i], d = ring[(i + 1) % ring.size()];
+                const std::size_t c = ring[i], d = ring[(i + 1) % ring.size()];
                 if (between(a, b, c)) return false;
                 if (a == c || a == d || b == c || b == d) continue;
                 if (orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0)
@@ -65,7 +65,7 @@ class MinimumWeightReference {
         return true;
     }
     // Whether the direction to `to` points into the corner before → at → after, whose inside lies on the left.
-    bool in_corner(int before, int at, int after, int to) const {
+    bool in_corner(std::size_t before, std::size_t at, std::size_t after, std::size_t to) const {
         if (to == before || to == after) return false;
         if (before == after)
             return !(orientation(at, after, to) == 0 && orientation(at, before, to) == 0 && same_side(at, after, to));
@@ -75,12 +75,12 @@ class MinimumWeightReference {
         if (turn == 0 && !same_side(at, before, after)) return left_of_after;
         return left_of_after || right_of_before;
     }
-    bool same_side(int at, int a, int b) const {
+    bool same_side(std::size_t at, std::size_t a, std::size_t b) const {
         return (points_[a].x - points_[at].x) * (points_[b].x - points_[at].x) +
                    (points_[a].y - points_[at].y) * (points_[b].y - points_[at].y) >
                0.0;
     }
-    long double length(int a, int b) const {
+    long double length(std::size_t a, std::size_t b) const {
         const long double x = static_cast<long double>(points_[a].x) - points_[b].x;
         const long double y = static_cast<long double>(points_[a].y) - points_[b].y;
         return std::sqrt(x * x + y * y);
@@ -96,11 +96,12 @@ class MinimumWeightReference {
         for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
             const auto& ring = rings[r];
             for (std::size_t i = 0; i < ring.size(); ++i) {
-                const int before = ring[(i + ring.size() - 1) % ring.size()], after = ring[(i + 1) % ring.size()];
+                const std::size_t before = ring[(i + ring.size() - 1) % ring.size()],
+                                  after = ring[(i + 1) % ring.size()];
                 if (!less(ring[i], hole[v]) || !in_corner(before, ring[i], after, hole[v])) continue;
                 if (!crosses_nothing(hole[v], ring[i], rings)) continue;
                 Rings merged = rings;
-                std::vector<int> joined(ring.begin(), ring.begin() + static_cast<long>(i) + 1);
+                std::vector<std::size_t> joined(ring.begin(), ring.begin() + static_cast<long>(i) + 1);
                 for (std::size_t k = 0; k <= hole.size(); ++k) joined.push_back(hole[(v + k) % hole.size()]);
                 joined.insert(joined.end(), ring.begin() + static_cast<long>(i), ring.end());
                 merged[r] = joined;
@@ -111,7 +112,7 @@ class MinimumWeightReference {
         return best;
     }
 
-    long double klincsek(const std::vector<int>& walk, const Rings& rings) const {
+    long double klincsek(const std::vector<std::size_t>& walk, const Rings& rings) const {
         const std::size_t n = walk.size();
         const long double infinity = std::numeric_limits<long double>::infinity();
         std::vector<std::vector<long double>> cost(n, std::vector<long double>(n, infinity));

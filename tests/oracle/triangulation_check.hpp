@@ -48,13 +48,13 @@ inline std::string check_triangulation(const Polygon& polygon, const auto& trian
     std::set<Point> used;
     mpq_class area = 0;
     for (const auto& t : triangles) {
-        for (int k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k) {
             if (t[k] >= polygon.points.size()) return "index out of range";
         }
         const mpq_class a = twice_area(at(polygon, t[0]), at(polygon, t[1]), at(polygon, t[2]));
         if (a <= 0) return "a triangle is not counter-clockwise";
         area += a;
-        for (int k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k) {
             used.insert(at(polygon, t[k]));
             if (!sides.insert({at(polygon, t[k]), at(polygon, t[(k + 1) % 3])}).second) return "a side occurs twice";
         }
@@ -95,7 +95,7 @@ inline double diagonal_length(const Polygon& polygon, const auto& triangles) {
     std::set<std::pair<Point, Point>> sides;
     double weight = 0.0;
     for (const auto& t : triangles) {
-        for (int k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k) {
             const Point p = at(polygon, t[k]), q = at(polygon, t[(k + 1) % 3]);
             if (sides.count({q, p})) weight += std::hypot(p.first - q.first, p.second - q.second);
             sides.insert({p, q});
