@@ -87,6 +87,8 @@ void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology
             const Obb* box = &boxes_[topology.order[ahead.first + i]];
             hwy::Prefetch(box);
             hwy::Prefetch(&box->half_extents);
+            hwy::Prefetch(&layer_masks_[topology.order[ahead.first + i]]);
+            hwy::Prefetch(&structure.item_slots[topology.order[ahead.first + i]]);
         }
     }
     Leaf& leaf = structure.leaves[l];

@@ -10,7 +10,9 @@ constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
 // Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
 constexpr std::size_t kSmallCrowd = 32768;
 constexpr unsigned kDigitBits = 11;
-constexpr unsigned kPasses = 6;
+constexpr unsigned kPasses = 5;
+constexpr unsigned kAxisBits = 17;  // three times that and four bits for the size make five digits
+constexpr float kMostCell = static_cast<float>((1u << kAxisBits) - 1);
 
 // Spreads 20 bits to every third.
 std::uint64_t spread(std::uint64_t v) {
@@ -89,11 +91,11 @@ std::size_t Builder::compute_keys(std::size_t budget) {
         for (unsigned j = 0; j < 3; ++j) {
             extent = std::max(extent, item.extreme[4 + j] + item.extreme[j]);
             const float position = (0.5f * item.twice_center(j) - low_[j]) * inverse_size_[j];
-            code |= spread(static_cast<std::uint64_t>(std::clamp(position, 0.0f, 1.0f) * 1048575.0f)) << j;
+            code |= spread(static_cast<std::uint64_t>(std::clamp(position, 0.0f, 1.0f) * kMostCell)) << j;
         }
         int size_class = 0;
         for (float limit = 8.0f * cell_; extent > limit && size_class < 15; limit *= 2.0f) ++size_class;
-        keys_[next_] = {static_cast<std::uint64_t>(15 - size_class) << 60 | code, static_cast<std::uint32_t>(next_)};
+        keys_[next_] = {static_cast<std::uint64_t>(15 - size_class) << (3 * kAxisBits) | code, static_cast<std::uint32_t>(next_)};
     }
     if (next_ == items_.size()) {
         next_ = 0;
