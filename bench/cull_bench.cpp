@@ -83,17 +83,39 @@ BENCHMARK_CAPTURE(flat_cull, conservative, cull::Mode::conservative, false)->Arg
 BENCHMARK_CAPTURE(flat_cull, exact, cull::Mode::exact, false)->Arg(10000)->Arg(1000000);
 BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::Mode::exact, true)->Arg(10000)->Arg(1000000);
 
+// The same for axis-aligned boxes and for balls around the boxes.
+template <class Bound>
+void flat_bounds(benchmark::State& state, const std::vector<Bound>& bounds) {
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::BoundSet<Bound> set;
+    set.assign(bounds);
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::cull(set, bounds, view, verdicts);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+    report(state, 0);
+    state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
+}
+void flat_cull_aabbs(benchmark::State& state) {
+    std::vector<Aabb> bounds;
+    for (const Obb& box : boxes_of(state.range(0))) bounds.push_back(aabb_of(box));
+    flat_bounds(state, bounds);
+}
+void flat_cull_spheres(benchmark::State& state) {
+    std::vector<Sphere> bounds;
+    for (const Obb& box : boxes_of(state.range(0)))
+        bounds.push_back({box.center, glm::length(glm::dvec3(box.half_extents))});
+    flat_bounds(state, bounds);
+}
+BENCHMARK(flat_cull_aabbs)->Arg(10000)->Arg(1000000);
+BENCHMARK(flat_cull_spheres)->Arg(10000)->Arg(1000000);
+
 void tree_build(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(tree::BoxTree::build(boxes_of(state.range(0)))->item_count());
     report(state, 0);
 }
 BENCHMARK(tree_build)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-
-// How cost grows with the number of boxes; a fifth of them is visible.
-BENCHMARK_CAPTURE(tree_cull, growth, cull::Mode::exact, cull::Order::tree, 0.2)
-    ->RangeMultiplier(10)
-    ->Range(1000, 10000000);
-BENCHMARK_CAPTURE(flat_cull, growth, cull::Mode::exact, false)->RangeMultiplier(10)->Range(1000, 10000000);
 
 // Two threads beside one, the same query.
 void threads(benchmark::State& state) {
@@ -174,18 +196,44 @@ void move_and_cull(benchmark::State& state, bool scattered) {
 BENCHMARK_CAPTURE(move_and_cull, scattered, true)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(move_and_cull, neighbours, false)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
-// Four cascades or cube faces: one pass beside one query each.
-void many_views(benchmark::State& state, bool one_pass) {
-    const tree::BoxTree& tree = tree_of(state.range(0));
+// Views all around the middle of the crowd, four to a round like a cube's sides, rounds turned against each other.
+std::vector<cull::View> views_around(std::int64_t boxes, std::int64_t count) {
     std::vector<cull::View> views;
-    for (int v = 0; v < 4; ++v) {
+    for (std::int64_t v = 0; v < count; ++v) {
         Camera camera;
-        camera.position = std::cbrt(static_cast<double>(state.range(0))) * glm::dvec3(0.5);
-        camera.forward = {v == 0 ? 1.0 : v == 1 ? -1.0 : 0.0, 0.05, v == 2 ? 1.0 : v == 3 ? -1.0 : 0.0};
+        const double angle = 1.5707963 * static_cast<double>(v % 4) + 0.15 * static_cast<double>(v / 4);
+        camera.position = std::cbrt(static_cast<double>(boxes)) * glm::dvec3(0.5);
+        camera.forward = {std::cos(angle), 0.05, std::sin(angle)};
         camera.fov_y = 1.5708;
         camera.aspect = 1.0;
         views.push_back({*frustum_of(camera)});
     }
+    return views;
+}
+
+// Many views of a list in one pass beside one query each.
+void flat_views(benchmark::State& state, bool one_pass) {
+    const auto& boxes = boxes_of(state.range(0));
+    const std::vector<cull::View> views = views_around(state.range(0), state.range(1));
+    cull::BoxSet set;
+    set.assign(boxes);
+    std::vector<std::uint32_t> masks(boxes.size());
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        if (one_pass)
+            cull::cull(set, boxes, {}, views, masks);
+        else
+            for (const cull::View& view : views) cull::cull(set, boxes, view, verdicts);
+        benchmark::DoNotOptimize(masks.data());
+    }
+}
+BENCHMARK_CAPTURE(flat_views, one_pass, true)->Args({1000000, 4})->Args({1000000, 32});
+BENCHMARK_CAPTURE(flat_views, one_by_one, false)->Args({1000000, 4})->Args({1000000, 32});
+
+// Four cascades or cube faces: one pass beside one query each.
+void many_views(benchmark::State& state, bool one_pass) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const std::vector<cull::View> views = views_around(state.range(0), 4);
     cull::ManyVisible many;
     cull::VisibleSet one;
     for (auto _ : state) {

@@ -3,30 +3,46 @@
 #include <array>
 #include <cmath>
 #include <crofton/geometry/dyadic.hpp>
-#include <vector>
 
 namespace crofton::cli {
 namespace {
 
-// The half-space as a function of t on the box: slope · t + base ≥ 0.
+// The half-space as a function of t on the box: slope · t + base ≥ 0. `size`: the sum of the magnitudes of all products
+// that base and slopes are made of; in double a sum of them with factors of at most 1 is off by less than kRounding of
+// it (a difference, two products and fewer than twenty additions: 24 · 2^-53).
 struct Row {
-    std::array<double, 3> slope;
-    double base;
+    std::array<double, 3> slope{};
+    double base = 0.0, size = 0.0;
 };
+constexpr double kRounding = 0x1p-48;
 
-std::vector<Row> rows_of(const Frustum& frustum, const Obb& box) {
-    std::vector<Row> rows;
-    for (const Plane& plane : frustum.view()) {
-        Row row{};
-        row.base = plane.offset;
-        for (int j = 0; j < 3; ++j) row.base += plane.normal[j] * (box.center[j] - frustum.origin[j]);
-        for (int k = 0; k < 3; ++k)
-            for (int j = 0; j < 3; ++j)
-                row.slope[std::size_t(k)] += plane.normal[j] * double{box.axes[k][j]} * double{box.half_extents[k]};
-        rows.push_back(row);
+struct Rows {
+    std::array<Row, Frustum::kMaxPlanes + 6> rows;
+    std::size_t count = 0;  // one a plane
+
+    Rows(const Frustum& frustum, const Obb& box) {
+        for (const Plane& plane : frustum.view()) {
+            Row& row = rows[count++];
+            row.base = plane.offset;
+            row.size = std::fabs(plane.offset);
+            for (int j = 0; j < 3; ++j) {
+                const double product = plane.normal[j] * (box.center[j] - frustum.origin[j]);
+                row.base += product;
+                row.size += std::fabs(product);
+            }
+            for (int k = 0; k < 3; ++k)
+                for (int j = 0; j < 3; ++j) {
+                    const double product = plane.normal[j] * double{box.axes[k][j]} * double{box.half_extents[k]};
+                    row.slope[std::size_t(k)] += product;
+                    row.size += std::fabs(product);
+                }
+        }
     }
-    return rows;
-}
+    [[nodiscard]] double value(std::size_t i, const std::array<double, 3>& t) const {
+        const Row& row = rows[i];
+        return row.base + row.slope[0] * t[0] + row.slope[1] * t[1] + row.slope[2] * t[2];
+    }
+};
 
 Dyadic exact_slope(const Plane& plane, const Obb& box, int k) {
     Dyadic sum;
@@ -42,10 +58,14 @@ Dyadic exact_base(const Frustum& frustum, const Plane& plane, const Obb& box) {
     return sum;
 }
 
-bool is_common_point(const Frustum& frustum, const Obb& box, const std::array<double, 3>& t) {
+bool is_common_point(const Frustum& frustum, const Obb& box, const Rows& rows, const std::array<double, 3>& t) {
     for (const double coordinate : t)
         if (!(std::fabs(coordinate) <= 1.0)) return false;
-    for (const Plane& plane : frustum.view()) {
+    for (std::size_t i = 0; i < rows.count; ++i) {
+        const double rough = rows.value(i, t), bound = kRounding * rows.rows[i].size;
+        if (rough > bound) continue;
+        if (rough < -bound) return false;
+        const Plane& plane = frustum.planes[i];
         Dyadic value = exact_base(frustum, plane, box);
         for (int k = 0; k < 3; ++k) value = value + exact_slope(plane, box, k) * Dyadic(t[std::size_t(k)]);
         if (value.sign() < 0) return false;
@@ -53,16 +73,33 @@ bool is_common_point(const Frustum& frustum, const Obb& box, const std::array<do
     return true;
 }
 
-bool excludes(const Frustum& frustum, const Obb& box, const std::vector<double>& factors) {
-    Dyadic largest;
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-        if (factors[i] < 0.0) return false;
-        if (factors[i] > 0.0) largest = largest + Dyadic(factors[i]) * exact_base(frustum, frustum.planes[i], box);
+// Up to three half-spaces, and what each is multiplied by.
+struct Factors {
+    std::array<std::size_t, 3> plane{};
+    std::array<double, 3> factor{};
+    std::size_t count = 0;
+};
+
+bool excludes(const Frustum& frustum, const Obb& box, const Rows& rows, const Factors& factors) {
+    double rough = 0.0, size = 0.0;
+    std::array<double, 3> sum{};
+    for (std::size_t n = 0; n < factors.count; ++n) {
+        const Row& row = rows.rows[factors.plane[n]];
+        if (factors.factor[n] < 0.0) return false;
+        rough += factors.factor[n] * row.base;
+        size += factors.factor[n] * row.size;
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += factors.factor[n] * row.slope[k];
     }
+    rough += std::fabs(sum[0]) + std::fabs(sum[1]) + std::fabs(sum[2]);
+    if (rough < -kRounding * size) return true;
+    if (rough > kRounding * size) return false;
+    Dyadic largest;
+    for (std::size_t n = 0; n < factors.count; ++n)
+        largest = largest + Dyadic(factors.factor[n]) * exact_base(frustum, frustum.planes[factors.plane[n]], box);
     for (int k = 0; k < 3; ++k) {
         Dyadic slope;
-        for (std::size_t i = 0; i < factors.size(); ++i)
-            if (factors[i] > 0.0) slope = slope + Dyadic(factors[i]) * exact_slope(frustum.planes[i], box, k);
+        for (std::size_t n = 0; n < factors.count; ++n)
+            slope = slope + Dyadic(factors.factor[n]) * exact_slope(frustum.planes[factors.plane[n]], box, k);
         largest = largest + abs(slope);
     }
     return largest.sign() < 0;
@@ -75,19 +112,21 @@ double determinant(const Row& a, const Row& b, const Row& c) {
 }
 
 // The middle of all vertices of the common polytope, as far as floating point can tell them.
-bool guess_point(std::vector<Row> rows, std::array<double, 3>& middle) {
+bool guess_point(Rows all, std::array<double, 3>& middle) {
+    auto& rows = all.rows;
+    std::size_t count = all.count;
     for (std::size_t k = 0; k < 3; ++k)
         for (const double side : {-1.0, 1.0}) {
             Row face{};
             face.slope[k] = side;
             face.base = 1.0;
-            rows.push_back(face);
+            rows[count++] = face;
         }
     middle = {};
     int found = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        for (std::size_t j = i + 1; j < rows.size(); ++j)
-            for (std::size_t k = j + 1; k < rows.size(); ++k) {
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = i + 1; j < count; ++j)
+            for (std::size_t k = j + 1; k < count; ++k) {
                 const double det = determinant(rows[i], rows[j], rows[k]);
                 if (std::fabs(det) < 1e-12) continue;
                 std::array<double, 3> t{};
@@ -99,9 +138,7 @@ bool guess_point(std::vector<Row> rows, std::array<double, 3>& middle) {
                     t[c] = determinant(a, b, d) / det;
                 }
                 bool inside = true;
-                for (const Row& row : rows)
-                    inside =
-                        inside && row.base + row.slope[0] * t[0] + row.slope[1] * t[1] + row.slope[2] * t[2] >= -1e-10;
+                for (std::size_t r = 0; r < count && inside; ++r) inside = all.value(r, t) >= -1e-10;
                 if (!inside) continue;
                 ++found;
                 for (std::size_t c = 0; c < 3; ++c) middle[c] += t[c];
@@ -110,48 +147,67 @@ bool guess_point(std::vector<Row> rows, std::array<double, 3>& middle) {
     return found > 0;
 }
 
+// From the box's centre onto the half-space that is missed by most, again and again.
+std::array<double, 3> walk_inside(const Rows& rows) {
+    std::array<double, 3> t{};
+    for (int step = 0; step < 12; ++step) {
+        std::size_t worst = 0;
+        double least = 0.0;
+        for (std::size_t i = 0; i < rows.count; ++i)
+            if (const double value = rows.value(i, t); value < least) {
+                least = value;
+                worst = i;
+            }
+        if (least >= 0.0) break;
+        const auto& slope = rows.rows[worst].slope;
+        double square = 0.0, reach = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            reach += std::fabs(slope[k]);
+            if (t[k] * slope[k] < std::fabs(slope[k])) square += slope[k] * slope[k];
+        }
+        if (!(square > 0.0)) break;
+        for (std::size_t k = 0; k < 3; ++k)
+            t[k] = std::fmax(-1.0, std::fmin(1.0, t[k] + (0.02 * reach - least) / square * slope[k]));
+    }
+    return t;
+}
+
 // The factors, of one to three half-spaces, whose sum over the box is most negative: at the best ones, as many slopes
 // as there are half-spaces less one vanish.
-std::vector<double> guess_factors(const std::vector<Row>& rows) {
-    std::vector<double> best(rows.size(), 0.0), factors(rows.size());
+Factors guess_factors(const Rows& all) {
+    const auto& rows = all.rows;
+    Factors best;
     double best_value = 0.0;
-    const auto consider = [&] {
+    const auto consider = [&](const Factors& guess) {
         double sum = 0.0, value = 0.0;
         std::array<double, 3> slope{};
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            if (factors[i] < 0.0) return;
-            sum += factors[i];
-            value += factors[i] * rows[i].base;
-            for (std::size_t k = 0; k < 3; ++k) slope[k] += factors[i] * rows[i].slope[k];
+        for (std::size_t n = 0; n < guess.count; ++n) {
+            if (guess.factor[n] < 0.0) return;
+            const Row& row = rows[guess.plane[n]];
+            sum += guess.factor[n];
+            value += guess.factor[n] * row.base;
+            for (std::size_t k = 0; k < 3; ++k) slope[k] += guess.factor[n] * row.slope[k];
         }
         value += std::fabs(slope[0]) + std::fabs(slope[1]) + std::fabs(slope[2]);
-        if (sum > 0.0 && value / sum < best_value) {
+        if (sum > 0.0 && value < best_value * sum) {
             best_value = value / sum;
-            best = factors;
+            best = guess;
         }
     };
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        factors.assign(rows.size(), 0.0);
-        factors[i] = 1.0;
-        consider();
-        for (std::size_t j = i + 1; j < rows.size(); ++j)
+    for (std::size_t i = 0; i < all.count; ++i) {
+        consider({{i}, {1.0}, 1});
+        for (std::size_t j = i + 1; j < all.count; ++j)
             for (std::size_t k = 0; k < 3; ++k) {
-                factors.assign(rows.size(), 0.0);
-                factors[i] = std::fabs(rows[j].slope[k]);
-                factors[j] = std::fabs(rows[i].slope[k]);
-                if (rows[i].slope[k] * rows[j].slope[k] < 0.0) consider();
-                for (std::size_t l = j + 1; l < rows.size(); ++l) {
+                if (rows[i].slope[k] * rows[j].slope[k] < 0.0)
+                    consider({{i, j}, {std::fabs(rows[j].slope[k]), std::fabs(rows[i].slope[k])}, 2});
+                for (std::size_t l = j + 1; l < all.count; ++l) {
                     const std::size_t p = (k + 1) % 3, q = (k + 2) % 3;
                     const auto cross = [&](std::size_t a, std::size_t b) {
                         return rows[a].slope[p] * rows[b].slope[q] - rows[a].slope[q] * rows[b].slope[p];
                     };
                     const double x = cross(j, l), y = cross(l, i), z = cross(i, j);
                     const double sign = x + y + z < 0.0 ? -1.0 : 1.0;
-                    factors.assign(rows.size(), 0.0);
-                    factors[i] = sign * x;
-                    factors[j] = sign * y;
-                    factors[l] = sign * z;
-                    consider();
+                    consider({{i, j, l}, {sign * x, sign * y, sign * z}, 3});
                 }
             }
     }
@@ -161,10 +217,11 @@ std::vector<double> guess_factors(const std::vector<Row>& rows) {
 }  // namespace
 
 Proof prove(const Frustum& frustum, const Obb& box) {
-    const std::vector<Row> rows = rows_of(frustum, box);
-    if (excludes(frustum, box, guess_factors(rows))) return Proof::disjoint;
+    const Rows rows(frustum, box);
+    if (is_common_point(frustum, box, rows, walk_inside(rows))) return Proof::meets;
+    if (excludes(frustum, box, rows, guess_factors(rows))) return Proof::disjoint;
     std::array<double, 3> point;
-    if (guess_point(rows, point) && is_common_point(frustum, box, point)) return Proof::meets;
+    if (guess_point(rows, point) && is_common_point(frustum, box, rows, point)) return Proof::meets;
     return Proof::none;
 }
 

@@ -9,8 +9,9 @@ namespace crofton::cli {
 enum class Proof : std::uint8_t { meets, disjoint, none };
 
 // A point of the box that lies in all half-spaces, or a sum of half-spaces, with factors ≥ 0, that excludes the whole
-// box. The point and the factors are guessed in floating point, by trying all vertices; whether they prove anything is
-// decided exactly, by arithmetic on integers of any length. `none` where no guess proves anything: boxes that touch to
+// box. The point and the factors are guessed in floating point, in the end by trying all vertices; whether they prove
+// anything is decided exactly: in floating point where an error bound allows it, else by arithmetic on integers of any
+// length. `none` where no guess proves anything: boxes that touch to
 // within rounding.
 [[nodiscard]] Proof prove(const Frustum& frustum, const Obb& box);
 
