@@ -33,6 +33,8 @@ constexpr Pair kPairs[] = {
 
 class Ratios : public benchmark::ConsoleReporter {
   public:
+    Ratios() : ConsoleReporter(OO_Tabular) {}
+
     void ReportRuns(const std::vector<Run>& runs) override {
         ConsoleReporter::ReportRuns(runs);
         for (const Run& run : runs) {

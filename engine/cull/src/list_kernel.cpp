@@ -3,7 +3,6 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/cull/statistics.hpp>
-#include <type_traits>
 
 #include "row_planes.hpp"
 
@@ -190,23 +189,18 @@ class ChunkQuery {
     }
 
     HWY_INLINE void settle_all(const std::uint32_t* unsettled, std::size_t count) {
-        if constexpr (std::is_same_v<Record, SphereRecord>) {
-            std::copy_n(unsettled, count, out_.undecided + out_.undecided_count);
-            out_.undecided_count += count;
-        } else {
-            for_each_sixteen(unsettled, count, [&](const auto& lanes, const std::uint32_t* which) {
-                Sixteen test = lanes([&](const auto& boxes) HWY_ATTR {
-                    BoxTest result;
-                    result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
-                    result.unsettled = boxes.present;
-                    settle(*in_.view, boxes, rows_.planes, local_, result);
-                    return result;
-                });
-                out_.improper += hwy::PopCount(test.improper);
-                test.unsettled = 0;
-                apply(test, which);
+        for_each_sixteen(unsettled, count, [&](const auto& lanes, const std::uint32_t* which) {
+            Sixteen test = lanes([&](const auto& bounds) HWY_ATTR {
+                BoxTest result;
+                result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
+                result.unsettled = bounds.present;
+                settle(*in_.view, bounds, rows_.planes, local_, result);
+                return result;
             });
-        }
+            out_.improper += hwy::PopCount(test.improper);
+            test.unsettled = 0;
+            apply(test, which);
+        });
     }
 
     static HWY_INLINE std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << (i % 64); }

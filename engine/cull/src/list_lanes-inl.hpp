@@ -2,6 +2,7 @@
 #include <crofton/cull/list_layout.hpp>
 #include <cstring>
 
+#include "ball_tests-inl.hpp"
 #include "block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_LIST_LANES_INL) == defined(HWY_TARGET_TOGGLE)
@@ -79,17 +80,6 @@ HWY_INLINE AabbLanes lanes_of(const Batch<AabbRecord>& batch, std::size_t at, st
     boxes.present = hn::FirstN(DF(), count);
     return boxes;
 }
-
-struct SphereLanes {
-    VF x, y, z, radius;
-    MF present;
-
-    HWY_INLINE VF reach(const KernelPlane& plane) const { return hn::Mul(radius, hn::Set(DF(), plane.length_f)); }
-    // The radius, the normal's length and their product round by 2^-24 of the result each, the sums with it by as much.
-    HWY_INLINE VF slack(LocalPlane local) const {
-        return hn::MulAdd(radius, hn::Set(DF(), 0x1p-20f), hn::Set(DF(), local.slack));
-    }
-};
 
 HWY_INLINE SphereLanes lanes_of(const Batch<SphereRecord>& batch, std::size_t at, std::size_t count) {
     SphereLanes spheres;

@@ -2,7 +2,8 @@
 // not reach the ball: Σ λ_i s_i + r |Σ λ_i n_i| < 0, with s_i the value of plane i at the centre. The best weights are
 // those of the nearest point of the volume, which lies where at most three planes of independent normals vanish:
 // G λ = −s over these planes, G their normals' products. So it is enough to try all sets of one to three planes; the
-// adjugate of G stands for its inverse, and squares for roots, so that everything is sums and products.
+// adjugate of G stands for its inverse, and squares for roots, so that everything is sums and products. Planes that the
+// whole ball is inside of may be left out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -72,17 +73,20 @@ class BallTest {
             }
         }
         square_ = Number(sphere.radius) * Number(sphere.radius);
-    }
-
-    [[nodiscard]] Answer is_inside() const {
-        Answer result = Answer::yes;
+        is_inside_ = Answer::yes;
         for (std::uint32_t i = 0; i < count_; ++i) {
             const Number margin = value_[i] * value_[i] - square_ * dot(i, i);
-            if (value_[i].is_negative() || margin.is_negative()) return Answer::no;
-            if (!kExact && !(value_[i].is_positive() && margin.is_positive())) result = Answer::unknown;
+            const bool rejected = value_[i].is_negative() || margin.is_negative();
+            const bool accepted = kExact ? !rejected : value_[i].is_positive() && margin.is_positive();
+            if (!accepted) crossed_[crossed_count_++] = i;
+            if (rejected)
+                is_inside_ = Answer::no;
+            else if (!accepted && is_inside_ == Answer::yes)
+                is_inside_ = Answer::unknown;
         }
-        return result;
     }
+
+    [[nodiscard]] Answer is_inside() const { return is_inside_; }
 
     // By sets of at most `largest` planes.
     [[nodiscard]] Answer is_outside(std::uint32_t largest) const {
@@ -91,12 +95,12 @@ class BallTest {
             if (answer == Answer::yes || (answer == Answer::unknown && result == Answer::no)) result = answer;
             return answer == Answer::yes;
         };
-        for (std::uint32_t i = 0; i < count_; ++i) {
-            if (note(excludes<1>({i}))) return result;
-            for (std::uint32_t j = i + 1; largest > 1 && j < count_; ++j) {
-                if (note(excludes<2>({i, j}))) return result;
-                for (std::uint32_t k = j + 1; largest > 2 && k < count_; ++k)
-                    if (note(excludes<3>({i, j, k}))) return result;
+        for (std::uint32_t i = 0; i < crossed_count_; ++i) {
+            if (note(excludes<1>({crossed_[i]}))) return result;
+            for (std::uint32_t j = i + 1; largest > 1 && j < crossed_count_; ++j) {
+                if (note(excludes<2>({crossed_[i], crossed_[j]}))) return result;
+                for (std::uint32_t k = j + 1; largest > 2 && k < crossed_count_; ++k)
+                    if (note(excludes<3>({crossed_[i], crossed_[j], crossed_[k]}))) return result;
             }
         }
         return result;
@@ -149,7 +153,9 @@ class BallTest {
         return Answer::unknown;
     }
 
-    std::uint32_t count_;
+    std::uint32_t count_, crossed_count_ = 0;
+    std::uint32_t crossed_[Frustum::kMaxPlanes];
+    Answer is_inside_;
     Number normal_[Frustum::kMaxPlanes][3], value_[Frustum::kMaxPlanes], square_;
 };
 
