@@ -10,6 +10,7 @@ namespace {
 constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
 // Candidates, their twins, certificates, walks and programme slots, with the growth of their arrays.
 constexpr std::size_t kBytesPerHalfEdge = 96;
+constexpr std::size_t kLongRing = 3000, kFewCandidates = 40;
 constexpr std::size_t kBytesPerTriangleSide = 2 * sizeof(TriangleSupport::Lists::Entry);
 
 double length(std::span<const glm::dvec2> points, const Segment& s) {
@@ -31,9 +32,12 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
         return false;
     }
     const auto points = domain.mesh().points;
-    const bool holes = domain.ring_count() > 1;
-    if (!holes) find_faces(graph_, CandidateGraph::kConstraint, faces_);
-    if (holes || has_pieces()) {
+    // Long rings with few candidates are pruned too: sums of thousands of lengths that tie are costly to compare.
+    const bool long_ring =
+        domain.vertex_count() > kLongRing && graph_.half_edge_count() < kFewCandidates * domain.vertex_count();
+    const bool prune = domain.ring_count() > 1 || long_ring;
+    if (!prune) find_faces(graph_, CandidateGraph::kConstraint, faces_);
+    if (prune || has_pieces()) {
         skeleton_.prune(points, graph_, watch);
         skeleton_.mark_certain(domain.mesh(), graph_);
         find_faces(graph_, kFixed, faces_);
