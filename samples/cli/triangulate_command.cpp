@@ -12,6 +12,7 @@
 #include "polygon_svg.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "triangulate_compare.hpp"
 #include "triangulate_meshes.hpp"
 
 namespace crofton::cli {
@@ -25,7 +26,9 @@ using Clock = std::chrono::steady_clock;
 struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
     double seconds = 10.0, tolerance = -1.0;
-    bool no_indices = false;
+    bool no_indices = false, compare = false;
+    std::uint64_t frusta = 100'000;
+    std::size_t least_vertices = 5;
 };
 
 Result<Method> method_from(const std::string& name) {
@@ -133,6 +136,12 @@ Result<int> run(const TriangulateOptions& options) {
         return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --svg can go to stdout");
     }
     if (!(options.seconds >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
+    if (options.compare) {
+        if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
+            return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
+        return run_compare({options.file, options.map, options.json, options.seconds, options.tolerance, options.frusta,
+                            options.least_vertices});
+    }
     if (is_polygon_file(options.file)) {
         if (!options.out.empty())
             return fail(ErrorCode::invalid_argument, kNoItem, "--out is for meshes: .obj, .glb, .gltf");
@@ -154,6 +163,7 @@ constexpr const char* kExamples =
     "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
     "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
     "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
+    "  crofton triangulate glyphs.poly --compare                    what each method costs frusta and pixels\n"
     "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n";
 
 }  // namespace
@@ -171,6 +181,12 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_option(
         "--tolerance", options->tolerance,
         "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
+    command->add_flag("--compare", options->compare,
+                      "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
+    command->add_option("--frusta", options->frusta, "How many random frusta --compare measures with")
+        ->capture_default_str();
+    command->add_option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out")
+        ->capture_default_str();
     command->add_flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
     command->add_option("--json", options->json, "Write results as JSON; - for stdout");
     command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout");

@@ -44,6 +44,10 @@ json to_json(const std::string& name, const TriangleMesh& mesh, const triangulat
 
 }  // namespace
 
+double patch_tolerance(const TriangleMesh& mesh, double tolerance) {
+    return tolerance >= 0.0 || mesh.positions.empty() ? std::max(tolerance, 0.0) : 1e-6 * size_of(mesh);
+}
+
 Result<int> run_meshes(const MeshRun& run) {
     auto source = assets::load_scene(run.file);
     if (!source) return tl::unexpected(source.error());
@@ -58,7 +62,7 @@ Result<int> run_meshes(const MeshRun& run) {
         for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
             meshes.push_back(source->scene.mesh(m));
             triangulate::PatchOptions options;
-            options.tolerance = run.tolerance >= 0.0 ? run.tolerance : 1e-6 * size_of(meshes.back());
+            options.tolerance = patch_tolerance(meshes.back(), run.tolerance);
             options.triangulation = {.method = run.method, .seconds = run.seconds};
             const auto start = Clock::now();
             const auto report = triangulate::retriangulate_planar_patches(meshes.back(), options);
