@@ -82,6 +82,18 @@ BENCHMARK_CAPTURE(contours, minimum_weight, Method::minimum_weight)
     ->ArgsProduct({{60, 120, 240}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
+// 124,400 vertices with 2,442 holes, and 4,332 without a hole.
+void large_contours(benchmark::State& state, bench::Contours which) {
+    measure(state, {bench::noise_contours(which)}, Method::minimum_weight);
+}
+BENCHMARK_CAPTURE(large_contours, many_holes, bench::Contours{.side = 677, .wavelength = 4.0, .level = -0.2})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+BENCHMARK_CAPTURE(large_contours, no_hole,
+                  bench::Contours{.side = 240, .wavelength = 12.0, .level = -0.1, .holes = false})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(3);
+
 #if defined(CROFTON_HAVE_CGAL)
 // Constraints only, no marking of what lies inside and no check of the rings.
 void cgal_delaunay(benchmark::State& state, const char* name, std::size_t most) {

@@ -150,7 +150,8 @@ Result<int> run(const TriangulateOptions& options) {
     if (!options.svg.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
     return run_meshes(
-        {options.file, options.method, *method, options.json, options.out, options.seconds, options.tolerance});
+        {options.file, options.method, *method, options.json, options.out, options.seconds, options.tolerance,
+                       options.no_indices});
 }
 
 constexpr const char* kExamples =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <crofton/triangulate/planar_patches.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -28,8 +29,29 @@ double size_of(const TriangleMesh& mesh) {
     return std::max({d.x, d.y, d.z});
 }
 
-json to_json(const std::string& name, const TriangleMesh& mesh, const triangulate::PatchReport& r,
+json to_json(const std::string& name, const TriangleMesh& mesh, const triangulate::PatchResult& r, bool no_indices) {
+    json entry{{"name", name},
+               {"vertices", r.vertices},
+               {"holes", r.holes},
+               {"triangle_count", r.triangles.size()},
+               {"weight_before", r.weight_before},
+               {"weight", r.weight_after},
+               {"optimal", r.optimal},
+               {"gap", std::isfinite(r.gap) ? json(r.gap) : json(nullptr)},
+               {"microseconds", r.microseconds}};
+    if (no_indices) return entry;
+    json triangles = json::array();
+    for (const std::size_t t : r.triangles)
+        triangles.push_back({mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]});
+    entry["triangles"] = std::move(triangles);
+    return entry;
+}
+
+json to_json(const std::string& name, const TriangleMesh& mesh, const triangulate::PatchReport& r, bool no_indices,
              double microseconds) {
+    json polygons = json::array();
+    for (std::size_t i = 0; i < r.results.size(); ++i)
+        polygons.push_back(to_json(name + "_" + std::to_string(i), mesh, r.results[i], no_indices));
     return {{"name", name},
             {"vertices", mesh.positions.size()},
             {"triangles", mesh.triangle_count()},
@@ -39,7 +61,8 @@ json to_json(const std::string& name, const TriangleMesh& mesh, const triangulat
             {"unproven", r.unproven},
             {"weight_before", r.weight_before},
             {"weight_after", r.weight_after},
-            {"microseconds", microseconds}};
+            {"microseconds", microseconds},
+            {"polygons", std::move(polygons)}};
 }
 
 }  // namespace
@@ -70,7 +93,7 @@ Result<int> run_meshes(const MeshRun& run) {
             if (!report)
                 return fail(report.error().code, m,
                             run.file + ": " + source->scene.mesh_name(m) + ": " + report.error().message);
-            entries.push_back(to_json(source->scene.mesh_name(m), meshes.back(), *report, time));
+            entries.push_back(to_json(source->scene.mesh_name(m), meshes.back(), *report, run.no_indices, time));
             total.patches += report->patches;
             total.improved += report->improved;
             total.triangles += report->triangles;

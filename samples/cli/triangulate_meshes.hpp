@@ -12,6 +12,7 @@ struct MeshRun {
     std::string json, out;
     double seconds = 10.0;
     double tolerance = -1.0;  // negative: a millionth of each mesh's size
+    bool no_indices = false;
 };
 
 // `tolerance`, or where it is negative a millionth of the mesh's size.

@@ -74,6 +74,29 @@ TEST_SUITE("cli/triangulate") {
         CHECK(run.out.find("</svg>") != std::string::npos);
     }
 
+    TEST_CASE("--compare gives all methods' weights, and predictions with what was measured") {
+        write_contents(scratch().file("l.poly"),
+                       "P a 2\n6 0 0 9 0 9 3 3 3 3 9 0 9\n4 1 1 2 1 2 2 1 2\nP small 1\n3 0 0 1 0 0 1\n");
+        const std::string file = "triangulate '" + scratch().file("l.poly") + "' --compare ";
+        const CliRun run = run_cli(file + "--frusta 20000 --json -");
+        CHECK(run.status == 0);
+        const auto document = run.json();
+        CHECK(document["polygons"] == 1);
+        REQUIRE(document["methods"].size() == 3);
+        const double minimum = document["methods"][2]["weight"];
+        for (const auto& row : document["methods"]) {
+            CHECK(row["weight"].get<double>() >= minimum);
+            for (const auto& [key, counted] : {std::pair("triangles_passed", "measured"), std::pair("pixel_quads", "met")}) {
+                const auto& of = row[key];
+                CHECK(std::fabs(of[counted].get<double>() - of["predicted"].get<double>()) <
+                      5.0 * of["standard_error"].get<double>());
+            }
+        }
+        CHECK(run_cli(file + "--svg -").status == 2);
+        CHECK(run_cli(file + "--frusta 0").status == 2);
+        CHECK(run_cli(file + "--least-vertices 100").status == 2);
+    }
+
     TEST_CASE("a mesh is written as GLB with its patches lighter, and reads back") {
         // A flat strip as a fan from one corner.
         std::string obj;
@@ -90,6 +113,13 @@ TEST_SUITE("cli/triangulate") {
         CHECK(before["improved"] == 1);
         // Eight unit squares: seven uprights of length 1 and eight diagonals of length √2.
         CHECK(before["weight_after"].get<double>() == doctest::Approx(7.0 + 8.0 * std::sqrt(2.0)));
+        // Each patch has the keys that a polygon has; its triangles are in the mesh's own indices.
+        const auto polygons = run.json()["meshes"][0]["polygons"];
+        REQUIRE(polygons.size() == 1);
+        CHECK(polygons[0]["triangles"].size() == 16);
+        CHECK(polygons[0]["vertices"] == 18);
+        CHECK(polygons[0]["optimal"] == true);
+        for (const char* key : {"name", "holes", "weight", "gap", "microseconds"}) CHECK(polygons[0].contains(key));
         const CliRun again = run_cli("triangulate '" + glb + "' --json -");
         CHECK(again.status == 0);
         CHECK(again.json()["summary"]["improved"] == 0);

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/triangulate/planar_patches.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace crofton::triangulate {
 namespace {
@@ -185,6 +187,21 @@ bool faces_alike(const TriangleMesh& mesh, const PlanarPatch& patch, const Trian
     return true;
 }
 
+PatchResult describe(const PlanarPatch& patch, bool usable, bool lighter, const Triangulation& result) {
+    PatchResult r;
+    r.triangles = patch.triangles;
+    r.vertices = patch.polygon.points.size();
+    r.holes = patch.polygon.ring_count() - 1;
+    r.weight_before = patch.weight;
+    r.weight_after = lighter ? result.weight : patch.weight;
+    r.optimal = usable && result.optimal;
+    // What stays as it was is as near to the minimum as its weight is to the bound that the new one gave.
+    const double factor = usable && result.weight > 0.0 ? r.weight_after / result.weight : 1.0;
+    r.gap = usable ? (r.optimal ? 0.0 : std::max(0.0, (1.0 + result.gap) * factor - 1.0))
+                   : std::numeric_limits<double>::infinity();
+    return r;
+}
+
 }  // namespace
 
 Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double tolerance) {
@@ -202,6 +219,7 @@ Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const Patch
         ++report.patches;
         report.triangles += patch.triangles.size();
         report.weight_before += patch.weight;
+        const auto begin = std::chrono::steady_clock::now();
         const auto done = triangulator.triangulate(patch.polygon, options.triangulation, result);
         if (!done && done.error().code == ErrorCode::cancelled) return tl::unexpected<Error>(done.error());
         const auto first = 3 * static_cast<std::size_t>(patch.triangles[0]);
@@ -211,12 +229,13 @@ Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const Patch
             done && result.triangles.size() == patch.triangles.size() && faces_alike(mesh, patch, result, n);
         if (!usable || (options.triangulation.method == Method::minimum_weight && !result.optimal)) ++report.unproven;
         // Differences below the rounding of the projection are none.
-        if (!usable || result.weight >= patch.weight * (1.0 - 1e-12)) {
-            report.weight_after += patch.weight;
-            continue;
-        }
+        const bool lighter = usable && result.weight < patch.weight * (1.0 - 1e-12);
+        report.weight_after += lighter ? result.weight : patch.weight;
+        report.results.push_back(describe(patch, usable, lighter, result));
+        const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
+        report.results.back().microseconds = time.count();
+        if (!lighter) continue;
         ++report.improved;
-        report.weight_after += result.weight;
         for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
             for (std::size_t k = 0; k < 3; ++k) {
                 mesh.indices[3 * std::size_t{patch.triangles[i]} + k] = patch.vertices[result.triangles[i][k]];

@@ -22,12 +22,23 @@ struct PatchOptions {
     Options triangulation;
 };
 
+// What became of one patch.
+struct PatchResult {
+    Vector<std::uint32_t> triangles;  // of the mesh, as in PlanarPatch; their indices are the new ones
+    std::size_t vertices = 0, holes = 0;
+    double weight_before = 0.0, weight_after = 0.0;
+    bool optimal = false;  // weight_after is proven minimal
+    double gap = 0.0;      // as in Triangulation
+    double microseconds = 0.0;
+};
+
 struct PatchReport {
     std::size_t patches = 0;    // of two or more triangles
     std::size_t improved = 0;   // that became lighter
     std::size_t triangles = 0;  // in patches
     std::size_t unproven = 0;   // patches whose weight is not proven minimal, or that could not be triangulated
     double weight_before = 0.0, weight_after = 0.0;  // of all patches
+    Vector<PatchResult> results;                     // in the order of their first triangles
 };
 
 // All patches of two or more triangles, in the order of their first triangles. Triangles without area and sides shared
