@@ -97,6 +97,33 @@ TEST_SUITE("fit/exact") {
                 }
     }
 
+    TEST_CASE("whatever is thin or flat: but for the rounding of the axes to float, the gap is closed, by volume too") {
+        std::mt19937 random(9);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        for (const double thin : {1e-2, 1e-4, 1e-6, 1e-8, 0.0})
+            for (int run = 0; run < 8; ++run)
+                for (const auto& criterion :
+                     {measure::minimal_volume(), measure::minimal_area(), measure::minimal_perimeter()}) {
+                    const glm::dmat3 turn = random_rotation(random);
+                    Points points;
+                    for (int i = 0; i < 30; ++i)
+                        points.push_back(turn * glm::dvec3(unit(random), 0.7 * unit(random), thin * unit(random)));
+                    const auto fitted = fit::fit_exact(view(points), {.criterion = criterion}).value();
+                    INFO(thin, " ", criterion.volume_weight);
+                    CHECK(fitted.complete);
+                    CHECK(contains_all(fitted.box, points));
+                    CHECK(fitted.rounding >= 0.0);
+                    CHECK(fitted.rounding <= fitted.gap);
+                    // Widths are known to 1e-13 of the size.
+                    const double noise = thin > 0.0 ? 3e-13 / thin : 0.0;
+                    CHECK(fitted.gap - fitted.rounding <= 2.1e-7 + noise);
+                    // A tilt of 6e-8 along edges of length 2 and 1.4.
+                    const double tilted = criterion.volume_weight > 0.0 && thin > 0.0 ? 4e-7 / thin : 1e-6;
+                    if (thin > 0.0 || criterion.volume_weight == 0.0) CHECK(fitted.rounding <= tilted);
+                    if (thin == 0.0 && criterion.volume_weight > 0.0) CHECK(fitted.lower_bound == 0.0);
+                }
+    }
+
     TEST_CASE("a box, turned, is its own best box") {
         std::mt19937 random(2);
         for (int run = 0; run < 60; ++run) {

@@ -174,6 +174,8 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
     fit.value = options.criterion(measure::of_box(fit.box));
     fit.lower_bound = flat ? 0.0 : std::min(found.lower_bound * normalised.scale, fit.value);
     fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;
+    const double unrounded = flat ? 0.0 : found.best.value * normalised.scale;
+    fit.rounding = fit.value > 0.0 ? std::clamp((fit.value - unrounded) / fit.value, 0.0, fit.gap) : 0.0;
     fit.complete = found.complete;
     fit.cells = found.cells;
     fit.subset = found.subset;
