@@ -47,6 +47,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
         fitted.value = exact->value;
         fitted.lower_bound = exact->lower_bound;
         fitted.gap = exact->gap;
+        fitted.rounding = exact->rounding;
     } else {
         const auto quality = request.quality == "fast" ? fit::Quality::fast : fit::Quality::tight;
         const auto box = fit::fit_obb(points, {criterion, quality});
@@ -67,18 +68,14 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
     const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
     const Stopwatch watch;
     const auto hull = convex_hull(span);
-    mesh.hull_count_milliseconds = watch.milliseconds();
+    mesh.hull_milliseconds = watch.milliseconds();
     if (!hull) return named(hull.error());
     mesh.vertices = points->size();
     mesh.hull_vertices = hull->vertices.size();
-    for (std::size_t i = 0; i < hull->triangles.size(); ++i) {
-        const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
-        if (hull->triangles[i] < hull->triangles[next])
-            mesh.hull_edges.insert(mesh.hull_edges.end(), {span[hull->triangles[i]], span[hull->triangles[next]]});
-    }
-    for (std::size_t i = 0; hull->rank == 2 && i < hull->vertices.size(); ++i)
-        mesh.hull_edges.insert(mesh.hull_edges.end(),
-                               {span[hull->vertices[i]], span[hull->vertices[(i + 1) % hull->vertices.size()]]});
+    for (const auto i : hull->triangles) mesh.hull_triangles.push_back(span[i]);
+    for (std::size_t i = 0; hull->rank < 3 && i < hull->vertices.size(); ++i)
+        mesh.outline.insert(mesh.outline.end(),
+                            {span[hull->vertices[i]], span[hull->vertices[(i + 1) % hull->vertices.size()]]});
     const auto fit_by = [&](const std::string& name, const measure::Criterion& by) {
         return fit_box(span, by, request).map([&](FittedBox fitted) {
             fitted.criterion = name;

@@ -15,14 +15,16 @@ struct FittedBox {
     double value = 0.0;
     std::optional<double> lower_bound;  // of `exact` only: the others prove nothing
     std::optional<double> gap;
-    double milliseconds = 0.0;  // of the search, which needs no hull
+    std::optional<double> rounding;  // the part of the gap that storing the axes as floats costs
+    double milliseconds = 0.0;       // of the search, which needs no hull
 };
 
 struct FittedMesh {
     std::string file;
     std::size_t vertices = 0, hull_vertices = 0;
-    double hull_count_milliseconds = 0.0;  // to count them, and for the drawing
-    std::vector<glm::dvec3> hull_edges;    // two ends each
+    double hull_milliseconds = 0.0;  // for its count and the drawing: the search uses no hull
+    // For the drawing: the hull's triangles, three corners each; of a flat set the outline instead, two ends each.
+    std::vector<glm::dvec3> hull_triangles, outline;
     FittedBox chosen;
     std::vector<FittedBox> others;  // volume, area and perimeter, when several files are compared
 };
