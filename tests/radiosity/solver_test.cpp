@@ -99,8 +99,9 @@ TEST_SUITE("radiosity/solver") {
         options.outside.to_sun = glm::dvec3(0.0);
         CHECK(Solver::create(dark, options).error().code == ErrorCode::degenerate);
         options = quick();
-        options.lines = 0;
-        CHECK_FALSE(Solver::create(dark, options).has_value());
+        options.outside.sky = glm::vec3(1.0f);
+        options.first_shot = 0;
+        CHECK(Solver::create(dark, options).error().code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("furnace: in a closed box that glows with 1 and reflects rho, the radiosity is 1/(1 - rho) everywhere") {

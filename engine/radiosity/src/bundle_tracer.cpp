@@ -164,6 +164,10 @@ Result<BundleTracer> BundleTracer::build(const TriangleMesh& mesh) {
     return tracer;
 }
 
+std::size_t BundleTracer::bytes() const {
+    return blocks_.capacity() * sizeof(detail::DrawnTriangles);
+}
+
 void BundleTracer::place_samples(const Bundle& bundle, Scratch& scratch) const {
     scratch.sample_x.resize(bundle.cells() + 8);
     scratch.sample_y.resize(bundle.cells() + 8);

@@ -51,6 +51,10 @@ Result<LineTracer> LineTracer::build(const TriangleMesh& mesh) {
     return tracer;
 }
 
+std::size_t LineTracer::bytes() const {
+    return nodes_.capacity() * sizeof(detail::TracerNode) + leaves_.capacity() * sizeof(detail::TracerLeaf);
+}
+
 void LineTracer::all_hits(std::span<const measure::Line> lines, LineHits& result) const {
     const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
     std::array<detail::FlatRay, kBatch> rays;

@@ -1,4 +1,5 @@
 // What a solver knows after some runs: means, errors, checkpoints.
+#include <algorithm>
 #include <cmath>
 #include <crofton/radiosity/solver.hpp>
 #include <cstring>
@@ -7,7 +8,7 @@
 namespace crofton::radiosity {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31796469'6f736964u;  // names this format and its byte order
+constexpr std::uint64_t kMagic = 0x32796469'6f736964u;  // names this format and its byte order
 
 struct Header {
     std::uint64_t magic = kMagic, fingerprint = 0, patches = 0, runs = 0, lines = 0, unseen = 0, seen = 0;
@@ -19,15 +20,35 @@ std::uint64_t hash(std::uint64_t seed, const void* data, std::size_t bytes) {  /
     return seed;
 }
 
+// Light and its squares, then the counts of rays, by patch.
+std::size_t state_bytes(std::size_t patches) {
+    return patches * (2 * sizeof(glm::dvec3) + 2 * sizeof(std::uint64_t));
+}
+
 }  // namespace
 
-void Solver::add_run(const Light& total) {
+void Solver::add_run(const Light& arrived) {
     ++runs_;
-    for (std::size_t i = 0; i < total.size(); ++i) {
-        sum_[i] += total[i];
-        squares_[i] += total[i] * total[i];
-        mean_[i] = glm::vec3(sum_[i] / static_cast<double>(runs_));
+    for (std::size_t i = 0; i < arrived.size(); ++i) {
+        sum_[i] += arrived[i];
+        squares_[i] += arrived[i] * arrived[i];
     }
+    update_mean();
+}
+
+void Solver::update_mean() {
+    const double n = static_cast<double>(std::max<std::uint64_t>(1, runs_));
+    for (std::size_t i = 0; i < mean_.size(); ++i) {
+        const Material& m = patches_->materials[i];
+        mean_[i] = glm::vec3(glm::dvec3(m.emission) + glm::dvec3(m.reflectance) * sum_[i] / n);
+    }
+}
+
+Vector<glm::vec3> Solver::irradiance() const {
+    Vector<glm::vec3> result(sum_.size());
+    const double n = static_cast<double>(std::max<std::uint64_t>(1, runs_));
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = glm::vec3(sum_[i] / n);
+    return result;
 }
 
 double Solver::relative_error() const {
@@ -36,12 +57,19 @@ double Solver::relative_error() const {
     double error = 0.0, size = 0.0;
     for (std::size_t i = 0; i < sum_.size(); ++i)
         for (int k = 0; k < 3; ++k) {
-            const double mean = sum_[i][k] / n;
+            const double mean = sum_[i][k] / n, reflectance = static_cast<double>(patches_->materials[i].reflectance[k]);
             const double variance = std::max(0.0, (squares_[i][k] / n - mean * mean) * n / (n - 1.0));
-            error += patches_->areas[i] * variance / n;
-            size += patches_->areas[i] * mean * mean;
+            const double light = static_cast<double>(patches_->materials[i].emission[k]) + reflectance * mean;
+            error += patches_->areas[i] * reflectance * reflectance * variance / n;
+            size += patches_->areas[i] * light * light;
         }
     return size > 0.0 ? std::sqrt(error / size) : 0.0;
+}
+
+std::size_t Solver::bytes() const {
+    const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    return of(sum_) + of(squares_) + of(drawn_) + of(buried_) + of(mean_) + of(rays_) + of(triangles_) +
+           of(first_triangle_) + of(triangle_sums_) + tracer_.bytes() + bundles_.bytes();
 }
 
 double Solver::unseen() const {
@@ -53,7 +81,8 @@ std::uint64_t Solver::fingerprint() const {
     const auto add = [&](const auto& value) { h = hash(h, &value, sizeof value); };
     add(options_.lines);
     add(options_.first_shot);
-    add(source_.method());
+    add(method_);
+    add(options_.sequence);
     add(options_.transport);
     add(options_.seed);
     add(options_.cutoff);
@@ -69,19 +98,24 @@ std::uint64_t Solver::fingerprint() const {
 
 Vector<std::byte> Solver::checkpoint() const {
     const Header header{kMagic, fingerprint(), sum_.size(), runs_, lines_traced_, unseen_, seen_};
-    const std::size_t size = sum_.size() * sizeof(glm::dvec3);
-    Vector<std::byte> bytes(sizeof header + 2 * size + sizeof(std::uint64_t));
-    std::memcpy(bytes.data(), &header, sizeof header);
-    std::memcpy(bytes.data() + sizeof header, sum_.data(), size);
-    std::memcpy(bytes.data() + sizeof header + size, squares_.data(), size);
+    Vector<std::byte> bytes(sizeof header + state_bytes(sum_.size()) + sizeof(std::uint64_t));
+    std::byte* to = bytes.data();
+    const auto put = [&](const void* data, std::size_t size) {
+        std::memcpy(to, data, size);
+        to += size;
+    };
+    put(&header, sizeof header);
+    put(sum_.data(), sum_.size() * sizeof(glm::dvec3));
+    put(squares_.data(), squares_.size() * sizeof(glm::dvec3));
+    put(drawn_.data(), drawn_.size() * sizeof(std::uint64_t));
+    put(buried_.data(), buried_.size() * sizeof(std::uint64_t));
     const std::uint64_t check = hash(kMagic, bytes.data(), bytes.size() - sizeof(std::uint64_t));
-    std::memcpy(bytes.data() + bytes.size() - sizeof check, &check, sizeof check);
+    put(&check, sizeof check);
     return bytes;
 }
 
 Result<void> Solver::resume(std::span<const std::byte> bytes) {
     Header header;
-    const std::size_t size = sum_.size() * sizeof(glm::dvec3);
     std::uint64_t check = 0;
     if (bytes.size() < sizeof header + sizeof check) return fail(ErrorCode::parse, kNoItem, "checkpoint: too short");
     std::memcpy(&header, bytes.data(), sizeof header);
@@ -89,16 +123,22 @@ Result<void> Solver::resume(std::span<const std::byte> bytes) {
     if (header.magic != kMagic || check != hash(kMagic, bytes.data(), bytes.size() - sizeof check))
         return fail(ErrorCode::parse, kNoItem, "checkpoint: damaged, or not one of ours");
     if (header.patches != sum_.size() || header.fingerprint != fingerprint() ||
-        bytes.size() != sizeof header + 2 * size + sizeof check)
+        bytes.size() != sizeof header + state_bytes(sum_.size()) + sizeof check)
         return fail(ErrorCode::invalid_argument, kNoItem, "checkpoint: of another scene or other options");
-    std::memcpy(sum_.data(), bytes.data() + sizeof header, size);
-    std::memcpy(squares_.data(), bytes.data() + sizeof header + size, size);
+    const std::byte* from = bytes.data() + sizeof header;
+    const auto get = [&](auto& values) {
+        std::memcpy(values.data(), from, values.size() * sizeof(values[0]));
+        from += values.size() * sizeof(values[0]);
+    };
+    get(sum_);
+    get(squares_);
+    get(drawn_);
+    get(buried_);
     runs_ = header.runs;
     lines_traced_ = header.lines;
     unseen_ = header.unseen;
     seen_ = header.seen;
-    for (std::size_t i = 0; i < sum_.size(); ++i)
-        mean_[i] = runs_ == 0 ? glm::vec3(0.0f) : glm::vec3(sum_[i] / static_cast<double>(runs_));
+    update_mean();
     return {};
 }
 

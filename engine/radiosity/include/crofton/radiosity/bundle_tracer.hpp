@@ -57,7 +57,7 @@ class BundleTracer {
     void all_hits(const Bundle& bundle, Scratch& scratch, LineHits& result) const;
 
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
-    [[nodiscard]] std::size_t triangle_count() const { return triangles_; }
+    [[nodiscard]] std::size_t bytes() const;
 
   private:
     BundleTracer();

@@ -52,6 +52,7 @@ class LineTracer {
     void first_hits(std::span<const Ray> rays, std::span<Hit> result) const;
 
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
+    [[nodiscard]] std::size_t bytes() const;
 
   private:
     LineTracer();

@@ -1,6 +1,7 @@
 // Light in a scene of patches, by random walks along global lines: usable at any time, better with every run.
 #pragma once
 #include <crofton/core/executor.hpp>
+#include <crofton/radiosity/bundle_tracer.hpp>
 #include <crofton/radiosity/line_source.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/radiosity/patches.hpp>
@@ -19,26 +20,35 @@ struct Outside {
 };
 
 enum class Transport : std::uint8_t {
-    global,  // every bounce by global lines, each stretch used both ways (multipath); the first shot by local lines
+    global,  // every bounce by global lines, each stretch used both ways (multipath)
     local,   // every bounce by local lines from each patch, as many rays as global lines would give
 };
 
 struct SolverOptions {
-    std::uint64_t lines = 1u << 18;       // global lines per bounce, rounded up to whole blocks
-    std::uint64_t first_shot = 1u << 18;  // rays from the light sources per run
-    std::optional<LineMethod> method;     // absent: choose_method
+    std::uint64_t lines = 0;              // global lines of a run's first gathering; 0: about 32 rays a patch
+    std::uint64_t first_shot = 1u << 18;  // rays from the lamps per run
+    std::optional<LineMethod> method;     // absent: bundles
     Transport transport = Transport::global;
+    measure::Sequence sequence = measure::Sequence::quasi_random;
     std::uint64_t seed = 1;
-    double cutoff = 1e-4;  // a run ends when what still travels is below this share of all light
+    double cutoff = 1e-3;  // a run ends when what still travels is below this share of all light
     std::uint32_t most_bounces = 200;
     Outside outside;
 };
 
-// One run: the light sources shoot local lines once (the first-shot improvement: small bright lamps are a waste of
-// global lines), then in every bounce each patch gathers the mean of what its rays along N new global lines bring, and
-// gives back its share. Runs are independent; the result is their mean, its error their spread: it falls as 1/√runs.
-// What is not exact: a bounce's mean is unbiased wherever at least one ray starts on the patch; one without any (about
-// e^−(expected rays) of the time) gathers nothing. unseen() counts them: give more lines where it is not small.
+// One run: lamps shoot local lines and patches look for the sun (first-shot improvement: what is small and bright is a
+// waste of global lines); then each patch gathers the mean of what its rays along N global lines bring: the sky, and
+// what the runs before know of all patches' light. What that gathering finds beyond what was known travels on, gathered
+// along new and fewer lines, until it is spent. Whatever was known, a run's expectation is the light itself; knowing it
+// well only takes the spread of the many bounces away (a control variate).
+//
+// The result is the mean of the runs, its error their spread: it falls as 1/√runs. With quasi-random numbers the true
+// error is smaller than this estimate, since runs share a sequence and make up for each other.
+//
+// Where solids intersect, parts of patches lie inside: a ray from there meets a back first. Such rays count as not
+// drawn, so a patch's light is that of the part that can be seen.
+// What is not exact: a patch without any ray in a gathering is given four local ones. unseen() is the share of patches
+// that even so saw nothing: those buried.
 class Solver {
   public:
     // The patches must outlive the solver. Errors: no light at all, neither emission, sky nor sun; numbers out of
@@ -50,13 +60,17 @@ class Solver {
 
     [[nodiscard]] std::uint64_t runs() const { return runs_; }
     [[nodiscard]] std::span<const glm::vec3> radiosity() const { return mean_; }  // by patch; the mean over runs
+    // What arrives per unit area; of patches of reflectance 0 too.
+    [[nodiscard]] Vector<glm::vec3> irradiance() const;
     // Root of the area-weighted mean square standard error over that of the radiosity, all channels together; infinite
     // before the second run.
     [[nodiscard]] double relative_error() const;
-    [[nodiscard]] double unseen() const;  // mean share of patches that no ray of a bounce started on
-    [[nodiscard]] LineMethod method() const { return source_.method(); }
+    [[nodiscard]] double unseen() const;
+    [[nodiscard]] LineMethod method() const { return method_; }
     [[nodiscard]] std::uint64_t lines_traced() const { return lines_traced_; }
     [[nodiscard]] std::uint32_t bounces_of_last_run() const { return bounces_; }
+    // All that this object keeps, patches apart: linear in the triangles.
+    [[nodiscard]] std::size_t bytes() const;
 
     // All that resume() needs to go on as if nothing had happened, on machines of the same byte order. Errors of
     // resume: damaged bytes; a checkpoint of other patches or options.
@@ -66,24 +80,46 @@ class Solver {
   private:
     using Light = Vector<glm::dvec3>;  // by patch
 
-    Solver(const Patches& patches, const SolverOptions& options, LineTracer tracer, LineMethod method);
+    struct Gathering {
+        const Light* leaving = nullptr;
+        glm::dvec3 sky{0.0};
+        std::uint64_t lines = 0;
+        std::uint64_t stream = 0;  // of numbers, shared by all runs
+    };
+
+    Solver(const Patches& patches, const SolverOptions& options, LineTracer tracer, BundleTracer bundles);
+    void list_triangles();
+    [[nodiscard]] std::uint32_t triangle_of(std::size_t patch, double u) const;
     void shoot_lamps(Light& arrived, Executor& executor) const;
-    void shoot_sun(Light& arrived, Executor& executor) const;
-    void gather_global(const Light& leaving, bool sky, std::uint64_t stream, Light& arrived, Executor& executor);
-    void gather_local(const Light& leaving, bool sky, std::uint64_t stream, Light& arrived, Executor& executor);
-    [[nodiscard]] double power(const Light& light) const;
-    void add_run(const Light& total);
+    void look_for_sun(Light& arrived, Executor& executor) const;
+    void gather(const Gathering& what, Light& arrived, Executor& executor);
+    void gather_lines(const Gathering& what, Light& arrived, Executor& executor);
+    void gather_bundles(const Gathering& what, Light& arrived, Executor& executor);
+    void gather_local(const Gathering& what, Light& arrived, Executor& executor);
+    void gather_unseen(const Gathering& what, Light& arrived, Executor& executor);
+    void cast_local(const Gathering& what, std::span<const std::uint32_t> patches, std::span<const std::uint64_t> ends,
+                    std::uint64_t stream, Light& arrived, Executor& executor);
+    void take(std::span<const Hit> crossings, const Gathering& what, Light& arrived);
+    [[nodiscard]] double exposed(std::size_t patch) const;
+    void add_run(const Light& arrived);
+    void update_mean();
     [[nodiscard]] std::uint64_t fingerprint() const;
 
     const Patches* patches_;
     SolverOptions options_;
     LineTracer tracer_;
-    LineSource source_;
+    BundleTracer bundles_;
+    LineMethod method_;
+    double surface_ = 0.0, box_area_ = 0.0;
+    Vector<std::uint32_t> triangles_, first_triangle_;  // of each patch: triangles_[first_triangle_[i] …]
+    Vector<double> triangle_sums_;                      // their areas, added up within the patch
+
     std::uint64_t runs_ = 0, lines_traced_ = 0, unseen_ = 0, seen_ = 0;
     std::uint32_t bounces_ = 0;
-    Light sum_, squares_;
+    Light sum_, squares_;                   // of what arrived, over runs
+    Vector<std::uint64_t> drawn_, buried_;  // rays that started on each patch, and those that met a back first
     Vector<glm::vec3> mean_;
-    Vector<std::uint32_t> rays_;  // scratch of a bounce
+    Vector<std::uint32_t> rays_;  // scratch of a gathering
 };
 
 }  // namespace crofton::radiosity
