@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <crofton/radiosity/patches.hpp>
 #include <limits>
 #include <map>
@@ -91,6 +92,51 @@ TEST_SUITE("radiosity/patches") {
         }
         CHECK(refine(shape.mesh, 0.0).error().code == ErrorCode::out_of_range);
         CHECK(refine(shape.mesh, 1e-4, 1000).error().code == ErrorCode::budget_exceeded);
+    }
+
+    TEST_CASE("a closed box whose sides meet at T-junctions is mended, and stays so when refined") {
+        // One face of a cube is cut into rows of unequal number on either side of its neighbours' whole sides.
+        shapes::Shape box;
+        box.room({0, 0, 0}, {1, 1, 1}, 0);
+        shapes::Shape cut;
+        cut.mesh.positions = box.mesh.positions;
+        cut.mesh.indices.assign(box.mesh.indices.begin() + 6, box.mesh.indices.end());
+        const float rows[] = {0.0f, 0.3f, 0.35f, 0.8f, 1.0f};
+        for (int r = 0; r < 4; ++r)
+            for (int half = 0; half < (r == 2 ? 2 : 1); ++half) {
+                const float z0 = r == 2 ? 0.5f * static_cast<float>(half) : 0.0f, dz = r == 2 ? 0.5f : 1.0f;
+                cut.parallelogram({0, rows[r], z0}, {0, rows[r + 1] - rows[r], 0}, {0, 0, dz}, 0);
+            }
+        REQUIRE(unmatched_edges(cut.mesh) > 0);
+        const auto mended = mend_t_junctions(cut.mesh, 1e-5);
+        REQUIRE(mended.has_value());
+        CHECK(unmatched_edges(mended->mesh) == 0);
+        CHECK(area_of(mended->mesh) == doctest::Approx(area_of(cut.mesh)).epsilon(1e-6));
+        CHECK(unmatched_edges(refine(mended->mesh, 0.11)->mesh) == 0);
+        CHECK(unmatched_edges(refine(cut.mesh, 0.11)->mesh) > 0);
+        // A mesh without T-junctions is left as it is, and bad arguments are refused.
+        CHECK(mend_t_junctions(box.mesh, 1e-5)->mesh.indices == box.mesh.indices);
+        CHECK(mend_t_junctions(box.mesh, -1.0).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("small triangles share a patch with their like nearby, large ones keep their own") {
+        shapes::Shape s;
+        s.parallelogram({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);  // two large triangles
+        for (int k = 0; k < 4; ++k)
+            s.parallelogram({0.1f * static_cast<float>(k), 0, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}, 1);
+        s.parallelogram({0, 0, 0.1f}, {0, 0.1f, 0}, {0.1f, 0, 0}, 2);  // the other side
+        s.parallelogram({3, 3, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}, 3);  // far away
+        const Vector<std::uint32_t> patch = group_small_triangles(s.mesh, {}, 1.0);
+        REQUIRE(patch.size() == s.mesh.triangle_count());
+        CHECK(patch[0] != patch[1]);
+        for (std::size_t t = 3; t < 10; ++t) CHECK(patch[t] == patch[2]);
+        CHECK(patch[10] == patch[11]);
+        CHECK(patch[10] != patch[2]);
+        CHECK(patch[12] != patch[2]);
+        CHECK(*std::max_element(patch.begin(), patch.end()) == 4);
+        std::vector<std::uint32_t> labels(patch.size(), 0);
+        labels[5] = 1;
+        CHECK(group_small_triangles(s.mesh, labels, 1.0)[5] != group_small_triangles(s.mesh, labels, 1.0)[4]);
     }
 
     TEST_CASE("corner values are means over the face, and do not bleed across edges") {

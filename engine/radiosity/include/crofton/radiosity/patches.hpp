@@ -39,11 +39,23 @@ struct RefinedMesh {
     Vector<std::uint32_t> source;
 };
 
+// Vertices of other triangles that lie within `tolerance` of a triangle's side become corners: the triangle is cut
+// through `triangulate` into those of minimum weight, which use every such point. Sides that lay against several others
+// then meet them end to end, so that refine() leaves no T-junctions. New vertices are copies of the ones met, their
+// colours the triangle's own. Errors: as validate(TriangleMesh); tolerance negative.
+[[nodiscard]] Result<RefinedMesh> mend_t_junctions(const TriangleMesh& mesh, double tolerance);
+
 // Long edges are halved, round by round. Whether and where depends on an edge's end points alone, so triangles that
 // share an edge are cut alike: where `mesh` has no T-junctions the result has none, also across meshes. Errors: as
 // validate(TriangleMesh); longest_edge not positive; more than `most_triangles` (budget_exceeded).
 [[nodiscard]] Result<RefinedMesh> refine(const TriangleMesh& mesh, double longest_edge,
                                          std::size_t most_triangles = std::size_t{1} << 24);
+
+// A patch number for each triangle: those of at least size²/4 are patches of their own, smaller ones share one with
+// their like in the same cell of side `size`: facing the same side of a cube, of one label (labels: by triangle, or
+// empty). What is too small to be met by lines on its own is met together.
+[[nodiscard]] Vector<std::uint32_t> group_small_triangles(const TriangleMesh& mesh,
+                                                          std::span<const std::uint32_t> labels, double size);
 
 // One colour per corner of every triangle (3·triangles): the area-weighted mean of `values` over the patches that meet
 // at the corner's position and whose faces are within about 30 degrees of the triangle's.
