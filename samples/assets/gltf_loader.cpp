@@ -150,8 +150,26 @@ class GltfReader {
             const auto id = source_.scene.add_mesh(std::move(*made), mesh.name);
             if (!id) return in_file(name, "", id.error());
             ids.push_back(*id);
+            const glm::vec3 emission = emission_of(mesh.primitives[p].material);
+            if (emission == glm::vec3(0.0f)) continue;
+            source_.emission.resize(*id + 1);
+            source_.emission[*id].assign(source_.scene.mesh(*id).triangle_count(), emission);
         }
         return &meshes_.emplace(index, std::move(ids)).first->second;
+    }
+
+    // emissiveFactor · KHR_materials_emissive_strength; textures of it are not read.
+    [[nodiscard]] glm::vec3 emission_of(int material) const {
+        glm::vec3 result(0.0f);
+        if (!exists(material, model_.materials.size())) return result;
+        const auto& m = model_.materials[static_cast<std::size_t>(material)];
+        double strength = 1.0;
+        if (const auto found = m.extensions.find("KHR_materials_emissive_strength"); found != m.extensions.end())
+            if (const auto& value = found->second.Get("emissiveStrength"); value.IsNumber())
+                strength = value.GetNumberAsDouble();
+        for (std::size_t k = 0; k < 3 && k < m.emissiveFactor.size(); ++k)
+            result[static_cast<int>(k)] = static_cast<float>(m.emissiveFactor[k] * strength);
+        return result;
     }
 
     Result<TriangleMesh> mesh_of(const tinygltf::Primitive& primitive, const std::string& name,

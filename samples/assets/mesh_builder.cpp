@@ -1,5 +1,6 @@
 #include "assets/mesh_builder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -75,6 +76,19 @@ glm::vec3 srgb(int red, int green, int blue) {
 
 glm::vec3 scaled(const glm::vec3& color, double factor) {
     return color * static_cast<float>(factor);
+}
+
+void MeshBuilder::glow(const glm::vec3& emission) {
+    changes_.push_back({mesh_.triangle_count(), emission});
+}
+
+std::vector<glm::vec3> MeshBuilder::take_emission() {
+    std::vector<glm::vec3> result;
+    if (!changes_.empty()) result.resize(mesh_.triangle_count(), glm::vec3(0.0f));
+    for (const Change& change : changes_)
+        std::fill(result.begin() + static_cast<std::ptrdiff_t>(change.first), result.end(), change.emission);
+    changes_.clear();
+    return result;
 }
 
 void MeshBuilder::triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::vec3& color) {

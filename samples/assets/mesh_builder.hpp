@@ -4,6 +4,7 @@
 #include <crofton/scene/transform.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+#include <vector>
 
 namespace crofton::assets {
 
@@ -33,11 +34,21 @@ class MeshBuilder {
     // A convex profile (x, y), counter-clockwise, swept from z = −depth/2 to +depth/2; sides and caps in two colours.
     void sweep(std::span<const glm::dvec2> profile, double depth, const glm::vec3& sides, const glm::vec3& caps);
 
+    // The radiosity that faces added from now on give off by themselves; none at first.
+    void glow(const glm::vec3& emission);
+
     [[nodiscard]] TriangleMesh take() { return std::move(mesh_); }
+    // By triangle; empty where nothing glows. Call it before take().
+    [[nodiscard]] std::vector<glm::vec3> take_emission();
     [[nodiscard]] std::size_t triangle_count() const { return mesh_.triangle_count(); }
 
   private:
+    struct Change {
+        std::size_t first;  // triangle
+        glm::vec3 emission;
+    };
     TriangleMesh mesh_;
+    std::vector<Change> changes_;
 };
 
 }  // namespace crofton::assets

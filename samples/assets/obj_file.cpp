@@ -42,9 +42,12 @@ float linear_from_srgb(float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
-using Materials = std::map<std::string, glm::vec3, std::less<>>;
+struct Surface {
+    glm::vec3 color = ObjFile::Part{}.color, emission{0.0f};
+};
+using Materials = std::map<std::string, Surface, std::less<>>;
 
-// Kd by material name; lines that make no sense are skipped, a material is not worth losing the shape for.
+// Kd and Ke by material name; lines that make no sense are skipped, a material is not worth losing the shape for.
 void read_materials(std::string_view text, Materials& materials) {
     std::string name;
     while (!text.empty()) {
@@ -52,10 +55,13 @@ void read_materials(std::string_view text, Materials& materials) {
         const std::string_view key = next_word(line);
         if (key == "newmtl") name = std::string(next_word(line));
         glm::vec3 color;
-        if (key == "Kd" && parse(next_word(line), color.x) && parse(next_word(line), color.y) &&
-            parse(next_word(line), color.z))
-            materials[name] =
-                glm::vec3(linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z));
+        if ((key != "Kd" && key != "Ke") || !parse(next_word(line), color.x) || !parse(next_word(line), color.y) ||
+            !parse(next_word(line), color.z))
+            continue;
+        if (key == "Ke")
+            materials[name].emission = color;
+        else
+            materials[name].color = {linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z)};
     }
 }
 
@@ -76,7 +82,7 @@ class ObjReader {
             else if (key == "f")
                 done = read_face(line);
             else if (key == "o" || key == "g")
-                start_part(std::string(next_word(line)), file_.parts.back().color);
+                start_part(std::string(next_word(line)), {file_.parts.back().color, file_.parts.back().emission});
             else if (key == "usemtl")
                 use_material(next_word(line));
             else if (key == "mtllib")
@@ -133,15 +139,16 @@ class ObjReader {
         return {};
     }
 
-    void start_part(std::string name, glm::vec3 color) {
+    void start_part(std::string name, const Surface& surface) {
         if (!file_.parts.back().indices.empty()) file_.parts.emplace_back();
         file_.parts.back().name = std::move(name);
-        file_.parts.back().color = color;
+        file_.parts.back().color = surface.color;
+        file_.parts.back().emission = surface.emission;
     }
 
     void use_material(std::string_view name) {
         const auto found = materials_.find(name);
-        start_part(file_.parts.back().name, found == materials_.end() ? ObjFile::Part{}.color : found->second);
+        start_part(file_.parts.back().name, found == materials_.end() ? Surface{} : found->second);
     }
 
     void load_library(std::string_view name) {

@@ -1,4 +1,4 @@
-// Wavefront OBJ: v (with optional colours), f (any polygon, as a fan), o, g, usemtl with Kd of a material library.
+// Wavefront OBJ: v (with optional colours), f (any polygon, as a fan), o, g, usemtl with Kd and Ke of a material library.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <cstdint>
@@ -14,6 +14,7 @@ struct ObjFile {
     struct Part {
         std::string name;
         glm::vec3 color{0.62f, 0.6f, 0.56f};  // linear
+        glm::vec3 emission{0.0f};             // Ke, as it stands
         std::vector<std::uint32_t> indices;   // three a triangle, into positions
     };
     std::vector<glm::dvec3> positions;  // in the file's order, used by faces or not; finite

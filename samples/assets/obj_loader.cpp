@@ -41,6 +41,10 @@ Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options
         for (TriangleMesh& piece : split_mesh(mesh_of(file, part, new_index), kTrianglesPerPiece)) {
             const auto mesh = source.scene.add_mesh(std::move(piece), part.name);
             if (!mesh) return in_file(path, "object '" + part.name + "'", mesh.error());
+            if (part.emission != glm::vec3(0.0f)) {
+                source.emission.resize(*mesh + 1);
+                source.emission[*mesh].assign(source.scene.mesh(*mesh).triangle_count(), part.emission);
+            }
             if (auto added = source.scene.add_instance(*root, *mesh); !added) return in_file(path, "", added.error());
         }
     }

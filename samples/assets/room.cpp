@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kWidth = 5.0, kHeight = 2.7, kDepth = 4.0;
 
-TriangleMesh shell() {
+MeshBuilder shell() {
     MeshBuilder b;
     const glm::vec3 wall = srgb(232, 224, 206), red = srgb(190, 92, 74), floor = srgb(164, 120, 82),
                     white = srgb(244, 242, 238);
@@ -33,10 +33,10 @@ TriangleMesh shell() {
     b.quad({kWidth, y1, z0}, {out, y1, z0}, {out, y1, z1}, {kWidth, y1, z1}, white);
     b.quad({kWidth, y0, z0}, {out, y0, z0}, {out, y1, z0}, {kWidth, y1, z0}, white);
     b.quad({kWidth, y1, z1}, {out, y1, z1}, {out, y0, z1}, {kWidth, y0, z1}, white);
-    return b.take();
+    return b;
 }
 
-TriangleMesh furniture() {
+MeshBuilder furniture() {
     MeshBuilder b;
     const glm::vec3 wood = srgb(170, 120, 70), blue = srgb(70, 100, 150), green = srgb(90, 130, 90),
                     dark = srgb(110, 76, 48);
@@ -56,7 +56,15 @@ TriangleMesh furniture() {
     b.box({0.1, 0.57, 0.72}, {0.33, 0.82, 0.8}, srgb(200, 160, 60));
     b.box({0.1, 1.01, 0.9}, {0.35, 1.3, 1.4}, srgb(180, 70, 60));
     b.box({2.3, 0.78, 1.7}, {2.55, 1.0, 1.95}, srgb(230, 226, 220));
-    return b.take();
+    return b;
+}
+
+MeshBuilder lamp() {
+    MeshBuilder b;
+    b.box({2.48, 2.2, 1.83}, {2.52, kHeight - 0.01, 1.87}, srgb(40, 40, 44));
+    b.glow({7.0f, 5.6f, 4.0f});
+    b.box({2.36, 1.96, 1.71}, {2.64, 2.2, 1.99}, srgb(244, 236, 220));
+    return b;
 }
 
 }  // namespace
@@ -65,8 +73,9 @@ Result<SceneSource> make_room(const LoadOptions& options) {
     SceneSource source{"room", scene::Scene({options.criterion}), {}, {}, {}, {}};
     const auto root = source.scene.add_node(scene::kNone, {}, ~0u, "room");
     if (!root) return tl::unexpected(root.error());
-    for (TriangleMesh mesh : {shell(), furniture()}) {
-        const auto id = source.scene.add_mesh(std::move(mesh), "room");
+    for (MeshBuilder part : {shell(), furniture(), lamp()}) {
+        source.emission.push_back(part.take_emission());
+        const auto id = source.scene.add_mesh(part.take(), "room");
         if (!id) return tl::unexpected(id.error());
         if (auto added = source.scene.add_instance(*root, *id); !added) return tl::unexpected(added.error());
     }

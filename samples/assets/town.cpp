@@ -147,6 +147,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     }
     source.movers = instances_on(source.scene, std::move(moving));
     source.walk = make_walk(grid, turn);
+    source.emission = std::move(library.emission);
     // Poses of valid drivers are valid transforms, so the results need no look.
     source.motion = [drivers = std::move(drivers), cranes = std::move(cranes)](scene::Scene& scene,
                                                                                std::uint32_t frame) {

@@ -22,6 +22,7 @@ scene::MeshId make_lamp(Library& library) {
         from = to;
     }
     b.tube(from, from + glm::dvec3(0, -0.12, 0), 0.06, 0.26, 8, iron);
+    b.glow({260.0f, 190.0f, 110.0f});
     b.tube(from + glm::dvec3(0, -0.12, 0), from + glm::dvec3(0, -0.24, 0), 0.20, 0.12, 8, srgb(255, 240, 196));
     return library.add(b, "street lamp");
 }

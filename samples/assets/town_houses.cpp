@@ -175,6 +175,7 @@ void add_joinery(MeshBuilder& b, Library& library, const std::vector<Opening>& o
                  const glm::vec3& door, const glm::vec3& sill, bool plain) {
     static const std::array panes = {srgb(58, 74, 92), srgb(72, 90, 108), srgb(44, 58, 72), srgb(196, 190, 176),
                                      srgb(120, 128, 132)};
+    constexpr std::size_t kFirstLit = 3;
     for (const Opening& o : openings) {
         const double x0 = o.x, x1 = o.x + o.width, y0 = o.y, y1 = o.y + o.height, z = -kReveal;
         const glm::vec3 reveal = scaled(sill, 0.75);
@@ -196,8 +197,10 @@ void add_joinery(MeshBuilder& b, Library& library, const std::vector<Opening>& o
         // The frame shows around a pane that lies a little before it.
         const double f = 0.07, zp = z + 0.02, zf = z + 0.05;
         b.quad({x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}, frame);
-        b.quad({x0 + f, y0 + f, zp}, {x1 - f, y0 + f, zp}, {x1 - f, y1 - f, zp}, {x0 + f, y1 - f, zp},
-               panes[static_cast<std::size_t>(library.pick(panes.size()))]);
+        const auto pane = static_cast<std::size_t>(library.pick(panes.size()));
+        if (pane >= kFirstLit) b.glow({0.9f, 0.6f, 0.3f});  // someone is at home
+        b.quad({x0 + f, y0 + f, zp}, {x1 - f, y0 + f, zp}, {x1 - f, y1 - f, zp}, {x0 + f, y1 - f, zp}, panes[pane]);
+        b.glow(glm::vec3(0.0f));
         const double mx = 0.5 * (x0 + x1);
         b.quad({mx - 0.035, y0, zf}, {mx + 0.035, y0, zf}, {mx + 0.035, y1, zf}, {mx - 0.035, y1, zf}, frame);
         if (o.kind == Opening::Kind::window) {

@@ -6,7 +6,12 @@ namespace crofton::assets::town {
 
 scene::MeshId Library::add(MeshBuilder& builder, std::string name) {
     if (!status_) return scene::kNone;
+    auto glow = builder.take_emission();
     auto id = scene_.add_mesh(builder.take(), std::move(name));
+    if (id && !glow.empty()) {
+        if (emission.size() <= *id) emission.resize(*id + 1);
+        emission[*id] = std::move(glow);
+    }
     if (id) return *id;
     status_ = tl::unexpected(id.error());
     return scene::kNone;

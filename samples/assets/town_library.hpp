@@ -33,6 +33,7 @@ class Library {
     int pick(int count) { return static_cast<int>(random.uniform() * count); }  // in [0, count)
     bool chance(double probability) { return random.uniform() < probability; }
     measure::Random random;
+    std::vector<std::vector<glm::vec3>> emission;  // by mesh, as SceneSource has it
 
   private:
     scene::Scene& scene_;

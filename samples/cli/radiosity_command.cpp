@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 struct Options {
     std::string scene, method = "global", out, png, json, checkpoint, map;
     std::uint64_t lines = 1'000'000, seed = 1;
-    double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 1.0;
+    double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
     unsigned threads = 1;
 };
 
@@ -44,22 +44,23 @@ Result<radiosity::SolverOptions> solver_options(const Options& options) {
     result.outside.sky = glm::vec3(0.75f, 0.88f, 1.1f) * sky;
     result.outside.sun = glm::vec3(1.05f, 0.98f, 0.86f) * sun;
     result.outside.to_sun = {0.75, 0.6, 0.3};
-    result.cutoff = 1e-3;
     return result;
 }
 
-Result<radiosity::Patches> patches_of(const Options& options, const assets::SceneSource& source) {
-    TriangleMesh mesh = assets::flat_scene(source).mesh;
-    if (options.edge > 0.0) {
-        auto refined = radiosity::refine(mesh, options.edge);
-        if (!refined) return tl::unexpected(refined.error());
-        mesh = std::move(refined->mesh);
+// Into the room from a corner, over the table to the window; elsewhere from above.
+Result<Camera> camera_for(const assets::SceneSource& source, std::uint64_t seed) {
+    if (source.name == "room") {
+        Camera camera;
+        camera.position = {0.45, 1.6, 3.75};
+        camera.forward = {3.2, -0.55, -2.2};
+        camera.fov_y = 1.15;
+        camera.near = 0.05;
+        return camera;
     }
-    Vector<radiosity::Material> materials(mesh.triangle_count());
-    for (std::size_t t = 0; t < materials.size(); ++t)
-        for (int k = 0; k < 3; ++k)
-            materials[t].reflectance[k] = std::clamp(mesh.colors[mesh.indices[3 * t]][k], 0.0f, 0.9f);
-    return radiosity::make_patches(std::move(mesh), materials);
+    auto cameras =
+        pipeline::make_camera_path({"orbit", 8, seed, 16.0 / 9.0}, pipeline::focus_of(source.scene), source.walk);
+    if (!cameras) return tl::unexpected(cameras.error());
+    return cameras->front();
 }
 
 Result<void> save_checkpoint(const std::string& path, const radiosity::Solver& solver) {
@@ -101,32 +102,32 @@ Result<void> run(const Options& options) {
     auto source = assets::load_scene(options.scene, load);
     if (!source) return tl::unexpected(source.error());
     source->scene.update();
-    const auto patches = patches_of(options, *source);
-    if (!patches) return tl::unexpected(patches.error());
-    auto solver = radiosity::Solver::create(*patches, *parameters);
+    const auto lit = lit_scene(assets::flat_scene(*source), options.edge);
+    if (!lit) return tl::unexpected(lit.error());
+    auto solver = radiosity::Solver::create(lit->patches, *parameters);
     if (!solver) return tl::unexpected(solver.error());
     ThreadPool pool(options.threads);
     const auto start = Clock::now();
     if (auto solved = solve(options, *solver, pool); !solved) return solved;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    const TriangleMesh lit = baked(*patches, solver->radiosity(), options.exposure);
+    const TriangleMesh picture = baked(*lit, *solver, options.exposure);
     if (!options.out.empty())
-        if (auto written = write_glb(options.out, lit); !written) return written;
+        if (auto written = write_glb(options.out, picture); !written) return written;
     if (!options.png.empty()) {
-        const bool inside = source->name == "room";
-        auto cameras = pipeline::make_camera_path({inside ? "street" : "orbit", 8, options.seed, 16.0 / 9.0},
-                                                  pipeline::focus_of(source->scene), source->walk);
-        if (!cameras) return tl::unexpected(cameras.error());
-        if (auto written = write_lit_picture(options.png, lit, cameras->front(), 1280, 720); !written) return written;
+        const auto camera = camera_for(*source, options.seed);
+        if (!camera) return tl::unexpected(camera.error());
+        const float sky = static_cast<float>(std::min(1.0, options.sky));
+        if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written) return written;
     }
-    const auto seen =
-        radiosity::visibility_complexity(*radiosity::LineTracer::build(patches->mesh),
-                                         radiosity::LineSource(radiosity::LineTracer::build(patches->mesh)->bounds(),
-                                                               radiosity::LineMethod::walls, options.seed),
-                                         50);
+    const auto tracer = radiosity::LineTracer::build(lit->patches.mesh);
+    if (!tracer) return tl::unexpected(tracer.error());
+    const auto seen = radiosity::visibility_complexity(
+        *tracer, radiosity::LineSource(tracer->bounds(), radiosity::LineMethod::walls, options.seed), 50);
     const nlohmann::json report = {
         {"scene", source->name},
-        {"patches", patches->count()},
+        {"patches", lit->patches.count()},
+        {"triangles", lit->patches.mesh.triangle_count()},
+        {"solver_bytes", solver->bytes()},
         {"method", options.method},
         {"lines_from", radiosity::to_string(solver->method())},
         {"runs", solver->runs()},
@@ -138,7 +139,7 @@ Result<void> run(const Options& options) {
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};
     if (!options.json.empty()) return write_json(options.json, report);
     std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
-                patches->count(), static_cast<unsigned long long>(solver->runs()),
+                lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
                 static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
     return {};
 }
@@ -160,7 +161,7 @@ void add_radiosity_command(CLI::App& app, Outcome& outcome) {
         ->check(CLI::PositiveNumber)
         ->excludes(lines);
     command->add_option("--method", options->method, "local, global, bundles or walls")->capture_default_str();
-    command->add_option("--edge", options->edge, "Cut patches until no edge is longer (metres)")
+    command->add_option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
         ->check(CLI::PositiveNumber);
     command->add_option("--sky", options->sky, "Radiosity of the sky")
         ->check(CLI::NonNegativeNumber)
@@ -168,9 +169,8 @@ void add_radiosity_command(CLI::App& app, Outcome& outcome) {
     command->add_option("--sun", options->sun, "Irradiance toward the sun")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command->add_option("--exposure", options->exposure, "Factor from radiosity to colour")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
+    command->add_option("--exposure", options->exposure, "Factor from radiosity to colour; automatic without")
+        ->check(CLI::PositiveNumber);
     command->add_option("--seed", options->seed, "Seed of the lines and of the town")->capture_default_str();
     command->add_option("--map", options->map, "Which level of a .wad");
     command->add_option("--threads", options->threads, "Worker threads; 0: one per core")->capture_default_str();

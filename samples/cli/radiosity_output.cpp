@@ -1,6 +1,7 @@
 #include "radiosity_output.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <crofton/render/device.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstring>
@@ -10,36 +11,155 @@
 #include <numeric>
 
 #include "../pipeline/png.hpp"
+#include "assets/split_mesh.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
 
-TriangleMesh baked(const radiosity::Patches& patches, std::span<const glm::vec3> radiosity, double exposure) {
-    const auto corners = radiosity::corner_values(patches, radiosity);
+namespace {
+
+constexpr double kTolerance = 2e-4;  // metres between a vertex and the side it is meant to lie on
+constexpr double kMoreTriangles = 50'000.0;
+constexpr float kMiddle = 0.30f;  // where the mean of the logarithm of the light goes
+constexpr float kWhite = 5.0f;    // the exposed light that just becomes white
+constexpr std::size_t kTrianglesPerPiece = 2048;
+
+float luminance(const glm::vec3& c) {
+    return glm::dot(c, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+// Reinhard et al., "Photographic tone reproduction for digital images", 2002, equation 4, on luminance, so that hues
+// stay; what then still exceeds 1 in a channel is cut.
+glm::vec3 compressed(const glm::vec3& light) {
+    const float l = luminance(light);
+    return glm::clamp(light * ((1.0f + l / (kWhite * kWhite)) / (1.0f + l)), 0.0f, 1.0f);
+}
+
+double automatic_edge(const TriangleMesh& mesh) {
+    double surface = 0.0;
+    for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+        const auto at = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[t + k]]); };
+        surface += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+    }
+    return 2.0 * std::sqrt(surface / kMoreTriangles);
+}
+
+radiosity::Material operator+(const radiosity::Material& a, const radiosity::Material& b) {
+    return {a.emission + b.emission, a.reflectance + b.reflectance};
+}
+
+// Means over the patches' triangles.
+Vector<radiosity::Material> mean_materials(const LitScene& scene, std::span<const std::uint32_t> patches) {
+    const TriangleMesh& mesh = scene.patches.mesh;
+    Vector<radiosity::Material> sums(*std::max_element(patches.begin(), patches.end()) + 1,
+                                     {glm::vec3(0.0f), glm::vec3(0.0f)});
+    Vector<float> areas(sums.size(), 0.0f);
+    for (std::size_t t = 0; t < patches.size(); ++t) {
+        const auto at = [&](std::size_t k) { return mesh.positions[mesh.indices[3 * t + k]]; };
+        const auto color = [&](std::size_t k) { return mesh.colors[mesh.indices[3 * t + k]]; };
+        const float area = glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+        radiosity::Material& sum = sums[patches[t]];
+        sum = sum + radiosity::Material{area * scene.emission[t], area / 3.0f * (color(0) + color(1) + color(2))};
+        areas[patches[t]] += area;
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        sums[i].emission /= areas[i];
+        sums[i].reflectance = glm::clamp(sums[i].reflectance / areas[i], 0.0f, kMostReflectance);
+    }
+    return sums;
+}
+
+// The factor that brings the area's mean logarithm of light to kMiddle.
+float automatic_exposure(const LitScene& scene, const radiosity::Solver& solver) {
+    double sum = 0.0, area = 0.0;
+    for (std::size_t i = 0; i < scene.patches.count(); ++i) {
+        const double weight = scene.patches.areas[i] * solver.exposed_share(i);
+        const double light = static_cast<double>(luminance(glm::max(solver.radiosity()[i], glm::vec3(0.0f))));
+        sum += weight * std::log(light + 1e-6);
+        area += weight;
+    }
+    return area > 0.0 ? kMiddle / static_cast<float>(std::exp(sum / area)) : 1.0f;
+}
+
+}  // namespace
+
+Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
+    if (edge == 0.0) edge = automatic_edge(scene.mesh);
+    auto mended = radiosity::mend_t_junctions(scene.mesh, kTolerance);
+    if (!mended) return tl::unexpected(mended.error());
+    auto refined = radiosity::refine(mended->mesh, edge);
+    if (!refined) return tl::unexpected(refined.error());
+    LitScene result;
+    result.patches.mesh.positions = std::move(refined->mesh.positions);
+    result.patches.mesh.colors = std::move(refined->mesh.colors);
+    for (glm::vec3& color : result.patches.mesh.colors) color = glm::clamp(color, 0.0f, kMostReflectance);
+    Vector<std::uint32_t> glows;
+    for (std::size_t t = 0; t < refined->source.size(); ++t) {
+        const std::uint32_t* v = &refined->mesh.indices[3 * t];
+        const auto at = [&](std::size_t k) { return glm::dvec3(result.patches.mesh.positions[v[k]]); };
+        // Halving may leave slivers that round to nothing.
+        if (!(glm::length(glm::cross(at(1) - at(0), at(2) - at(0))) > 0.0)) continue;
+        result.patches.mesh.indices.insert(result.patches.mesh.indices.end(), v, v + 3);
+        result.emission.push_back(scene.emission[mended->source[refined->source[t]]]);
+        glows.push_back(result.emission.back() == glm::vec3(0.0f) ? 0 : 1);
+    }
+    const auto patches = radiosity::group_small_triangles(result.patches.mesh, glows, edge);
+    const auto materials = mean_materials(result, patches);
+    auto made = radiosity::make_patches(std::move(result.patches.mesh), patches, materials);
+    if (!made) return tl::unexpected(made.error());
+    result.patches = std::move(*made);
+    return result;
+}
+
+TriangleMesh baked(const LitScene& scene, const radiosity::Solver& solver, double exposure) {
+    Vector<double> weights(scene.patches.count());
+    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = solver.exposed_share(i);
+    const auto corners = radiosity::corner_values(scene.patches, solver.irradiance(), weights);
+    const float factor = exposure > 0.0 ? static_cast<float>(exposure) : automatic_exposure(scene, solver);
     TriangleMesh mesh;
     mesh.indices.resize(corners.size());
     std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
     for (std::size_t c = 0; c < corners.size(); ++c) {
-        mesh.positions.push_back(patches.mesh.positions[patches.mesh.indices[c]]);
-        mesh.colors.push_back(glm::min(corners[c] * static_cast<float>(exposure), glm::vec3(1.0f)));
+        const std::uint32_t vertex = scene.patches.mesh.indices[c];
+        mesh.positions.push_back(scene.patches.mesh.positions[vertex]);
+        const glm::vec3 light =
+            scene.emission[c / 3] + scene.patches.mesh.colors[vertex] * glm::max(corners[c], glm::vec3(0.0f));
+        mesh.colors.push_back(compressed(factor * light));
     }
     return mesh;
 }
 
-Result<void> write_glb(const std::string& path, const TriangleMesh& mesh) {
-    const std::size_t bytes = mesh.positions.size() * sizeof(glm::vec3);
-    glm::vec3 low = mesh.positions[0], high = low;
-    for (const glm::vec3& p : mesh.positions) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const auto accessor = [&](int view) {
-        return nlohmann::json{
-            {"bufferView", view}, {"componentType", 5126}, {"count", mesh.positions.size()}, {"type", "VEC3"}};
+Result<void> write_glb(const std::string& path, const TriangleMesh& whole) {
+    std::string binary;
+    nlohmann::json views = nlohmann::json::array(), accessors = nlohmann::json::array(),
+                   primitives = nlohmann::json::array();
+    const auto append = [&](const void* data, std::size_t bytes) {
+        views.push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes}});
+        binary.append(static_cast<const char*>(data), bytes);
     };
-    nlohmann::json position = accessor(0);
-    position["min"] = {low.x, low.y, low.z};
-    position["max"] = {high.x, high.y, high.z};
+    const auto accessor = [&](int component, std::size_t count, const char* type) {
+        accessors.push_back(
+            {{"bufferView", views.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+        return accessors.size() - 1;
+    };
+    for (const TriangleMesh& mesh : assets::split_mesh(whole, kTrianglesPerPiece)) {
+        const std::size_t bytes = mesh.positions.size() * sizeof(glm::vec3);
+        glm::vec3 low = mesh.positions[0], high = low;
+        for (const glm::vec3& p : mesh.positions) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+        append(mesh.positions.data(), bytes);
+        const std::size_t position = accessor(5126, mesh.positions.size(), "VEC3");
+        accessors.back()["min"] = {low.x, low.y, low.z};
+        accessors.back()["max"] = {high.x, high.y, high.z};
+        append(mesh.colors.data(), bytes);
+        const std::size_t color = accessor(5126, mesh.positions.size(), "VEC3");
+        append(mesh.indices.data(), mesh.indices.size() * sizeof(std::uint32_t));
+        const std::size_t indices = accessor(5125, mesh.indices.size(), "SCALAR");
+        primitives.push_back(
+            {{"attributes", {{"POSITION", position}, {"COLOR_0", color}}}, {"indices", indices}, {"material", 0}});
+    }
     const nlohmann::json document = {
         {"asset", {{"version", "2.0"}, {"generator", "crofton radiosity"}}},
         {"extensionsUsed", {"KHR_materials_unlit"}},
@@ -47,34 +167,30 @@ Result<void> write_glb(const std::string& path, const TriangleMesh& mesh) {
         {"scenes", {{{"nodes", {0}}}}},
         {"nodes", {{{"mesh", 0}, {"name", "lit"}}}},
         {"materials", {{{"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}}},
-        {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}, {"COLOR_0", 1}}}, {"material", 0}}}}}}},
-        {"accessors", {position, accessor(1)}},
-        {"bufferViews",
-         {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", bytes}},
-          {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", bytes}}}},
-        {"buffers", {{{"byteLength", 2 * bytes}}}}};
+        {"meshes", {{{"primitives", primitives}}}},
+        {"accessors", accessors},
+        {"bufferViews", views},
+        {"buffers", {{{"byteLength", binary.size()}}}}};
     std::string json = document.dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::string file;
     const auto word = [&](std::size_t value) {
         for (int shift = 0; shift < 32; shift += 8) file += static_cast<char>(value >> shift & 255u);
     };
-    const std::size_t size = 12 + 8 + json.size() + 8 + 2 * bytes;
+    const std::size_t size = 12 + 8 + json.size() + 8 + binary.size();
     if (size >> 32 != 0) return fail(ErrorCode::out_of_range, kNoItem, path + ": glTF holds 4 GiB at most");
     file += "glTF";
     word(2);
     word(size);
     word(json.size());
     file += "JSON" + json;
-    word(2 * bytes);
-    file += std::string("BIN\0", 4);
-    file.append(reinterpret_cast<const char*>(mesh.positions.data()), bytes);
-    file.append(reinterpret_cast<const char*>(mesh.colors.data()), bytes);
+    word(binary.size());
+    file += std::string("BIN\0", 4) + binary;
     return write_file(path, file);
 }
 
 Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh, const Camera& camera,
-                               std::uint32_t width, std::uint32_t height) {
+                               std::uint32_t width, std::uint32_t height, float sky) {
     render::DeviceOptions wanted;
     wanted.kind = render::DeviceKind::any;
     auto device = render::Device::create(wanted);
@@ -96,6 +212,8 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     frame.transforms = {&transform, 1};
     frame.ranges = {&range, 1};
     frame.environment.haze_distance = 0.0f;
+    for (glm::vec3* color : {&frame.environment.zenith, &frame.environment.horizon, &frame.environment.ground})
+        *color *= sky;
     if (auto drawn = rasterizer->draw(frame); !drawn) return tl::unexpected(drawn.error());
     render::Image image;
     if (auto read = rasterizer->read_pixels(image); !read) return read;

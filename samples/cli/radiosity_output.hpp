@@ -1,20 +1,35 @@
 // Scenes into patches, and lit patches into files.
 #pragma once
-#include <crofton/radiosity/patches.hpp>
-#include <crofton/scene/scene.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/radiosity/solver.hpp>
 #include <string>
+
+#include "assets/flat_scene.hpp"
 
 namespace crofton::cli {
 
-// Three vertices a triangle, coloured by radiosity · exposure, 1 and above as 1.
-[[nodiscard]] TriangleMesh baked(const radiosity::Patches& patches, std::span<const glm::vec3> radiosity,
-                                 double exposure);
+// Patches, and what their triangles look like for themselves.
+struct LitScene {
+    radiosity::Patches patches;      // its mesh's colours are the reflectance at each corner
+    Vector<glm::vec3> emission;      // by triangle
+};
 
-// Binary glTF with vertex colours and an unlit material (KHR_materials_unlit).
+inline constexpr float kMostReflectance = 0.9f;  // of white paint; light must end
+
+// T-junctions mended, edges of at most `edge` metres, small triangles in groups of that size. edge = 0: such that the
+// scene has some 50,000 triangles beyond those it has anyway.
+[[nodiscard]] Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge);
+
+// Three vertices a triangle in display-linear colours: (emission + reflectance · irradiance) · exposure, compressed so
+// that highlights keep some shape. exposure = 0: such that the scene's middle is mid-grey. Irradiance is interpolated
+// between patches, the reflectance is each triangle's own.
+[[nodiscard]] TriangleMesh baked(const LitScene& scene, const radiosity::Solver& solver, double exposure);
+
+// Binary glTF with vertex colours and an unlit material (KHR_materials_unlit), in pieces that culling can tell apart.
 [[nodiscard]] Result<void> write_glb(const std::string& path, const TriangleMesh& mesh);
 
-// One picture of the unlit mesh through the rasterizer, as PNG.
+// One picture of the unlit mesh through the rasterizer, as PNG. `sky`: how bright the background is.
 [[nodiscard]] Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh, const Camera& camera,
-                                             std::uint32_t width, std::uint32_t height);
+                                             std::uint32_t width, std::uint32_t height, float sky);
 
 }  // namespace crofton::cli

@@ -44,9 +44,9 @@ class PatchPoints {
 
 }  // namespace
 
-double Solver::exposed(std::size_t patch) const {
-    const std::uint64_t seen = drawn_[patch] - buried_[patch];
-    return seen == 0 ? 1.0 : static_cast<double>(seen) / static_cast<double>(drawn_[patch]);
+double Solver::exposed_share(std::size_t patch) const {
+    if (drawn_[patch] == 0) return 1.0;
+    return static_cast<double>(drawn_[patch] - buried_[patch]) / static_cast<double>(drawn_[patch]);
 }
 
 void Solver::shoot_lamps(Light& arrived, Executor& executor) const {
@@ -78,7 +78,8 @@ void Solver::shoot_lamps(Light& arrived, Executor& executor) const {
             if (hit.triangle == Hit::kNothing || !hit.front) return;
             const glm::dvec3 color = emission(lamp(points.at<5>(first + i)[4]));
             const std::uint32_t to = p.patch_of_triangle[hit.triangle];
-            arrived[to] += color * (each / total(color) / (p.areas[to] * exposed(to)));
+            const double open = exposed_share(to);
+            arrived[to] += color * (each / total(color) / (p.areas[to] * (open > 0.0 ? open : 1.0)));
         });
 }
 

@@ -72,7 +72,8 @@ Result<Patches> make_patches(TriangleMesh mesh, std::span<const Material> materi
     return make_patches(std::move(mesh), own, materials);
 }
 
-Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec3> values) {
+Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec3> values,
+                                std::span<const double> weights) {
     const TriangleMesh& mesh = patches.mesh;
     constexpr double kSameFace = 0.87;
     // Corners sorted by position: those at one point lie side by side.
@@ -98,10 +99,12 @@ Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec
             for (std::size_t j = begin; j < end; ++j) {
                 if (j != i && glm::dot(normals[i - begin], normals[j - begin]) < kSameFace) continue;
                 const std::size_t t = order[j] / 3;
-                sum += patches.triangle_areas[t] * glm::dvec3(values[patches.patch_of_triangle[t]]);
-                weight += patches.triangle_areas[t];
+                const std::uint32_t patch = patches.patch_of_triangle[t];
+                const double share = patches.triangle_areas[t] * (weights.empty() ? 1.0 : weights[patch]);
+                sum += share * glm::dvec3(values[patch]);
+                weight += share;
             }
-            result[order[i]] = glm::vec3(sum / weight);
+            result[order[i]] = weight > 0.0 ? glm::vec3(sum / weight) : glm::vec3(0.0f);
         }
     }
     return result;

@@ -58,7 +58,9 @@ struct RefinedMesh {
                                                           std::span<const std::uint32_t> labels, double size);
 
 // One colour per corner of every triangle (3·triangles): the area-weighted mean of `values` over the patches that meet
-// at the corner's position and whose faces are within about 30 degrees of the triangle's.
-[[nodiscard]] Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec3> values);
+// at the corner's position and whose faces are within about 30 degrees of the triangle's; `weights`, one a patch or
+// none, multiply the areas, and a corner of no weight is 0.
+[[nodiscard]] Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec3> values,
+                                              std::span<const double> weights = {});
 
 }  // namespace crofton::radiosity

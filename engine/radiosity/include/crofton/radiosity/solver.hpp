@@ -66,6 +66,8 @@ class Solver {
     // before the second run.
     [[nodiscard]] double relative_error() const;
     [[nodiscard]] double unseen() const;
+    // The share of a patch that lies in the open, as its rays so far tell; 0 where all is buried, 1 before the first run.
+    [[nodiscard]] double exposed_share(std::size_t patch) const;
     [[nodiscard]] LineMethod method() const { return method_; }
     [[nodiscard]] std::uint64_t lines_traced() const { return lines_traced_; }
     [[nodiscard]] std::uint32_t bounces_of_last_run() const { return bounces_; }
@@ -100,7 +102,6 @@ class Solver {
     void cast_local(const Gathering& what, std::span<const std::uint32_t> patches, std::span<const std::uint64_t> ends,
                     std::uint64_t stream, Light& arrived, Executor& executor);
     void take(std::span<const Hit> crossings, const Gathering& what, Light& arrived);
-    [[nodiscard]] double exposed(std::size_t patch) const;
     void add_run(const Light& arrived);
     void update_mean();
     [[nodiscard]] std::uint64_t fingerprint() const;
