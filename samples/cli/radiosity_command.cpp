@@ -134,6 +134,7 @@ Result<void> run(const Options& options) {
         {"lines", solver->lines_traced()},
         {"relative_error", solver->relative_error()},
         {"unseen", solver->unseen()},
+        {"bounces", solver->bounces_of_last_run()},
         {"seconds", seconds},
         {"visibility",
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};

@@ -19,7 +19,7 @@ namespace crofton::cli {
 namespace {
 
 constexpr double kTolerance = 2e-4;  // metres between a vertex and the side it is meant to lie on
-constexpr double kMoreTriangles = 50'000.0;
+constexpr double kLeastTriangles = 50'000.0;
 constexpr float kMiddle = 0.30f;  // where the mean of the logarithm of the light goes
 constexpr float kWhite = 5.0f;    // the exposed light that just becomes white
 constexpr std::size_t kTrianglesPerPiece = 2048;
@@ -41,7 +41,7 @@ double automatic_edge(const TriangleMesh& mesh) {
         const auto at = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[t + k]]); };
         surface += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
     }
-    return 2.0 * std::sqrt(surface / kMoreTriangles);
+    return 3.0 * std::sqrt(surface / std::max(kLeastTriangles, static_cast<double>(mesh.triangle_count())));
 }
 
 radiosity::Material operator+(const radiosity::Material& a, const radiosity::Material& b) {
@@ -195,7 +195,7 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     wanted.kind = render::DeviceKind::any;
     auto device = render::Device::create(wanted);
     if (!device) return tl::unexpected(device.error());
-    auto rasterizer = render::Rasterizer::create(*device, {.width = width, .height = height, .cull_back_faces = false});
+    auto rasterizer = render::Rasterizer::create(*device, {.width = width, .height = height, .cull_back_faces = true});
     if (!rasterizer) return tl::unexpected(rasterizer.error());
     Vector<render::Vertex> vertices;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)

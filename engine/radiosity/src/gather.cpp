@@ -12,8 +12,7 @@ namespace {
 
 constexpr std::uint64_t kUnseenStream = 1u << 20;  // added to a gathering's own
 constexpr std::uint64_t kRaysOfUnseen = 4;
-constexpr double kLeastBundles = 16.0;
-constexpr double kMostLinesOfBundle = 1 << 21;
+constexpr double kLeastBundles = 8.0;
 
 }  // namespace
 
@@ -49,8 +48,7 @@ void Solver::gather(const Gathering& what, Light& arrived, Executor& executor) {
 
 void Solver::gather_bundles(const Gathering& what, Light& arrived, Executor& executor) {
     const double lines = static_cast<double>(what.lines);
-    const double of_patches = 0.25 * box_area_ * static_cast<double>(patches_->count()) / surface_;
-    const double count = std::max(kLeastBundles, std::ceil(lines / std::min(of_patches, kMostLinesOfBundle)));
+    const double count = std::max(kLeastBundles, std::ceil(lines / lines_of_bundle()));
     const double cell_area = 0.25 * box_area_ * count / lines;
     const std::uint64_t bundles = static_cast<std::uint64_t>(count);
     const measure::UnitPoints points(mixed(options_.seed, what.stream), options_.sequence);

@@ -8,11 +8,11 @@
 namespace crofton::radiosity {
 namespace {
 
-constexpr std::uint64_t kFewerLines = 4;  // the share of lines for what is not known yet, from the second run on
+// From the second run on most light is known already, and what still travels is mostly noise of the last gathering:
+// fewer lines and an earlier end do for it.
+constexpr std::uint64_t kFewerLinesAtFirst = 4, kFewerLines = 8;
+constexpr double kEarlierEnd = 10.0;
 constexpr std::uint64_t kGatherStream = 8;
-// A cell of a bundle is as large as a patch on average: then a patch has half a ray of each bundle, and more lines of
-// one direction would tell it little. So many bundles make about 32 rays a patch.
-constexpr double kBundles = 64.0;
 
 double total(const glm::dvec3& v) {
     return v.x + v.y + v.z;
@@ -53,8 +53,15 @@ Solver::Solver(const Patches& patches, const SolverOptions& options, LineTracer 
     box_area_ = LineSource(tracer_.bounds(), LineMethod::walls, options.seed).surface_area();
     if (options_.lines == 0)
         options_.lines = static_cast<std::uint64_t>(
-            std::ceil(kBundles * 0.25 * box_area_ * static_cast<double>(patches.count()) / surface_));
+            std::ceil(64.0 * lines_of_bundle()));
     list_triangles();
+}
+
+// A cell is as large as a triangle on average: then crossings cost about as much as triangles, and a patch of one
+// triangle has half a ray of each bundle; more lines of one direction would tell it little.
+double Solver::lines_of_bundle() const {
+    constexpr double kMost = 1 << 21;
+    return std::min(kMost, 0.25 * box_area_ * static_cast<double>(patches_->triangle_areas.size()) / surface_);
 }
 
 void Solver::list_triangles() {
@@ -111,8 +118,10 @@ void Solver::run(Executor& executor) {
         light += p.areas[i] * total(glm::dvec3(p.materials[i].emission) + reflectance(i) * arrived[i]);
         travelling += p.areas[i] * absolute(leaving[i]);
     }
-    const std::uint64_t lines = runs_ == 0 ? options_.lines : std::max<std::uint64_t>(1, options_.lines / kFewerLines);
-    for (bounces_ = 0; bounces_ < options_.most_bounces && travelling > options_.cutoff * light; ++bounces_) {
+    const std::uint64_t share = runs_ == 0 ? kFewerLinesAtFirst : kFewerLines;
+    const std::uint64_t lines = std::max<std::uint64_t>(1, options_.lines / share);
+    const double cutoff = runs_ == 0 ? options_.cutoff : kEarlierEnd * options_.cutoff;
+    for (bounces_ = 0; bounces_ < options_.most_bounces && travelling > cutoff * light; ++bounces_) {
         arrived.assign(count, glm::dvec3(0.0));
         gather({&leaving, glm::dvec3(0.0), lines, kGatherStream + 1 + bounces_}, arrived, executor);
         travelling = 0.0;

@@ -25,7 +25,7 @@ enum class Transport : std::uint8_t {
 };
 
 struct SolverOptions {
-    std::uint64_t lines = 0;              // global lines of a run's first gathering; 0: about 32 rays a patch
+    std::uint64_t lines = 0;              // global lines of a run's first gathering; 0: 64 bundles
     std::uint64_t first_shot = 1u << 18;  // rays from the lamps per run
     std::optional<LineMethod> method;     // absent: bundles
     Transport transport = Transport::global;
@@ -91,6 +91,7 @@ class Solver {
 
     Solver(const Patches& patches, const SolverOptions& options, LineTracer tracer, BundleTracer bundles);
     void list_triangles();
+    [[nodiscard]] double lines_of_bundle() const;
     [[nodiscard]] std::uint32_t triangle_of(std::size_t patch, double u) const;
     void shoot_lamps(Light& arrived, Executor& executor) const;
     void look_for_sun(Light& arrived, Executor& executor) const;
