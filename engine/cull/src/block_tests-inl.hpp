@@ -36,6 +36,13 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
     return bits;
 }
 
+// The lowest bits as a mask. Eight bytes are stored and loaded as one: parts would have to wait for each other.
+HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
+    alignas(8) std::uint8_t bytes[8];
+    std::memcpy(bytes, &bits, 8);
+    return hn::LoadMaskBits(DU(), bytes);
+}
+
 struct NodeTest {
     std::uint32_t alive;                   // lanes that no plane certainly rejects and that share a layer with the view
     alignas(64) std::uint32_t planes[16];  // per lane, those of the planes that it is not certainly inside of

@@ -73,13 +73,6 @@ HWY_INLINE void test_rows(const RowBlock* blocks, const RowPlanes& planes, std::
     }
 }
 
-// The lowest bits as a mask. Eight bytes are stored and loaded as one: parts would have to wait for each other.
-HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
-    alignas(8) std::uint8_t bytes[8];
-    std::memcpy(bytes, &bits, 8);
-    return hn::LoadMaskBits(DU(), bytes);
-}
-
 HWY_INLINE std::size_t list_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     const DU du;
     const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
