@@ -24,9 +24,12 @@ HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
 
 class ManyWalk {
   public:
-    ManyWalk(const ManyViewsInput& input, ManyViewsOutput& output) : in_(input), out_(output) {}
+    HWY_INLINE ManyWalk(const ManyViewsInput& input, const ManyViewsOutput& output) : in_(input), out_(output) {}
 
-    void run() {
+    // A copy of the output travels with the walk, so that the compiler keeps it in registers.
+    [[nodiscard]] HWY_INLINE ManyViewsOutput result() const { return out_; }
+
+    HWY_INLINE void run() {
         ManyViewsEntry& root = out_.stack[0];
         root = {};
         for (std::uint32_t v = 0; v < in_.view_count; ++v) {
@@ -171,21 +174,15 @@ class ManyWalk {
         const std::uint32_t id = entry.child & ~tree::kLeafBit;
         const tree::Leaf& leaf = in_.leaves[id];
         const DU du;
-        alignas(64) std::uint32_t masks[tree::kWidth];
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-            hn::Store(hn::Set(du, entry.whole), du, masks + l);
-        for_each_bit(entry.straddling, [&](unsigned v) HWY_ATTR {
-            const LocalOrigin at = local_origin(in_.views[v], leaf.origin, leaf.reach);
-            LocalPlane local[KernelView::kMaxPlanes];
-            for_each_bit(entry.planes[v], [&](unsigned i) { local[i] = local_plane(in_.views[v].planes[i], at); });
-            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-                const auto seen = hn::RebindMask(du, test_view(v, id, l, entry.planes[v], local));
-                hn::Store(hn::Or(hn::Load(du, masks + l), hn::IfThenElseZero(seen, hn::Set(du, 1u << v))), du,
-                          masks + l);
-            }
-        });
         for (std::size_t l = 0; l < tree::kWidth && l < leaf.count; l += hn::Lanes(du)) {
-            const VU mask = hn::Load(du, masks + l);
+            VU mask = hn::Set(du, entry.whole);
+            for_each_bit(entry.straddling, [&](unsigned v) HWY_ATTR {
+                const LocalOrigin at = local_origin(in_.views[v], leaf.origin, leaf.reach);
+                LocalPlane local[KernelView::kMaxPlanes];
+                for_each_bit(entry.planes[v], [&](unsigned i) { local[i] = local_plane(in_.views[v].planes[i], at); });
+                const auto seen = hn::RebindMask(du, test_view(v, id, l, entry.planes[v], local));
+                mask = hn::Or(mask, hn::IfThenElseZero(seen, hn::Set(du, 1u << v)));
+            });
             const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, leaf.count - l));
             hn::StoreU(hn::Compress(hn::Load(du, in_.slot_items + id * tree::kWidth + l), seen), du,
                        out_.ids + out_.count);
@@ -195,12 +192,14 @@ class ManyWalk {
     }
 
     const ManyViewsInput& in_;
-    ManyViewsOutput& out_;
+    ManyViewsOutput out_;
     std::size_t size_ = 0;
 };
 
 void RunManyViews(const ManyViewsInput& input, ManyViewsOutput& output) {
-    ManyWalk(input, output).run();
+    ManyWalk walk(input, output);
+    walk.run();
+    output = walk.result();
 }
 
 }  // namespace
