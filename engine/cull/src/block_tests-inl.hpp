@@ -44,6 +44,7 @@ HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
 }
 
 struct NodeTest {
+    std::uint32_t settled;                 // lanes that are certainly inside of all planes
     std::uint32_t alive;                   // lanes that no plane certainly rejects and that share a layer with the view
     alignas(64) std::uint32_t planes[16];  // per lane, those of the planes that it is not certainly inside of
 };
@@ -69,7 +70,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
     const DF d;
     const DU du;
     NodeTest result;
-    result.alive = 0;
+    result.alive = result.settled = 0;
     const LocalOrigin at = local_origin(view, node.origin, node.reach);
     LocalPlane local[KernelView::kMaxPlanes];
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
@@ -103,6 +104,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
         }
         hn::Store(straddled, du, result.planes + l);
         result.alive |= bits_of(alive) << l;
+        result.settled |= bits_of(hn::RebindMask(d, hn::Eq(straddled, hn::Zero(du)))) << l;
     }
     return result;
 }

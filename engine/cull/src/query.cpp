@@ -76,6 +76,9 @@ void Query::run(const tree::BoxTree& tree, Executor& executor) {
     output.straddling = visible_.straddling_.data();
     output.undecided = visible_.undecided_.data();
     output.stack = visible_.stack_.data();
+    grow(visible_.open_leaves_, 2 * (tree.leaves().size() + kPadding));
+    output.open_leaves = visible_.open_leaves_.data();
+    output.open_planes = output.open_leaves + tree.leaves().size() + kPadding;
     output.stack[0] = (1u << view.plane_count) - 1;
     run_tree_kernel(input, 1, output);
     std::size_t inside = output.inside_count, straddling = output.straddling_count;
@@ -110,6 +113,7 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
     grow(visible_.part_straddling_, starts[parts]);
     grow(visible_.undecided_, starts[parts]);
     grow(visible_.stack_, stack * kParts);
+    grow(visible_.open_leaves_, 2 * (starts[parts] / tree::kWidth + kPadding * parts));
     TreeKernelOutput outputs[kParts] = {};
     std::size_t kept[kParts] = {};
     executor.parallel_for(task_count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -119,21 +123,33 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
         output.straddling = visible_.part_straddling_.data() + starts[p];
         output.undecided = visible_.undecided_.data() + starts[p];
         output.stack = visible_.stack_.data() + stack * p;
+        // 16 more for what vectors write past the end, here too.
+        const std::size_t leaves = (starts[p + 1] - starts[p]) / tree::kWidth + kPadding;
+        output.open_leaves = visible_.open_leaves_.data() + 2 * (starts[p] / tree::kWidth + kPadding * p);
+        output.open_planes = output.open_leaves + leaves;
         // Last in, first out.
         for (std::size_t i = begin; i < end; ++i) output.stack[end - 1 - i] = tasks[i];
         run_tree_kernel(input, end - begin, output);
         kept[p] = decide(tree, output);
     });
-    std::size_t inside = 0, straddling = 0, inside_at[kParts], straddling_at[kParts];
+    std::size_t whole = 0, inside = 0, straddling = 0, whole_at[kParts], inside_at[kParts], straddling_at[kParts];
+    for (std::size_t p = 0; p < parts; ++p) {
+        whole_at[p] = whole;
+        straddling_at[p] = straddling;
+        whole += outputs[p].whole_count;
+        straddling += outputs[p].straddling_count;
+    }
+    inside = whole;
     for (std::size_t p = 0; p < parts; ++p) {
         inside_at[p] = inside;
-        straddling_at[p] = straddling;
-        inside += outputs[p].inside_count;
-        straddling += outputs[p].straddling_count;
+        inside += outputs[p].inside_count - outputs[p].whole_count;
     }
     executor.parallel_for(parts, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t p = begin; p < end; ++p) {
-            std::copy_n(outputs[p].inside, outputs[p].inside_count, visible_.ids_.data() + inside_at[p]);
+            const TreeKernelOutput& part = outputs[p];
+            std::copy_n(part.inside, part.whole_count, visible_.ids_.data() + whole_at[p]);
+            std::copy_n(part.inside + part.whole_count, part.inside_count - part.whole_count,
+                        visible_.ids_.data() + inside_at[p]);
             std::copy_n(outputs[p].straddling, outputs[p].straddling_count,
                         visible_.straddling_.data() + straddling_at[p]);
         }

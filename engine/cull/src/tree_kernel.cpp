@@ -1,6 +1,8 @@
 #include "tree_kernel.hpp"
 
 #include <hwy/cache_control.h>
+#include <algorithm>
+#include <cstddef>
 #include <crofton/cull/statistics.hpp>
 
 // Vectors of unknown size cannot be members.
@@ -39,65 +41,93 @@ class Walk {
         const tree::Node& node = in_.nodes[child];
         const NodeTest test = test_node(*in_.view, node, planes);
         std::size_t count = 0;
+        const std::uint32_t whole = seen(node, test.alive & test.settled);
         for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
             const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
-            const bool whole = test.planes[lane] == 0 && all_seen(node, lane);
-            entries[count++] = std::uint64_t{node.child[lane]} << 32 | (whole ? kWhole : test.planes[lane]);
+            entries[count++] = std::uint64_t{node.child[lane]} << 32 | (whole >> lane & 1 ? kWhole : test.planes[lane]);
         }
         return count;
     }
 
+    // First all nodes, then the leaves that they leave open: in one long loop, whose memory is asked for ahead.
     HWY_INLINE void run(std::size_t stack_size) {
         while (stack_size > 0) {
             const std::uint64_t entry = out_.stack[--stack_size];
             const auto child = static_cast<std::uint32_t>(entry >> 32);
             const auto planes = static_cast<std::uint32_t>(entry);
             if (planes & kWhole && accept_whole(child)) continue;
-            if (child & tree::kLeafBit)
-                visit_leaf(child & ~tree::kLeafBit, planes);
-            else
-                stack_size = visit_node(child, planes, stack_size);
+            if (child & tree::kLeafBit) {
+                out_.open_leaves[open_] = child;
+                out_.open_planes[open_++] = planes & ~kWhole;
+            } else {
+                stack_size = visit_node(child, planes & ~kWhole, stack_size);
+            }
+        }
+        out_.whole_count = out_.inside_count;
+        constexpr std::size_t kAhead = 4;
+        for (std::size_t i = 0; i < std::min(kAhead, open_); ++i) prefetch_leaf(out_.open_leaves[i]);
+        for (std::size_t i = 0; i < open_; ++i) {
+            if (i + kAhead < open_) prefetch_leaf(out_.open_leaves[i + kAhead]);
+            visit_leaf(out_.open_leaves[i] & ~tree::kLeafBit, out_.open_planes[i]);
         }
     }
 
   private:
-    // Is everything below in a layer that the view sees?
-    HWY_INLINE bool all_seen(const tree::Node& node, unsigned lane) const {
-        return ((node.layers_every & in_.view->layer_mask) != 0) || (node.layers_all[lane] & in_.view->layer_mask) != 0;
+    // Lanes of `lanes` below which everything is in a layer that the view sees.
+    HWY_INLINE std::uint32_t seen(const tree::Node& node, std::uint32_t lanes) const {
+        if (HWY_LIKELY(node.layers_every & in_.view->layer_mask)) return lanes;
+        std::uint32_t result = 0;
+        for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
+            const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+            if (node.layers_all[lane] & in_.view->layer_mask) result |= 1u << lane;
+        }
+        return result;
     }
 
     HWY_INLINE std::size_t visit_node(std::uint32_t id, std::uint32_t planes, std::size_t stack_size) {
         const tree::Node& node = in_.nodes[id];
-        const NodeTest test = test_node(*in_.view, node, planes & ~kWhole);
+        const NodeTest test = test_node(*in_.view, node, planes);
         if (kCountStatistics) out_.nodes_tested += node.count;
-        const auto entry_planes = [&](unsigned lane) {
-            const bool whole = test.planes[lane] == 0 && all_seen(node, lane);
-            return whole ? kWhole : test.planes[lane];
-        };
+        const std::uint32_t whole = seen(node, test.alive & test.settled);
         if (node.only_leaves) {
-            for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
-                const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
-                const tree::Leaf* leaf = &in_.leaves[node.child[lane] & ~tree::kLeafBit];
-                if (test.planes[lane])
-                    for (unsigned line = 0; line < sizeof(tree::Leaf) / 64; ++line)
-                        hwy::Prefetch(reinterpret_cast<const char*>(leaf) + 64 * line);
-            }
-            for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
-                const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
-                const std::uint32_t below = entry_planes(lane);
-                if (below & kWhole)
-                    accept_whole(node.child[lane]);
-                else
-                    visit_leaf(node.child[lane] & ~tree::kLeafBit, below);
-            }
+            for (std::uint32_t rest = whole; rest; rest &= rest - 1)
+                accept_whole(node.child[hwy::Num0BitsBelowLS1Bit_Nonzero32(rest)]);
+            leave_open(node, test, test.alive & ~whole);
             return stack_size;
         }
         for (std::uint32_t alive = test.alive; alive;) {
             const unsigned lane = 31u - static_cast<unsigned>(hwy::Num0BitsAboveMS1Bit_Nonzero32(alive));
             alive ^= 1u << lane;
-            out_.stack[stack_size++] = std::uint64_t{node.child[lane]} << 32 | entry_planes(lane);
+            const bool is_whole = whole >> lane & 1;
+            if (!is_whole && !(node.child[lane] & tree::kLeafBit)) prefetch_node(node.child[lane]);
+            out_.stack[stack_size++] = std::uint64_t{node.child[lane]} << 32 | (is_whole ? kWhole : test.planes[lane]);
         }
         return stack_size;
+    }
+
+    // Without a branch on how many they are.
+    HWY_INLINE void leave_open(const tree::Node& node, const NodeTest& test, std::uint32_t lanes) {
+        const DU du;
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+            const std::uint32_t part = lanes >> l;
+            const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(part), static_cast<std::uint8_t>(part >> 8)};
+            const auto mask = hn::LoadMaskBits(du, bytes);
+            hn::StoreU(hn::Compress(hn::Load(du, node.child + l), mask), du, out_.open_leaves + open_);
+            hn::StoreU(hn::Compress(hn::Load(du, test.planes + l), mask), du, out_.open_planes + open_);
+            open_ += hn::CountTrue(du, mask);
+        }
+    }
+
+    HWY_INLINE void prefetch_leaf(std::uint32_t child) const {
+        const std::uint32_t leaf = child & ~tree::kLeafBit;
+        for (std::size_t at = 0; at < offsetof(tree::Leaf, layers); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
+        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * tree::kWidth);
+    }
+
+    HWY_INLINE void prefetch_node(std::uint32_t node) const {
+        for (std::size_t at = 0; at < offsetof(tree::Node, layers_any); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
     }
 
     HWY_INLINE void copy_leaf(std::uint32_t leaf) {
@@ -155,7 +185,6 @@ class Walk {
         const tree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = *in_.view;
         if (kCountStatistics) out_.boxes_tested += in_.leaf_counts[id];
-        planes &= ~kWhole;
         const LocalOrigin at = local_origin(view, leaf.origin, leaf.reach);
         const DU du;
         if (HWY_LIKELY(planes && !(planes & (planes - 1)))) {
@@ -176,6 +205,7 @@ class Walk {
 
     const TreeKernelInput& in_;
     TreeKernelOutput out_;
+    std::size_t open_ = 0;
 };
 
 void RunTree(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {

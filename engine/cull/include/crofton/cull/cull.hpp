@@ -22,7 +22,7 @@ struct View {
 inline constexpr std::size_t kMaxViews = 32;  // in one pass
 
 // Tree order costs nothing and is the same on every run; items that a renderer lays out in the tree's order
-// (BoxTree::slot_items) come out ascending anyway.
+// (BoxTree::slot_items) come out in long ascending runs.
 enum class Order : std::uint8_t { ascending, tree };
 
 struct Options {

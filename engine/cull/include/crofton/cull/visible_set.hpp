@@ -11,8 +11,8 @@ namespace crofton::cull {
 
 class VisibleSet {
   public:
-    // The items seen, each once: in Order::ascending by id, in Order::tree those inside first, then those straddling,
-    // each part in the tree's order.
+    // The items seen, each once: in Order::ascending by id; in Order::tree in an order that depends on tree and view
+    // alone: those inside first, then those straddling, each part by and large along the tree.
     [[nodiscard]] std::span<const tree::ItemId> ids() const { return std::span(ids_).first(size_); }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_; }
@@ -32,6 +32,7 @@ class VisibleSet {
     Vector<Verdict> verdicts_;
     Vector<std::uint64_t> bits_;
     Vector<std::uint64_t> stack_;
+    Vector<std::uint32_t> open_leaves_;
     std::size_t size_ = 0, inside_ = 0;
     Statistics statistics_;
 };
