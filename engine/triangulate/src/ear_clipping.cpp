@@ -79,7 +79,14 @@ void EarClipping::collect_walk(Index start) {
     } while (e != start);
     corners_.front().previous = static_cast<Index>(corners_.size() - 1);
     corners_.back().next = 0;
-    for (Corner& c : corners_) update(c);
+    reflex_.clear();
+    for (Corner& c : corners_) {
+        c.reflex = is_reflex(c);
+        if (!c.reflex) continue;
+        ++reflex_count_[c.vertex];
+        reflex_.push_back(c.vertex);
+    }
+    grid_.build(mesh_->points, reflex_);
 }
 
 bool EarClipping::is_reflex(const Corner& c) const {
@@ -87,10 +94,11 @@ bool EarClipping::is_reflex(const Corner& c) const {
     return orientation(points[corners_[c.previous].vertex], points[c.vertex], points[corners_[c.next].vertex]) <= 0;
 }
 
+// Clipping narrows corners: what is convex stays so.
 void EarClipping::update(Corner& c) {
-    const bool reflex = is_reflex(c);
-    if (reflex != c.reflex) reflex_count_[c.vertex] += reflex ? 1u : ~0u;
-    c.reflex = reflex;
+    if (!c.reflex || is_reflex(c)) return;
+    c.reflex = false;
+    if (--reflex_count_[c.vertex] == 0) grid_.remove(c.vertex);
 }
 
 // Whether the segment to the vertex starts inside the corner.
@@ -103,8 +111,7 @@ bool EarClipping::opens_towards(const Corner& c, Index vertex) const {
     return c.reflex ? left_of_after || right_of_before : left_of_after && right_of_before;
 }
 
-// Vertices are in lexicographic order, so those within the triangle's width are those between its corners. Only reflex
-// ones can lie in an ear; those at a corner's position count by the direction in which the corners open.
+// Only reflex vertices can lie in an ear; those at a corner's position count by the direction in which the corners open.
 bool EarClipping::is_ear(const Corner& c) const {
     if (c.reflex) return false;
     const Corner &before = corners_[c.previous], &after = corners_[c.next];
@@ -113,15 +120,13 @@ bool EarClipping::is_ear(const Corner& c) const {
     if (before.vertex == after.vertex) return false;
     if (after.next != c.previous && (!opens_towards(before, after.vertex) || !opens_towards(after, before.vertex)))
         return false;
-    const double low = std::min({p.y, q.y, r.y}), high = std::max({p.y, q.y, r.y});
-    const Index end = std::max({before.vertex, c.vertex, after.vertex});
-    for (Index v = std::min({before.vertex, c.vertex, after.vertex}) + 1; v < end; ++v) {
-        if (reflex_count_[v] == 0 || v == before.vertex || v == c.vertex || v == after.vertex) continue;
+    const glm::dvec2 low(std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}));
+    const glm::dvec2 high(std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y}));
+    return !grid_.any(low, high, [&](Index v) {
+        if (v == before.vertex || v == c.vertex || v == after.vertex) return false;
         const auto& x = points[v];
-        if (x.y < low || x.y > high) continue;
-        if (orientation(p, q, x) >= 0 && orientation(q, r, x) >= 0 && orientation(r, p, x) >= 0) return false;
-    }
-    return true;
+        return orientation(p, q, x) >= 0 && orientation(q, r, x) >= 0 && orientation(r, p, x) >= 0;
+    });
 }
 
 void EarClipping::clip(Vector<std::array<Index, 3>>& triangles) {

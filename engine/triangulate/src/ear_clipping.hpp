@@ -3,6 +3,7 @@
 #include <array>
 
 #include "domain.hpp"
+#include "reflex_grid.hpp"
 
 namespace crofton::triangulate {
 
@@ -33,7 +34,8 @@ class EarClipping {
     const Domain* domain_ = nullptr;
     const HalfEdgeMesh* mesh_ = nullptr;
     Vector<std::uint8_t> wall_, walked_;
-    Vector<Index> parent_, bridges_, reflex_count_;
+    Vector<Index> parent_, bridges_, reflex_count_, reflex_;
+    ReflexGrid grid_;
     Vector<Corner> corners_;
     double weight_ = 0.0;
 };
