@@ -229,14 +229,21 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
     // A chunk's rows stay in the innermost cache from one view to the next.
     executor.parallel_for(set.chunks().size(), 4, [&](std::size_t begin, std::size_t end, unsigned) {
         ListKernelOutput output;
+        ViewBits seen[kMaxViews];
         for (std::size_t c = begin; c < end; ++c) {
             const std::size_t first = c * kChunk, count = std::min(kChunk, set.size() - first);
-            std::fill_n(view_masks.begin() + static_cast<std::ptrdiff_t>(first), count, 0u);
+            std::size_t seeing = 0;
             for (std::size_t v = 0; v < views.size(); ++v) {
                 query.run(c, views[v], kernel_views[v], usable[v], vectors[v], output);
-                mark_views_kernel(output.visible, count, 1u << v, layer_masks.empty() ? nullptr : &layer_masks[first],
-                                  views[v].layer_mask, &view_masks[first]);
+                const std::size_t words = (count + 63) / 64;
+                if (std::all_of(output.visible, output.visible + words, [](std::uint64_t w) { return w == 0; }))
+                    continue;
+                std::copy_n(output.visible, words, seen[seeing].visible);
+                seen[seeing].bit = 1u << v;
+                seen[seeing++].layer_mask = views[v].layer_mask;
             }
+            mark_views_kernel(seen, seeing, count, layer_masks.empty() ? nullptr : &layer_masks[first],
+                              &view_masks[first]);
         }
     });
 }

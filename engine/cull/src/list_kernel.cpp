@@ -73,18 +73,23 @@ HWY_INLINE void test_rows(const RowBlock* blocks, const RowPlanes& planes, std::
     }
 }
 
-HWY_INLINE std::size_t list_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
-    const DU du;
-    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
+// The indices of the set bits, which are few: eight are written for every word, whether it has them or not, and more
+// where it has. Room for 8 beyond the last is needed.
+HWY_INLINE std::size_t list_sparse_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w) {
-        if (bits[w] == 0) continue;
-        for (std::size_t l = 0; l < 64; l += hn::Lanes(du)) {
-            const auto mask = mask_of(bits[w] >> l);
-            hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, static_cast<std::uint32_t>(64 * w + l))), mask), du,
-                       ids + count);
-            count += hn::CountTrue(du, mask);
-        }
+        std::uint64_t word = bits[w];
+        const std::size_t found = hwy::PopCount(word);
+        const auto base = static_cast<std::uint32_t>(64 * w);
+        std::uint32_t* to = ids + count;
+        const auto next = [&] {
+            *to++ =
+                base + static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(word | std::uint64_t{1} << 63));
+            word &= word - 1;
+        };
+        for (int i = 0; i < 8; ++i) next();
+        for (std::size_t i = 8; i < found; ++i) next();
+        count += found;
     }
     return count;
 }
@@ -137,7 +142,7 @@ class ChunkQuery {
             open[w] = ~(outside | inside) & valid;
         }
         std::uint32_t indices[kChunk + 16], unsettled[kChunk + 16];
-        const std::size_t count = list_bits(open, words_, indices);
+        const std::size_t count = list_sparse_bits(open, words_, indices);
         std::size_t unsettled_count = 0;
         for_each_sixteen(indices, count, [&](const auto& lanes, const std::uint32_t* which) {
             const Sixteen test = lanes([&](const auto& boxes) HWY_ATTR {
@@ -216,22 +221,50 @@ void RunSpheres(const ListKernelInput<SphereRecord>& input, ListKernelOutput& ou
     ChunkQuery<SphereRecord>(input, output).run();
 }
 
-void MarkViews(const std::uint64_t* visible, std::size_t count, std::uint32_t bit, const std::uint32_t* layers,
-               std::uint32_t layer_mask, std::uint32_t* masks) {
+// Lanes i on of the bits.
+HWY_INLINE hn::Mask<DU> mask_at(const std::uint64_t* bits, std::size_t i) {
+    const DU du;
+    if (hn::Lanes(du) < 8) return mask_of(bits[i / 64] >> (i % 64));
+    return hn::LoadMaskBits(du, reinterpret_cast<const std::uint8_t*>(bits) + i / 8);
+}
+
+void MarkViews(const ViewBits* views, std::size_t view_count, std::size_t count, const std::uint32_t* layers,
+               std::uint32_t* masks) {
     const DU du;
     std::size_t i = 0;
     for (; i + hn::Lanes(du) <= count; i += hn::Lanes(du)) {
-        auto seen = mask_of(visible[i / 64] >> (i % 64));
-        if (layers)
-            seen = hn::And(seen, hn::Ne(hn::And(hn::LoadU(du, layers + i), hn::Set(du, layer_mask)), hn::Zero(du)));
-        hn::StoreU(hn::Or(hn::LoadU(du, masks + i), hn::IfThenElseZero(seen, hn::Set(du, bit))), du, masks + i);
+        VU mask = hn::Zero(du);
+        for (std::size_t n = 0; n < view_count; ++n) {
+            auto seen = mask_at(views[n].visible, i);
+            if (layers)
+                seen = hn::And(
+                    seen, hn::Ne(hn::And(hn::LoadU(du, layers + i), hn::Set(du, views[n].layer_mask)), hn::Zero(du)));
+            mask = hn::Or(mask, hn::IfThenElseZero(seen, hn::Set(du, views[n].bit)));
+        }
+        hn::StoreU(mask, du, masks + i);
     }
-    for (; i < count; ++i)
-        if (visible[i / 64] >> (i % 64) & 1 && (!layers || layers[i] & layer_mask)) masks[i] |= bit;
+    for (; i < count; ++i) {
+        masks[i] = 0;
+        for (std::size_t n = 0; n < view_count; ++n)
+            if (views[n].visible[i / 64] >> (i % 64) & 1 && (!layers || layers[i] & views[n].layer_mask))
+                masks[i] |= views[n].bit;
+    }
 }
 
 std::size_t ListBits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
-    return list_bits(bits, words, ids);
+    const DU du;
+    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < words; ++w) {
+        if (bits[w] == 0) continue;
+        for (std::size_t l = 0; l < 64; l += hn::Lanes(du)) {
+            const auto mask = mask_of(bits[w] >> l);
+            const VU ids_here = hn::Add(lanes, hn::Set(du, static_cast<std::uint32_t>(64 * w + l)));
+            hn::StoreU(hn::Compress(ids_here, mask), du, ids + count);
+            count += hn::CountTrue(du, mask);
+        }
+    }
+    return count;
 }
 
 }  // namespace
@@ -257,9 +290,9 @@ void run_list_kernel(const ListKernelInput<SphereRecord>& input, ListKernelOutpu
     HWY_DYNAMIC_DISPATCH(RunSpheres)(input, output);
 }
 
-void mark_views_kernel(const std::uint64_t* visible, std::size_t count, std::uint32_t bit, const std::uint32_t* layers,
-                       std::uint32_t layer_mask, std::uint32_t* masks) {
-    HWY_DYNAMIC_DISPATCH(MarkViews)(visible, count, bit, layers, layer_mask, masks);
+void mark_views_kernel(const ViewBits* views, std::size_t view_count, std::size_t count, const std::uint32_t* layers,
+                       std::uint32_t* masks) {
+    HWY_DYNAMIC_DISPATCH(MarkViews)(views, view_count, count, layers, masks);
 }
 
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
