@@ -1,4 +1,6 @@
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
@@ -116,7 +118,8 @@ TEST_SUITE("fit/fit") {
                 for (const double offset : {0.0, scale > 1e20 ? 3.0 : 1e5, scale > 1e20 ? 9.0 : 1e8})
                     for (const Quality quality : kQualities) {
                         const glm::dmat3 turn = random_rotation(random);
-                        std::vector<glm::dvec3> points = box_points(random, half, 20);
+                        // Few points are searched as a whole, many by their extreme points.
+                        std::vector<glm::dvec3> points = box_points(random, half, random() % 2 == 0 ? 20 : 300);
                         for (glm::dvec3& p : points)
                             p = (turn * p + glm::dvec3(offset, -0.3 * offset, 0.1 * offset)) * scale;
                         const Obb box = fit::fit_obb(view(points), {measure::minimal_perimeter(), quality}).value();
@@ -142,22 +145,82 @@ TEST_SUITE("fit/fit") {
             }
     }
 
-    TEST_CASE("the same box, bit for bit, for any order and duplication of the points") {
+    TEST_CASE("every quality fits every degenerate class by every criterion, few points and many, float and double") {
+        std::mt19937 random(23);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        const glm::dvec3 shapes[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0.2, 1e-6}, {1, 1e-6, 1e-6}, {1, 0.5, 0.2}};
+        for (const glm::dvec3& half : shapes)
+            for (const std::size_t count : {1u, 2u, 3u, 17u, 700u})
+                for (const bool turned : {false, true}) {
+                    const glm::dmat3 turn = turned ? random_rotation(random) : glm::dmat3(1.0);
+                    std::vector<glm::dvec3> points;
+                    for (std::size_t i = 0; i < count; ++i)
+                        points.push_back(turn * (half * glm::dvec3(unit(random), unit(random), unit(random))));
+                    const std::vector<glm::vec3> floats(points.begin(), points.end());
+                    for (const measure::Criterion& criterion :
+                         {measure::minimal_volume(), measure::minimal_area(), measure::minimal_perimeter()}) {
+                        double exact = 0.0;
+                        for (const Quality quality : {Quality::exact, Quality::tight, Quality::fast}) {
+                            INFO(half.x, " ", half.y, " ", half.z, " count ", count, " quality ", int(quality));
+                            const Obb box = fit::fit_obb(view(points), {criterion, quality}).value();
+                            CHECK(contains_all(box, points));
+                            CHECK(validate(box).has_value());
+                            CHECK(contains_all(fit::fit_obb(view(floats), {criterion, quality}).value(), floats));
+                            // No thicker than the axes make it, and not much worse than the best.
+                            const double value = edge_sum(box);
+                            if (criterion.mean_curvature_weight == 0.0) continue;
+                            if (quality == Quality::exact)
+                                exact = value;
+                            else
+                                CHECK(value <= exact * (quality == Quality::tight ? 1.08 : 1.2) + 1e-30);
+                        }
+                    }
+                }
+    }
+
+    TEST_CASE("the same box, bit for bit, for any order and duplication of the points, also where many tie") {
         std::mt19937 random(11);
         std::normal_distribution<float> normal;
-        std::vector<glm::vec3> points;
+        std::vector<glm::vec3> clouds[4];
         for (int i = 0; i < 300; ++i)
-            points.push_back(glm::vec3(3.0f * normal(random), normal(random), 0.5f * normal(random)));
-        for (const Quality quality : kQualities) {
-            const Obb expected = fit::fit_obb(view(points), {.quality = quality}).value();
-            std::vector<glm::vec3> shuffled = points;
-            shuffled.insert(shuffled.end(), points.begin(), points.begin() + 100);
-            for (int run = 0; run < 5; ++run) {
-                std::shuffle(shuffled.begin(), shuffled.end(), random);
-                const Obb box = fit::fit_obb(view(shuffled), {.quality = quality}).value();
-                CHECK(box.center == expected.center);
-                CHECK(box.axes == expected.axes);
-                CHECK(box.half_extents == expected.half_extents);
+            clouds[0].push_back(glm::vec3(3.0f * normal(random), normal(random), 0.5f * normal(random)));
+        clouds[1].assign(clouds[0].begin(), clouds[0].begin() + 60);
+        for (int i = 0; i < 72; ++i) clouds[2].push_back(glm::vec3(i % 3, i / 3 % 4, i / 12) * 0.1f);
+        for (int i = 0; i < 720; ++i) clouds[3].push_back(glm::vec3(i % 10, i / 10 % 9, i / 90) * 0.1f);
+        for (const std::vector<glm::vec3>& points : clouds)
+            for (const Quality quality : kQualities) {
+                if (quality == Quality::exact && points.size() == 720) continue;
+                const Obb expected = fit::fit_obb(view(points), {.quality = quality}).value();
+                std::vector<glm::vec3> shuffled = points;
+                shuffled.insert(shuffled.end(), points.begin(), points.begin() + 50);
+                for (int run = 0; run < 5; ++run) {
+                    std::shuffle(shuffled.begin(), shuffled.end(), random);
+                    const Obb box = fit::fit_obb(view(shuffled), {.quality = quality}).value();
+                    INFO(points.size(), " points, quality ", int(quality));
+                    CHECK(box.center == expected.center);
+                    CHECK(box.axes == expected.axes);
+                    CHECK(box.half_extents == expected.half_extents);
+                }
+            }
+    }
+
+    TEST_CASE("every instruction set gives the same bits") {
+        std::mt19937 random(29);
+        std::normal_distribution<float> normal;
+        for (const std::size_t count : {5u, 31u, 64u, 700u}) {
+            std::vector<glm::vec3> points;
+            for (std::size_t i = 0; i < count; ++i)
+                points.push_back(glm::vec3(3.0f * normal(random), normal(random), 0.5f * normal(random)));
+            for (const Quality quality : kQualities) {
+                const Obb expected = fit::fit_obb(view(points), {.quality = quality}).value();
+                for (auto rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+                    hwy::SetSupportedTargetsForTest(rest & -rest);
+                    const Obb box = fit::fit_obb(view(points), {.quality = quality}).value();
+                    hwy::SetSupportedTargetsForTest(0);
+                    CHECK(box.center == expected.center);
+                    CHECK(box.axes == expected.axes);
+                    CHECK(box.half_extents == expected.half_extents);
+                }
             }
         }
     }
@@ -168,7 +231,8 @@ TEST_SUITE("fit/fit") {
         for (int run = 0; run < 100; ++run) {
             const glm::mat3 axes(random_rotation(random));
             std::vector<glm::dvec3> points;
-            for (int i = 0; i < 30; ++i) points.emplace_back(normal(random), normal(random), normal(random));
+            for (int i = 0; i < (run % 4 == 0 ? 400 : 30); ++i)
+                points.emplace_back(normal(random), normal(random), normal(random));
             const Obb box = fit::fit_oriented(view(points), axes).value();
             CHECK(box.axes == axes);
             CHECK(contains_all(box, points));

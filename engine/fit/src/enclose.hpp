@@ -7,6 +7,8 @@
 
 namespace crofton::fit {
 
+inline constexpr std::size_t kFew = 256;  // points; so few are searched and enclosed as a whole
+
 // The box with these axes and a centre within rounding of the best, whose half extents are the least floats such that
 // contains(box, p) holds for all points of the cloud.
 [[nodiscard]] Obb enclose(PointCloud& cloud, const glm::mat3& axes);

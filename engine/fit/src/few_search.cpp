@@ -82,7 +82,7 @@ const DirectionTable& directions() {
 
 constexpr double kNoValue = 1e30;
 constexpr float kFlush = 3e-6f;  // depths up to this lie on the face: rounding of float coordinates stays below
-constexpr double kGain = 1e-6;   // relative; what is less is rounding
+constexpr double kGain = 2e-7;   // relative; what is less is rounding
 
 // Whether two frames lie within about 15 degrees, up to the symmetries of a box.
 bool alike(const glm::dmat3& a, const glm::dmat3& b) {

@@ -12,13 +12,25 @@ Result<Obb> fit_obb(std::span<const glm::dvec3> points, const Options& options) 
     return Fitter().fit(points, options);
 }
 
-Result<Obb> fit_oriented(std::span<const glm::dvec3> points, const glm::mat3& axes) {
+namespace {
+
+template <class Point>
+Result<Obb> around(std::span<const Point> points, const glm::mat3& axes) {
     Obb shape;
     shape.axes = axes;
     if (auto valid = validate(shape); !valid) return tl::unexpected(valid.error());
     PointCloud cloud;
     if (auto valid = cloud.assign(points); !valid) return tl::unexpected(valid.error());
-    return enclose(cloud, axes);
+    return points.size() <= kFew ? enclose_few(cloud, axes) : enclose(cloud, axes);
+}
+
+}  // namespace
+
+Result<Obb> fit_oriented(std::span<const glm::vec3> points, const glm::mat3& axes) {
+    return around(points, axes);
+}
+Result<Obb> fit_oriented(std::span<const glm::dvec3> points, const glm::mat3& axes) {
+    return around(points, axes);
 }
 
 }  // namespace crofton::fit

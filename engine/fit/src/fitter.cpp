@@ -30,7 +30,6 @@ constexpr double kThin = 1e-3;
 
 constexpr FewEffort kFastFew{1, 6, 2}, kTightFew{2, 9, 4}, kTightFewByVolume{3, 9, 4};
 constexpr Effort kFast{kFastFew, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
-constexpr std::size_t kFew = 256;  // points of a cluster, which is searched as a whole
 
 class Deadline {
   public:

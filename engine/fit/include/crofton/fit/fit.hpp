@@ -9,8 +9,8 @@
 namespace crofton::fit {
 
 enum class Quality : std::uint8_t {
-    fast,   // one or two passes over the points
-    tight,  // convex hull and local search to a flush optimum
+    fast,   // a few passes over the points
+    tight,  // local search from many frames to a flush optimum
     exact,  // the global optimum with a certificate
 };
 
@@ -24,7 +24,9 @@ struct Options {
 [[nodiscard]] Result<Obb> fit_obb(std::span<const glm::vec3> points, const Options& options = {});
 [[nodiscard]] Result<Obb> fit_obb(std::span<const glm::dvec3> points, const Options& options = {});
 
-// A box with the given (orthonormal) axes around the points, as small as rounding allows.
+// A box with the given (orthonormal) axes around the points, as small as rounding allows: how a box is refitted when its
+// points have moved.
+[[nodiscard]] Result<Obb> fit_oriented(std::span<const glm::vec3> points, const glm::mat3& axes);
 [[nodiscard]] Result<Obb> fit_oriented(std::span<const glm::dvec3> points, const glm::mat3& axes);
 
 // A box that contains all the boxes, good by the criterion.
