@@ -1,5 +1,7 @@
 #include "few_kernels.hpp"
 
+#include <bit>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "few_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -34,6 +36,10 @@ HWY_INLINE Vec3 scaled(const Vec3& a, Lane s) {
 }
 HWY_INLINE Vec3 broadcast(Tag d, const FewPoints& points, std::size_t i) {
     return {hn::Set(d, points.x[i]), hn::Set(d, points.y[i]), hn::Set(d, points.z[i])};
+}
+
+HWY_INLINE Vec3 load(Tag d, const FewPoints& points, std::size_t i) {
+    return {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
 }
 
 struct Range {
@@ -129,8 +135,7 @@ void support_impl(const FewPoints& points, const float frame[9], float supports[
         Range range = nothing(d);
         auto low = hn::Zero(d), high = hn::Zero(d);
         for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
-            const auto t =
-                dot(axis, {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)});
+            const auto t = dot(axis, load(d, points, i));
             const auto index = hn::Iota(d, static_cast<float>(i));
             low = hn::IfThenElse(hn::Lt(t, range.low), index, low);
             high = hn::IfThenElse(hn::Gt(t, range.high), index, high);
@@ -299,7 +304,7 @@ void turn_impl(const FewPoints& points, const FloatWeights& weights, float* scra
     const Vec3 axis = set(d, turn.axis), right = set(d, turn.right), up = set(d, turn.up);
     Range depths = nothing(d);
     for (std::size_t i = 0; i < padded; i += hn::Lanes(d)) {
-        const Vec3 p = {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+        const Vec3 p = load(d, points, i);
         depths.include(dot(axis, p));
         hn::StoreU(dot(right, p), d, px + i);
         hn::StoreU(dot(up, p), d, py + i);
@@ -353,24 +358,34 @@ void slides_impl(const FewPoints& points, const FloatWeights& weights, Slides& s
     }
 }
 
-void depths_impl(const FewPoints& points, const float frame[9], float* depths, std::size_t stride) {
+// Appends the lanes of `mask`, as indices from `base`, below `count`, while there is room.
+HWY_INLINE void append(Tag d, hn::Mask<Tag> mask, std::size_t base, std::size_t count, FlushSide& side) {
+    if (hn::AllFalse(d, mask)) return;
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    for (unsigned bits = bytes[0] | static_cast<unsigned>(bytes[1]) << 8; bits != 0; bits &= bits - 1) {
+        const std::size_t index = base + static_cast<std::size_t>(std::countr_zero(bits));
+        if (index < count && side.count < kMostFlush) side.indices[side.count++] = static_cast<std::uint32_t>(index);
+    }
+}
+
+void flush_impl(const FewPoints& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]) {
     const Tag d;
+    const auto near = hn::Set(d, tolerance);
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 axis = set(d, frame + 3 * k);
-        float* const below = depths + 2 * k * stride;
-        float* const above = below + stride;
         Range range = nothing(d);
         for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
-            const Vec3 p = {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
-            const auto t = dot(axis, p);
+            const auto t = dot(axis, load(d, points, i));
             range.include(t);
-            hn::StoreU(t, d, below + i);
+            hn::StoreU(t, d, scratch + i);
         }
         const auto high = hn::MaxOfLanes(d, range.high), low = hn::MinOfLanes(d, range.low);
+        sides[2 * k].count = sides[2 * k + 1].count = 0;
         for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
-            const auto t = hn::LoadU(d, below + i);
-            hn::StoreU(hn::Sub(high, t), d, below + i);
-            hn::StoreU(hn::Sub(t, low), d, above + i);
+            const auto t = hn::LoadU(d, scratch + i);
+            append(d, hn::Le(hn::Sub(high, t), near), i, points.count, sides[2 * k]);
+            append(d, hn::Le(hn::Sub(t, low), near), i, points.count, sides[2 * k + 1]);
         }
     }
 }
@@ -389,7 +404,7 @@ HWY_EXPORT(settle_impl);
 HWY_EXPORT(supports_impl);
 HWY_EXPORT(turn_impl);
 HWY_EXPORT(slides_impl);
-HWY_EXPORT(depths_impl);
+HWY_EXPORT(flush_impl);
 
 void extremes(const FewPoints& points, const Directions& directions, float* least, float* greatest) {
     HWY_DYNAMIC_DISPATCH(extremes_impl)(points, directions, least, greatest);
@@ -416,8 +431,8 @@ void turn(const FewPoints& points, const FloatWeights& weights, float* scratch, 
 void values_of_slides(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
     HWY_DYNAMIC_DISPATCH(slides_impl)(points, weights, slides);
 }
-void depths_below_faces(const FewPoints& points, const float frame[9], float* depths, std::size_t stride) {
-    HWY_DYNAMIC_DISPATCH(depths_impl)(points, frame, depths, stride);
+void flush_points(const FewPoints& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]) {
+    HWY_DYNAMIC_DISPATCH(flush_impl)(points, frame, tolerance, scratch, sides);
 }
 
 }  // namespace crofton::fit::kernels

@@ -2,6 +2,7 @@
 // Everything is in float and lanes never mix, so all instruction sets give the same bits.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 #include "weights.hpp"
 
@@ -69,8 +70,13 @@ struct Slides {
 };
 void values_of_slides(const FewPoints& points, const FloatWeights& weights, Slides& slides);
 
-// Writes to `heights` (six arrays of `stride`) how far each point lies below the face of each side; `frame` as Turn's
-// three axes in sequence, side 2k along +axis k, 2k + 1 along −axis k.
-void depths_below_faces(const FewPoints& points, const float frame[9], float* depths, std::size_t stride);
+// The first points, kMostFlush at most, that lie within `tolerance` of the face of each side, by index; `frame` as the
+// three axes in sequence, side 2k along +axis k, 2k + 1 along −axis k. `scratch` has room for the points.
+inline constexpr std::size_t kMostFlush = 4;
+struct FlushSide {
+    std::uint32_t indices[kMostFlush];
+    std::size_t count;
+};
+void flush_points(const FewPoints& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]);
 
 }  // namespace crofton::fit::kernels

@@ -81,8 +81,9 @@ const DirectionTable& directions() {
 }
 
 constexpr double kNoValue = 1e30;
-constexpr float kFlush = 3e-6f;  // depths up to this lie on the face: rounding of float coordinates stays below
-constexpr double kGain = 2e-7;   // relative; what is less is rounding
+constexpr float kFlush = 3e-6f;      // depths up to this lie on the face: rounding of float coordinates stays below
+constexpr double kShortEdge = 1e-4;  // the direction of a shorter one is rounding
+constexpr double kGain = 2e-7;       // relative; what is less is rounding
 
 // Whether two frames lie within about 15 degrees, up to the symmetries of a box.
 bool alike(const glm::dmat3& a, const glm::dmat3& b) {
@@ -112,7 +113,6 @@ void FewSearch::assign(std::span<const glm::dvec3> points) {
     }
     marked_.assign(padded, 0);
     scratch_.resize(2 * kLanes * padded);
-    depths_.resize(6 * padded);
 }
 
 void FewSearch::mark(const float* indices, std::size_t count) {
@@ -185,21 +185,16 @@ void FewSearch::find_flush_edges(const glm::dmat3& frame) {
     edges_.clear();
     float axes[9];
     for (int k = 0; k < 3; ++k) to_floats(frame[k], axes + 3 * k);
-    const std::size_t stride = subset_.x.size();
-    kernels::depths_below_faces(view(), axes, depths_.data(), stride);
-    for (std::size_t side = 0; side < 6; ++side) {
-        const float* depths = depths_.data() + side * stride;
-        std::array<std::size_t, 4> flush;
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < subset_.indices.size(); ++i)
-            if (depths[i] <= kFlush && count < flush.size()) flush[count++] = subset_.indices[i];
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t j = i + 1; j < count; ++j) {
-                const glm::dvec3 d = points_[flush[j]] - points_[flush[i]];
-                if (const double length = glm::length(d); length > 1e-4)
+    kernels::FlushSide sides[6];
+    kernels::flush_points(view(), axes, kFlush, scratch_.data(), sides);
+    for (std::size_t side = 0; side < 6; ++side)
+        for (std::size_t i = 0; i < sides[side].count; ++i)
+            for (std::size_t j = i + 1; j < sides[side].count; ++j) {
+                const glm::dvec3 d =
+                    points_[subset_.indices[sides[side].indices[j]]] - points_[subset_.indices[sides[side].indices[i]]];
+                if (const double length = glm::length(d); length > kShortEdge)
                     edges_.push_back({static_cast<int>(side / 2), d / length});
             }
-    }
 }
 
 bool FewSearch::slide_along(const glm::dmat3& frame, const FlushEdge& first, const FlushEdge& second, Candidate& best) {

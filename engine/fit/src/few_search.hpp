@@ -55,7 +55,7 @@ class FewSearch {
     std::span<const glm::dvec3> points_;
     Weights weights_;
     kernels::FloatWeights float_weights_{};
-    Vector<float> x_, y_, z_, scratch_, depths_;
+    Vector<float> x_, y_, z_, scratch_;
     Vector<unsigned char> marked_;
     bool grown_ = false;
     Subset subset_;
