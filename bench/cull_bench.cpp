@@ -227,8 +227,8 @@ void flat_views(benchmark::State& state, bool one_pass) {
         benchmark::DoNotOptimize(masks.data());
     }
 }
-BENCHMARK_CAPTURE(flat_views, one_pass, true)->Args({1000000, 4})->Args({1000000, 32});
-BENCHMARK_CAPTURE(flat_views, one_by_one, false)->Args({1000000, 4})->Args({1000000, 32});
+BENCHMARK_CAPTURE(flat_views, one_pass, true)->Args({1000000, 4})->Args({1000000, 32})->Args({10000000, 4});
+BENCHMARK_CAPTURE(flat_views, one_by_one, false)->Args({1000000, 4})->Args({1000000, 32})->Args({10000000, 4});
 
 // Four cascades or cube faces: one pass beside one query each.
 void many_views(benchmark::State& state, bool one_pass) {

@@ -27,6 +27,7 @@ constexpr Pair kPairs[] = {
     {"four queries of a tree / one pass", "many_views/one_by_one/100000", "many_views/one_pass/100000"},
     {"four queries of a list / one pass", "flat_views/one_by_one/1000000/4", "flat_views/one_pass/1000000/4"},
     {"32 queries of a list / one pass", "flat_views/one_by_one/1000000/32", "flat_views/one_pass/1000000/32"},
+    {"four queries of a list / one pass", "flat_views/one_by_one/10000000/4", "flat_views/one_pass/10000000/4"},
     {"list, one thread / two", "threads/1000000/1/real_time", "threads/1000000/2/real_time"},
     {"tree, one thread / two", "tree_threads/1000000/1/real_time", "tree_threads/1000000/2/real_time"},
 };

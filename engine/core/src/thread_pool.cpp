@@ -21,7 +21,7 @@ struct ThreadPool::State {
     std::condition_variable wake, done;
     Job* job = nullptr;
     std::size_t generation = 0;
-    unsigned busy = 0;
+    std::atomic<unsigned> busy{0};  // written under the mutex
     bool quit = false;
     std::vector<std::thread> threads;
 
@@ -71,7 +71,9 @@ ThreadPool::~ThreadPool() {
     for (std::thread& thread : state_->threads) thread.join();
 }
 
-unsigned ThreadPool::concurrency() const { return static_cast<unsigned>(state_->threads.size()) + 1; }
+unsigned ThreadPool::concurrency() const {
+    return static_cast<unsigned>(state_->threads.size()) + 1;
+}
 
 void ThreadPool::parallel_for(std::size_t count, std::size_t grain, RangeTask body) {
     CROFTON_ASSERT(grain >= 1, "parallel_for needs a grain of at least 1");
@@ -91,7 +93,12 @@ void ThreadPool::parallel_for(std::size_t count, std::size_t grain, RangeTask bo
     State::run(job, 0);
     State::working_for = outer;
     std::unique_lock lock(state_->mutex);
-    state_->job = nullptr;
+    state_->job = nullptr;  // who has not begun by now never does
+    // The others are at their last ranges: going to sleep and being woken takes longer than most of those.
+    lock.unlock();
+    for (int spin = 0; spin < 10000 && state_->busy.load() > 0; ++spin) {
+    }
+    lock.lock();
     state_->done.wait(lock, [&] { return state_->busy == 0; });
 }
 

@@ -195,7 +195,7 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
     const bool usable = is_usable(view.frustum), vectors = takes_vectors(view.frustum);
     const KernelView kernel_view = kernel_view_of(view);
     const ListQuery<Bound> query{set, bounds, mode};
-    executor.parallel_for(set.chunks().size(), 4, [&](std::size_t begin, std::size_t end, unsigned) {
+    executor.parallel_for(set.chunks().size(), 2, [&](std::size_t begin, std::size_t end, unsigned) {
         ListKernelOutput output;
         for (std::size_t c = begin; c < end; ++c) {
             verdicts.by_chunk[c] = query.run(c, view, kernel_view, usable, vectors, output);
@@ -227,7 +227,7 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
     }
     const ListQuery<Bound> query{set, bounds, mode};
     // A chunk's rows stay in the innermost cache from one view to the next.
-    executor.parallel_for(set.chunks().size(), 4, [&](std::size_t begin, std::size_t end, unsigned) {
+    executor.parallel_for(set.chunks().size(), 2, [&](std::size_t begin, std::size_t end, unsigned) {
         ListKernelOutput output;
         ViewBits seen[kMaxViews];
         for (std::size_t c = begin; c < end; ++c) {
