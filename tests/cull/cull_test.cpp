@@ -85,4 +85,95 @@ TEST_SUITE("cull/cull") {
                 }
             }
     }
+
+    TEST_CASE("binary trees, oriented or not, give classify's verdicts while items come and go") {
+        for (const bool oriented : {false, true})
+            for (const double offset : {0.0, 1e6}) {
+                std::vector<Obb> boxes = oracle::random_crowd(600, offset, 11).boxes;
+                auto tree = *tree::VisitTree::build(boxes, {.oriented = oriented});
+                oracle::NearMisses random(13, offset);
+                cull::VisibleSet visible;
+                for (int trial = 0; trial < 60; ++trial) {
+                    const cull::ItemId item = random.index(static_cast<unsigned>(boxes.size()));
+                    const Obb box = oracle::random_box(random, offset * glm::dvec3(1.0, -0.7, 0.3), 40.0);
+                    if (trial % 3 == 0) {
+                        tree.remove(item);
+                    } else {
+                        const cull::ItemId id = *tree.insert(box);
+                        boxes.resize(std::max<std::size_t>(boxes.size(), id + 1));
+                        boxes[id] = box;
+                    }
+                    Camera camera = random.camera();
+                    camera.far = camera.near + random.number(1.0, 60.0);
+                    const cull::View view{*frustum_of(camera)};
+                    const cull::Options options{trial % 2 ? cull::Mode::exact : cull::Mode::conservative};
+                    std::vector<cull::ItemId> ids;
+                    std::vector<Verdict> verdicts;
+                    for (std::size_t i = 0; i < boxes.size(); ++i) {
+                        if (!tree.holds(static_cast<cull::ItemId>(i))) continue;
+                        const Verdict verdict = cull::classify(view.frustum, boxes[i], options.mode);
+                        if (verdict == Verdict::outside) continue;
+                        ids.push_back(static_cast<cull::ItemId>(i));
+                        verdicts.push_back(verdict);
+                    }
+                    cull::cull(tree, view, visible, options);
+                    CHECK(std::ranges::equal(visible.ids(), ids));
+                    CHECK(std::ranges::equal(visible.verdicts(), verdicts));
+                }
+            }
+        const tree::VisitTree empty = *tree::VisitTree::build(std::span<const Obb>{});
+        cull::VisibleSet visible;
+        cull::cull(empty, {*frustum_of(Camera{})}, visible);
+        CHECK(visible.size() == 0);
+    }
+
+    TEST_CASE("after any moves, insertions, removals and rebuilds a tree gives classify's verdicts") {
+        // Boxes of every size, from points to 1e20, near and far: frames of nodes and leaves must give way.
+        oracle::NearMisses random(17);
+        std::vector<Obb> boxes = oracle::random_crowd(2000, 0.0, 12).boxes;
+        tree::BoxTree tree = *tree::BoxTree::build(boxes);
+        std::vector<char> present(boxes.size(), 1);
+        cull::VisibleSet visible;
+        std::vector<cull::ItemId> sorted, ids;
+        for (int frame = 0; frame < 150; ++frame) {
+            for (int change = 0; change < 40; ++change) {
+                const cull::ItemId item = random.index(static_cast<unsigned>(boxes.size()));
+                Obb box = oracle::random_box(random, glm::dvec3(0.0), frame % 5 ? 40.0 : 4e6);
+                if (change == 0) box.half_extents *= frame % 7 ? 0.0f : 1e20f;
+                if (change == 1) box.half_extents *= 1e-38f;
+                if (change == 2) box.center *= 1e18;
+                if (change % 8 == 3) {
+                    CHECK(tree.remove(item).has_value() == (present[item] != 0));
+                    present[item] = 0;
+                } else if (change % 8 == 4) {
+                    const cull::ItemId id = *tree.insert(box);
+                    boxes.resize(std::max<std::size_t>(boxes.size(), id + 1));
+                    present.resize(boxes.size());
+                    boxes[id] = box;
+                    present[id] = 1;
+                } else if (present[item]) {
+                    REQUIRE(tree.move(item, box).has_value());
+                    boxes[item] = box;
+                }
+            }
+            tree.refit();
+            if (frame % 2) (void)tree.maintain(3000);
+            Camera camera = random.camera();
+            camera.far = camera.near + random.number(1.0, 60.0);
+            const cull::View view{*frustum_of(camera)};
+            ids.clear();
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                if (present[i] && cull::classify(view.frustum, boxes[i]) != Verdict::outside)
+                    ids.push_back(static_cast<cull::ItemId>(i));
+            cull::cull(tree, view, visible);
+            CHECK(std::ranges::equal(visible.ids(), ids));
+            cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+            sorted.assign(visible.ids().begin(), visible.ids().end());
+            std::ranges::sort(sorted);
+            CHECK(sorted == ids);
+            const auto valid = tree.validate();
+            INFO((valid ? std::string() : valid.error().message));
+            REQUIRE(valid.has_value());
+        }
+    }
 }

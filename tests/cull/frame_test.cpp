@@ -180,8 +180,8 @@ TEST_SUITE("cull/frame") {
         oracle::Crowd crowd = oracle::random_crowd(4000, 0.0, 6);
         tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes);
         tree::BoxTree neglected = *tree::BoxTree::build(crowd.boxes);
-        for (int frame = 0; frame < 3000; ++frame) {
-            for (int n = 0; n < 200; ++n) {
+        for (int frame = 0; frame < 10000; ++frame) {
+            for (int n = 0; n < 100; ++n) {
                 const tree::ItemId item = random.index(4000);
                 Obb& box = crowd.boxes[item];
                 box.center = glm::clamp(box.center + 1.0 * random.direction(), glm::dvec3(-40.0), glm::dvec3(40.0));

@@ -10,6 +10,10 @@ void cull(const tree::BoxTree& tree, const View& view, VisibleSet& visible, cons
     Query(view, visible, options).run(tree, executor);
 }
 
+void cull(const tree::VisitTree& tree, const View& view, VisibleSet& visible, const Options& options) {
+    Query(view, visible, options).run(tree);
+}
+
 void cull(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view, VisibleSet& visible,
           const Options& options, Executor&) {
     CROFTON_ASSERT(layer_masks.empty() || layer_masks.size() == boxes.size(),

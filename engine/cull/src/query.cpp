@@ -86,6 +86,28 @@ void Query::run(const tree::BoxTree& tree, Executor& executor) {
     finish(inside, straddling, tree.boxes().size());
 }
 
+// A bound contains what is below it, so its verdict is theirs unless it straddles.
+void Query::run(const tree::VisitTree& tree) {
+    start(tree.id_count());
+    if (tree.root() == nullptr) return finish(0, 0, tree.id_count());
+    Verdict last = Verdict::outside;  // of the bound that was asked last: the item's own, or one that was taken whole
+    std::size_t inside = 0, straddling = 0;
+    const auto test = [&](const Obb& bound) {
+        last = classify(view_.frustum, bound, options_.mode);
+        if (last == Verdict::outside) return tree::Visit::skip;
+        return last == Verdict::inside ? tree::Visit::take : tree::Visit::descend;
+    };
+    const auto found = [&](ItemId item) {
+        if (last == Verdict::inside)
+            visible_.ids_[inside++] = item;
+        else
+            visible_.straddling_[straddling++] = item;
+    };
+    const std::size_t tests = view_.layer_mask != 0 ? tree.visit(test, found) : 0;
+    if (kCountStatistics) visible_.statistics_.nodes_tested = tests;
+    finish(inside, straddling, tree.id_count());
+}
+
 // The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers; the parts are
 // then put together in order, so that the answer does not depend on who did what.
 void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, Executor& executor) {

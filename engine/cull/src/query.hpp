@@ -15,6 +15,7 @@ class Query {
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
     void run(const tree::BoxTree& tree, Executor& executor);
+    void run(const tree::VisitTree& tree);
 
   private:
     void start(std::size_t items);

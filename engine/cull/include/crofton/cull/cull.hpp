@@ -6,6 +6,7 @@
 #include <crofton/cull/visible_set.hpp>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/tree/box_tree.hpp>
+#include <crofton/tree/visit_tree.hpp>
 #include <cstdint>
 #include <span>
 
@@ -35,6 +36,9 @@ struct Options {
 // set.
 void cull(const tree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options = {},
           Executor& executor = serial_executor());
+
+// The same from a binary tree, whose inner bounds may be oriented; its items are in all layers.
+void cull(const tree::VisitTree& tree, const View& view, VisibleSet& visible, const Options& options = {});
 
 // Item i is boxes[i] with layer mask layer_masks[i], or all layers if that span is empty. Boxes that are not finite are
 // straddling: reported, never lost.

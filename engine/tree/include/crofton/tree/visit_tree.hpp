@@ -1,5 +1,6 @@
 // A binary hierarchy of boxes built by the chance of a visit: for studying what a criterion is worth, and for items
-// that come and go. BoxTree is the one to cull with; this is the one to compare by (docs/hierarchies.md).
+// that come and go. BoxTree is the one to cull with where speed counts; this is the one to compare by, and the one that
+// has oriented inner bounds (docs/hierarchies.md).
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/obb.hpp>
@@ -58,6 +59,7 @@ class VisitTree {
     bool remove(ItemId item);
 
     [[nodiscard]] std::size_t item_count() const { return item_count_; }
+    [[nodiscard]] std::size_t id_count() const { return leaf_of_.size(); }  // ids are below, removed ones included
     [[nodiscard]] std::uint32_t leaf(ItemId item) const { return leaf_of_[item]; }  // its node; kNone once removed
     [[nodiscard]] bool holds(ItemId item) const { return item < leaf_of_.size() && leaf_of_[item] != kNone; }
     [[nodiscard]] const Node* root() const { return root_ == kNone ? nullptr : &nodes_[root_]; }
