@@ -61,6 +61,65 @@ BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)
 BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::Mode::exact, cull::Order::ascending, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tree, 0.01)->Arg(1000000);
 
+// Boxes numbered in the tree's order, as a renderer would lay its instances out.
+const std::vector<Obb>& boxes_in_tree_order(std::int64_t count) {
+    static std::map<std::int64_t, std::vector<Obb>> made;
+    auto& boxes = made[count];
+    if (boxes.empty())
+        for (const tree::ItemId item : tree_of(count).slot_items())
+            if (item != tree::kNone) boxes.push_back(boxes_of(count)[item]);
+    return boxes;
+}
+
+void tree_cull_numbered(benchmark::State& state, cull::Order order) {
+    const auto& boxes = boxes_in_tree_order(state.range(0));
+    const tree::BoxTree tree = *tree::BoxTree::build(boxes);
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {cull::Mode::exact, order});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+}
+BENCHMARK_CAPTURE(tree_cull_numbered, in_tree_order, cull::Order::tree)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_numbered, ascending, cull::Order::ascending)->Arg(1000000);
+
+// After ten thousand frames of random motion, a hundredth of the boxes a frame by up to a tenth of the spacing, with
+// bounded rebuilding in the background: a query beside one in a tree built afresh from the same boxes.
+void aged_cull(benchmark::State& state, bool fresh) {
+    static std::map<std::int64_t, std::pair<std::vector<Obb>, tree::BoxTree>> aged;
+    const std::int64_t count = state.range(0);
+    if (!aged.contains(count)) {
+        std::vector<Obb> boxes = boxes_of(count);
+        tree::BoxTree tree = *tree::BoxTree::build(boxes);
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> step(-0.1, 0.1);
+        for (int frame = 0; frame < 10000; ++frame) {
+            for (std::int64_t i = 0; i < count / 100; ++i) {
+                const auto item = static_cast<tree::ItemId>(random() % boxes.size());
+                boxes[item].center += glm::dvec3(step(random), step(random), step(random));
+                if (!tree.move(item, boxes[item])) state.SkipWithError("move failed");
+            }
+            tree.refit();
+            tree.maintain(boxes.size() / 50);
+        }
+        aged.emplace(count, std::pair(std::move(boxes), std::move(tree)));
+    }
+    const auto& [boxes, old] = aged.at(count);
+    const tree::BoxTree fresh_tree = *tree::BoxTree::build(boxes);
+    const cull::View view = bench::view_of_share(boxes_of(count), 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(fresh ? fresh_tree : old, view, visible, {cull::Mode::exact, cull::Order::tree});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+    state.counters["boxes_tested"] = static_cast<double>(visible.statistics().boxes_tested);
+}
+BENCHMARK_CAPTURE(aged_cull, aged, false)->Arg(100000);
+BENCHMARK_CAPTURE(aged_cull, fresh, true)->Arg(100000);
+
 // Every box against the view; `ids` lists the visible ones besides.
 void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
     const auto& boxes = boxes_of(state.range(0));
@@ -170,10 +229,10 @@ void flight(benchmark::State& state, cull::Mode mode) {
 BENCHMARK_CAPTURE(flight, conservative, cull::Mode::conservative)->Arg(1000000);
 BENCHMARK_CAPTURE(flight, exact, cull::Mode::exact)->Arg(1000000);
 
-// A tenth of the boxes moves by a tenth of their spacing, chosen at random or one run of ids; then the tree is refitted
-// and asked.
-void move_and_cull(benchmark::State& state, bool scattered) {
-    std::vector<Obb> boxes = boxes_of(state.range(0));
+// A tenth of the boxes moves by a tenth of their spacing, chosen at random or neighbours in the tree, numbered at random
+// or in the tree's order; then the tree is refitted and asked.
+void move_and_cull(benchmark::State& state, bool scattered, bool numbered) {
+    std::vector<Obb> boxes = numbered ? boxes_in_tree_order(state.range(0)) : boxes_of(state.range(0));
     tree::BoxTree tree = *tree::BoxTree::build(boxes);
     const cull::View view = bench::view_of_share(boxes, 0.2);
     std::mt19937 random(1);
@@ -193,8 +252,9 @@ void move_and_cull(benchmark::State& state, bool scattered) {
     }
     report(state, visible.size());
 }
-BENCHMARK_CAPTURE(move_and_cull, scattered, true)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(move_and_cull, neighbours, false)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, scattered, true, false)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, neighbours, false, false)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, false, true)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
 // Views all around the middle of the crowd, four to a round like a cube's sides, rounds turned against each other.
 std::vector<cull::View> views_around(std::int64_t boxes, std::int64_t count) {
