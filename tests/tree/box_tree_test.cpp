@@ -59,4 +59,12 @@ TEST_SUITE("tree/box_tree") {
         for (const tree::Leaf& leaf : tree->leaves()) partial += leaf.count < tree::kWidth;
         CHECK(partial == 1);
     }
+
+    TEST_CASE("a tree takes at most 64 bytes an item beside the boxes themselves") {
+        const std::size_t count = 50000;
+        const auto tree = BoxTree::build(oracle::random_crowd(count, 0.0, 4).boxes);
+        REQUIRE(tree.has_value());
+        // All that a tree keeps between frames, but for one bit a leaf and a node.
+        CHECK(tree->serialise().size() <= count * (sizeof(Obb) + 63));
+    }
 }
