@@ -303,8 +303,8 @@ void many_views(benchmark::State& state, bool one_pass) {
             for (const cull::View& view : views) cull::cull(tree, view, one, {cull::Mode::exact, cull::Order::tree});
     }
 }
-BENCHMARK_CAPTURE(many_views, one_pass, true)->Arg(100000);
-BENCHMARK_CAPTURE(many_views, one_by_one, false)->Arg(100000);
+BENCHMARK_CAPTURE(many_views, one_pass, true)->Arg(100000)->Arg(1000000);
+BENCHMARK_CAPTURE(many_views, one_by_one, false)->Arg(100000)->Arg(1000000);
 
 // Axis-aligned boxes around ours, in float arrays, each against the six planes by its nearest corner: what a compiler
 // makes of the plainest loop. Writes one byte per box.

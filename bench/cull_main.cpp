@@ -25,6 +25,7 @@ constexpr Pair kPairs[] = {
     {"Bullet / tree, 1 % visible", "bullet_cull/1_percent/1000000", "tree_cull/exact_1_percent/1000000"},
     {"Bullet's moves / moves and query", "bullet_move/1000000", "move_and_cull/scattered/1000000"},
     {"four queries of a tree / one pass", "many_views/one_by_one/100000", "many_views/one_pass/100000"},
+    {"four queries of a tree / one pass", "many_views/one_by_one/1000000", "many_views/one_pass/1000000"},
     {"four queries of a list / one pass", "flat_views/one_by_one/1000000/4", "flat_views/one_pass/1000000/4"},
     {"32 queries of a list / one pass", "flat_views/one_by_one/1000000/32", "flat_views/one_pass/1000000/32"},
     {"four queries of a list / one pass", "flat_views/one_by_one/10000000/4", "flat_views/one_pass/10000000/4"},
