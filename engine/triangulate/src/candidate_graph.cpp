@@ -15,7 +15,7 @@ constexpr double kTangent = 0.8134;
 constexpr double kCotangent = 1.0 / kTangent;
 constexpr double kRoundingUp = 1.0 + 1e-12;
 // How many neighbours in angular order are tried as witnesses on each side: pruning less is never wrong.
-constexpr std::size_t kNeighbours = 8;
+constexpr std::size_t kNeighbours = 16;
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -208,16 +208,19 @@ void CandidateFinder::match_twins(CandidateGraph& graph) {
     const auto half_edges = static_cast<Index>(graph.half_edge_count());
     graph.twin.assign(half_edges, kNone);
     pending_head_.assign(count, kNone);
-    pending_.resize(half_edges);
+    pending_origin_.resize(half_edges);
+    renumbered_.resize(half_edges);
+    Vector<Index>& pending_next = renumbered_;  // until all are matched
     stamp_.assign(count, kNone);
     for (Index p = 0; p < count; ++p) {
         // While p is visited, stamp_ leads from an earlier vertex to its half-edge to p. Entries left from other visits
         // name half-edges with another destination.
-        for (Index h = pending_head_[p]; h != kNone; h = pending_[h].next) stamp_[pending_[h].origin] = h;
+        for (Index h = pending_head_[p]; h != kNone; h = pending_next[h]) stamp_[pending_origin_[h]] = h;
         for (Index h = graph.first[p]; h < graph.first[p + 1]; ++h) {
             const Index q = graph.destination[h];
             if (q > p) {
-                pending_[h] = {p, pending_head_[q]};
+                pending_origin_[h] = p;
+                pending_next[h] = pending_head_[q];
                 pending_head_[q] = h;
             } else if (stamp_[q] != kNone && graph.destination[stamp_[q]] == p) {
                 graph.twin[h] = stamp_[q];
@@ -225,7 +228,6 @@ void CandidateFinder::match_twins(CandidateGraph& graph) {
             }
         }
     }
-    renumbered_.resize(half_edges);
     Index kept = 0;
     for (Index h = 0; h < half_edges; ++h) renumbered_[h] = graph.twin[h] == kNone ? kNone : kept++;
     Index h = 0, last = 0;

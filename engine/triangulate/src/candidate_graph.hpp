@@ -59,12 +59,8 @@ class CandidateFinder {
     glm::dvec2 eye_{};
     Vector<View> views_;
     Vector<Seen> seen_;
-    struct Pending {
-        Index origin, next;
-    };
     Vector<glm::dvec2> vectors_;
-    Vector<Pending> pending_;
-    Vector<Index> pending_head_, stamp_, renumbered_;
+    Vector<Index> pending_origin_, pending_head_, stamp_, renumbered_;
 };
 
 }  // namespace crofton::triangulate

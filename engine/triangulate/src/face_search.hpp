@@ -1,5 +1,7 @@
 // Faces whose boundary the certain edges leave in pieces: holes and isolated vertices that hang in the air.
 #pragma once
+#include <limits>
+
 #include "faces.hpp"
 #include "interval_program.hpp"
 #include "root_sums.hpp"
@@ -54,7 +56,7 @@ class FaceSearch {
     Vector<Level> levels_;
     TriangleSupport support_;
     IntervalProgram program_;
-    Options no_limits_;
+    Options no_limits_{.seconds = std::numeric_limits<double>::infinity()};
     Watch unhurried_{no_limits_};
     RootSums sums_;
     Vector<Index> members_, option_, dead_;
