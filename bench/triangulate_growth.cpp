@@ -45,7 +45,9 @@ void measure(Line& line) {
         }
         std::printf("%-46s n %7.0f holes %5zu: %9.3f ms, %8.3f us/vertex%s\n", line.name.c_str(), vertices,
                     polygon.ring_count() - 1, 1e3 * best, 1e6 * best / vertices,
-                    line.method != Method::minimum_weight ? "" : result.optimal ? ", proven" : ", NOT PROVEN");
+                    line.method != Method::minimum_weight ? ""
+                    : result.optimal                      ? ", proven"
+                                                          : ", NOT PROVEN");
         line.points.push_back({vertices, 1e6 * best / vertices});
     }
 }
@@ -103,8 +105,8 @@ std::string draw(const std::vector<Line>& lines) {
                           y_of(p.microseconds), line.color);
             svg += dot;
         }
-        svg += "<polyline fill='none' stroke-width='2' stroke='" + std::string(line.color) + "' points='" + path +
-               "'/>\n";
+        svg +=
+            "<polyline fill='none' stroke-width='2' stroke='" + std::string(line.color) + "' points='" + path + "'/>\n";
         const std::string style = "stroke-width='3' stroke='" + std::string(line.color) + "'";
         svg += stroke(kWidth - kRight + 15, label_y - 4, kWidth - kRight + 40, label_y - 4, style.c_str());
         svg += text(kWidth - kRight + 48, label_y, "start", line.name);
@@ -126,7 +128,11 @@ int main(int count, char** arguments) {
         {"ear, holes of 4 cells", "#b8860b", Method::ear, short_waves, up_to_677},
         {"minimum weight, holes of 4 cells", "#1f6fd0", Method::minimum_weight, short_waves, up_to_677},
         {"minimum weight, holes of 12 cells", "#8a3ffc", Method::minimum_weight, long_waves, up_to_500},
-        {"minimum weight, bends of 12 cells, no holes", "#d0342c", Method::minimum_weight, no_holes, {60, 120, 240, 360}},
+        {"minimum weight, bends of 12 cells, no holes",
+         "#d0342c",
+         Method::minimum_weight,
+         no_holes,
+         {60, 120, 240, 360}},
     };
     for (Line& line : lines) measure(line);
     std::ofstream file(arguments[1]);

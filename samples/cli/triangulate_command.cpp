@@ -135,7 +135,8 @@ Result<int> run(const TriangulateOptions& options) {
     if (options.json == "-" && options.svg == "-") {
         return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --svg can go to stdout");
     }
-    if (!(options.seconds >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
+    if (!(options.seconds >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
     if (options.compare) {
         if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
             return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
@@ -149,9 +150,8 @@ Result<int> run(const TriangulateOptions& options) {
     }
     if (!options.svg.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
-    return run_meshes(
-        {options.file, options.method, *method, options.json, options.out, options.seconds, options.tolerance,
-                       options.no_indices});
+    return run_meshes({options.file, options.method, *method, options.json, options.out, options.seconds,
+                       options.tolerance, options.no_indices});
 }
 
 constexpr const char* kExamples =
@@ -177,7 +177,9 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_option("file", options->file, "What to triangulate")->required();
     command->add_option("--method", options->method, "ear, delaunay or minimum-weight")->capture_default_str();
     command->add_option("--map", options->map, "Only this level of a .wad");
-    command->add_option("--time-limit,--seconds", options->seconds, "Seconds allowed per polygon; then the best so far, with its proven gap")
+    command
+        ->add_option("--time-limit,--seconds", options->seconds,
+                     "Seconds allowed per polygon; then the best so far, with its proven gap")
         ->capture_default_str();
     command->add_option(
         "--tolerance", options->tolerance,

@@ -74,9 +74,9 @@ Study triangulate_all(std::vector<Polygon> polygons, double seconds) {
         bool valid = true;
         for (std::size_t m = 0; m < kMethods.size() && valid; ++m) {
             entry.results.emplace_back();
-            valid = triangulator
-                        .triangulate(polygons[i], {.method = kMethods[m], .seconds = seconds}, entry.results.back())
-                        .has_value();
+            valid =
+                triangulator.triangulate(polygons[i], {.method = kMethods[m], .seconds = seconds}, entry.results.back())
+                    .has_value();
         }
         bar.set(i + 1);
         if (!valid) {
@@ -140,16 +140,19 @@ Result<int> run_compare(const CompareRun& run) {
     if (!polygons) return tl::unexpected(polygons.error());
     const Study study = triangulate_all(std::move(*polygons), run.seconds);
     if (study.polygons.empty())
-        return fail(ErrorCode::empty, kNoItem, run.file + ": no valid polygon of " +
-                                                   std::to_string(run.least_vertices) + " vertices or more");
+        return fail(ErrorCode::empty, kNoItem,
+                    run.file + ": no valid polygon of " + std::to_string(run.least_vertices) + " vertices or more");
     const Comparison passed = triangles_passed(study.polygons, run.frusta);
     const QuadComparison quads = pixel_quads(study.polygons, std::max<std::uint64_t>(1, run.frusta / 20), kQuadSize);
     const auto drawn = draw_wall(study.polygons, kFrames);
     if (!drawn) std::fprintf(stderr, "crofton: nothing drawn: %s\n", drawn.error().message.c_str());
     if (!run.json.empty()) {
-        const json document{{"file", assets::file_name(run.file)},   {"polygons", study.polygons.size()},
-                            {"refused", study.refused},              {"unproven", study.unproven},
-                            {"frusta", run.frusta},                  {"quad_size", kQuadSize},
+        const json document{{"file", assets::file_name(run.file)},
+                            {"polygons", study.polygons.size()},
+                            {"refused", study.refused},
+                            {"unproven", study.unproven},
+                            {"frusta", run.frusta},
+                            {"quad_size", kQuadSize},
                             {"methods", to_json(study, passed, quads, drawn)}};
         if (auto written = write_json(run.json, document); !written) return tl::unexpected(written.error());
     }

@@ -15,8 +15,8 @@ struct CompareRun {
 };
 
 // Weights of all methods over a file's polygons, or its meshes' planar patches; triangles passed by random frusta and
-// pixel quads, predicted and measured; triangles clipped and draw time. Exit status; prints a table unless the JSON goes
-// to stdout.
+// pixel quads, predicted and measured; triangles clipped and draw time. Exit status; prints a table unless the JSON
+// goes to stdout.
 [[nodiscard]] Result<int> run_compare(const CompareRun& run);
 
 }  // namespace crofton::cli

@@ -86,7 +86,8 @@ TEST_SUITE("cli/triangulate") {
         const double minimum = document["methods"][2]["weight"];
         for (const auto& row : document["methods"]) {
             CHECK(row["weight"].get<double>() >= minimum);
-            for (const auto& [key, counted] : {std::pair("triangles_passed", "measured"), std::pair("pixel_quads", "met")}) {
+            for (const auto& [key, counted] :
+                 {std::pair("triangles_passed", "measured"), std::pair("pixel_quads", "met")}) {
                 const auto& of = row[key];
                 CHECK(std::fabs(of[counted].get<double>() - of["predicted"].get<double>()) <
                       5.0 * of["standard_error"].get<double>());

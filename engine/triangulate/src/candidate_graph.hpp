@@ -11,11 +11,11 @@ namespace crofton::triangulate {
 // pairs of vertices that pass the diamond test (docs/triangulate.md proves it under constraints).
 struct CandidateGraph {
     enum Flag : std::uint8_t {
-        kConstraint = 1,   // boundary or slit: in every triangulation
-        kLeftOutside = 2,  // the polygon's outside lies on its left
-        kDelaunay = 4,     // an edge of the constrained Delaunay triangulation
-        kCertain = 8,      // proven to be in a minimum-weight triangulation
-        kDead = 16,        // proven to be in none
+        kConstraint = 1,    // boundary or slit: in every triangulation
+        kLeftOutside = 2,   // the polygon's outside lies on its left
+        kDelaunay = 4,      // an edge of the constrained Delaunay triangulation
+        kCertain = 8,       // proven to be in a minimum-weight triangulation
+        kDead = 16,         // proven to be in none
         kLeftSettled = 32,  // a face that needs no further pruning lies on its left or around it
     };
     Vector<Index> first;

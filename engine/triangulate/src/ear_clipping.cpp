@@ -111,7 +111,8 @@ bool EarClipping::opens_towards(const Corner& c, Index vertex) const {
     return c.reflex ? left_of_after || right_of_before : left_of_after && right_of_before;
 }
 
-// Only reflex vertices can lie in an ear; those at a corner's position count by the direction in which the corners open.
+// Only reflex vertices can lie in an ear; those at a corner's position count by the direction in which the corners
+// open.
 bool EarClipping::is_ear(const Corner& c) const {
     if (c.reflex) return false;
     const Corner &before = corners_[c.previous], &after = corners_[c.next];

@@ -9,7 +9,7 @@ namespace crofton::triangulate {
 namespace {
 constexpr std::uint8_t kPlaced = CandidateGraph::kCertain | CandidateGraph::kLeftSettled;
 constexpr std::uint8_t kSettled = CandidateGraph::kConstraint | CandidateGraph::kDead;
-}
+}  // namespace
 
 void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch) {
     points_ = points;
@@ -141,7 +141,8 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) 
         });
     }
     for (Index h = 0; h < count; ++h) {
-        if (alive(h) && (g.flags[h] & kPlaced) == 0 && !crossed_[h] && !crossed_[g.twin[h]]) g.flags[h] |= CandidateGraph::kCertain;
+        if (alive(h) && (g.flags[h] & kPlaced) == 0 && !crossed_[h] && !crossed_[g.twin[h]])
+            g.flags[h] |= CandidateGraph::kCertain;
     }
 }
 

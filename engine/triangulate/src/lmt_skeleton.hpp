@@ -11,11 +11,11 @@ namespace crofton::triangulate {
 // that is the unique minimum for lengths with an infinitesimal added by rank, and a minimum for the lengths themselves.
 class LmtSkeleton {
   public:
-    // Sets kDead on edges without a certificate, that is, common neighbours on both sides that make them locally minimal,
-    // until none is left. Stops early, which is right but prunes less, with the watch.
+    // Sets kDead on edges without a certificate, that is, common neighbours on both sides that make them locally
+    // minimal, until none is left. Stops early, which is right but prunes less, with the watch.
     void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch);
-    // Sets kCertain on living edges that no living edge crosses, but for those in settled faces. `mesh` is the constrained
-    // Delaunay triangulation that the candidates of this graph, the last one pruned, come from.
+    // Sets kCertain on living edges that no living edge crosses, but for those in settled faces. `mesh` is the
+    // constrained Delaunay triangulation that the candidates of this graph, the last one pruned, come from.
     void mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph);
 
   private:

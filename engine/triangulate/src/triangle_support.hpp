@@ -7,9 +7,9 @@ namespace crofton::triangulate {
 
 // The LMT skeleton taken from edges to triangles. In a minimum-weight triangulation every side of a triangle that is no
 // constraint has a triangle of the same triangulation beyond it, and is locally minimal between the two. So a triangle
-// that lacks such a partner among the living ones on any side is in none, and dies; and an edge without living triangles
-// on both sides dies with them. Where a certificate of an edge may use a left and a right triangle that no triangulation
-// could hold together with their own neighbours, this rule follows such chains to where they break.
+// that lacks such a partner among the living ones on any side is in none, and dies; and an edge without living
+// triangles on both sides dies with them. Where a certificate of an edge may use a left and a right triangle that no
+// triangulation could hold together with their own neighbours, this rule follows such chains to where they break.
 class TriangleSupport {
   public:
     // The living triangles on the left of each half-edge.
@@ -26,8 +26,9 @@ class TriangleSupport {
     };
 
     // Lists the triangles of living edges, but for those in faces that are outside or settled, and sets kDead on edges
-    // that no living triangle has. Returns false if some certain edge has no triangle left: then there is no triangulation. Stops early with the watch or at `limit` entries,
-    // which is right but prunes less; `lists` are then of no use.
+    // that no living triangle has. Returns false if some certain edge has no triangle left: then there is no
+    // triangulation. Stops early with the watch or at `limit` entries, which is right but prunes less; `lists` are then
+    // of no use.
     [[nodiscard]] bool build(std::span<const glm::dvec2> points, CandidateGraph& graph, std::size_t limit, Watch& watch,
                              Lists& lists);
     // The same after some half-edges (one of each edge) have died, given the lists from before.
