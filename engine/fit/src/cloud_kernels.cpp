@@ -180,7 +180,7 @@ void extents_double(const double* points, std::size_t count, const unsigned char
 template <class D>
 HWY_INLINE void load_points(D d, const float* points, hn::Vec<D>& x, hn::Vec<D>& y, hn::Vec<D>& z) {
     const hn::Rebind<float, D> df;
-    auto fx = hn::Undefined(df), fy = fx, fz = fx;
+    auto fx = hn::Zero(df), fy = fx, fz = fx;
     hn::LoadInterleaved3(df, points, fx, fy, fz);
     x = hn::PromoteTo(d, fx);
     y = hn::PromoteTo(d, fy);
