@@ -1,7 +1,9 @@
 // `crofton lines`: the ways to draw global lines, compared on one scene.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <crofton/radiosity/bundle_tracer.hpp>
 #include <crofton/radiosity/line_source.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstdio>
@@ -22,35 +24,68 @@ struct Options {
     int repeats = 12;
 };
 
-// How well a method counts the scene's surface, a number known exactly: S = crossings · F / (2 N). Efficiency is the
-// reciprocal of error² · time, so it does not depend on how many lines were spent.
-nlohmann::json compare(const radiosity::LineTracer& tracer, double surface, LineMethod method,
-                       measure::Sequence sequence, const Options& options) {
-    double squares = 0.0, crossings = 0.0, deviation = 0.0, wasted = 0.0;
-    std::uint64_t lines = 0;
+// Sums over the lines of one estimate.
+struct Seen {
+    double lines = 0.0, crossings = 0.0, squares = 0.0, met = 0.0;
+    double surface_area = 0.0;  // of the body that the lines fill
+};
+
+Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const Options& options) {
+    const auto seen = radiosity::visibility_complexity(tracer, source, options.blocks);
+    const double n = static_cast<double>(options.blocks * radiosity::LineSource::kBlock);
+    return {n, n * seen.mean_crossings, n * (std::pow(seen.deviation, 2.0) + std::pow(seen.mean_crossings, 2.0)),
+            n * (1.0 - seen.wasted), source.surface_area()};
+}
+
+// As many bundles as there are blocks / 2, of the size that the solver takes: a cell as large as a triangle.
+Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double box_area, std::uint64_t seed,
+                measure::Sequence sequence, const Options& options) {
+    const measure::UnitPoints points(seed, sequence);
+    radiosity::BundleTracer::Scratch scratch;
+    radiosity::LineHits hits;
+    Seen seen;
+    seen.surface_area = box_area;
+    const std::uint64_t bundles = std::max<std::uint64_t>(1, options.blocks / 2);
+    for (std::uint64_t k = 0; k < bundles; ++k) {
+        const auto bundle = radiosity::make_bundle(tracer.bounds(), cell_area, points.at<2>(k), seed << 32 | k);
+        tracer.all_hits(bundle, scratch, hits);
+        seen.lines += 0.25 * box_area / cell_area;  // as many as are meant: on average over directions
+        std::uint32_t begin = 0;
+        for (const std::uint32_t end : hits.ends) {
+            const double n = end - begin;
+            begin = end;
+            seen.crossings += n;
+            seen.squares += n * n;
+            seen.met += n > 0.0 ? 1.0 : 0.0;
+        }
+    }
+    return seen;
+}
+
+// How well a way to draw lines counts the scene's surface, a number known exactly: S = crossings · F / (2 N).
+// Efficiency is the reciprocal of error² · time, so it does not depend on how many lines were spent.
+template <class Look>
+nlohmann::json compare(const char* method, measure::Sequence sequence, double surface, const Options& options,
+                       Look&& look) {
+    double squares = 0.0;
+    Seen all;
     const auto start = std::chrono::steady_clock::now();
     for (int r = 0; r < options.repeats; ++r) {
-        const radiosity::LineSource source(tracer.bounds(), method, options.seed + static_cast<std::uint64_t>(r),
-                                           sequence);
-        const auto seen = radiosity::visibility_complexity(tracer, source, options.blocks);
-        // Bundles hold a random number of lines; what counts is how many were meant.
-        const double meant = static_cast<double>(options.blocks * radiosity::LineSource::kBlock);
-        const double estimate =
-            seen.mean_crossings * static_cast<double>(seen.lines) * source.surface_area() / (2.0 * meant);
-        squares += std::pow(estimate / surface - 1.0, 2.0);
-        crossings += seen.mean_crossings / options.repeats;
-        deviation += seen.deviation / options.repeats;
-        wasted += seen.wasted / options.repeats;
-        lines += seen.lines;
+        const Seen seen = look(options.seed + static_cast<std::uint64_t>(r));
+        squares += std::pow(seen.crossings * seen.surface_area / (2.0 * seen.lines) / surface - 1.0, 2.0);
+        all.lines += seen.lines;
+        all.crossings += seen.crossings;
+        all.squares += seen.squares;
+        all.met += seen.met;
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const double error = std::sqrt(squares / options.repeats);
-    return {{"method", radiosity::to_string(method)},
+    const double error = std::sqrt(squares / options.repeats), mean = all.crossings / all.lines;
+    return {{"method", method},
             {"sequence", sequence == measure::Sequence::quasi_random ? "quasi" : "pseudo"},
-            {"lines_per_second", static_cast<double>(lines) / seconds},
-            {"mean_crossings", crossings},
-            {"deviation", deviation},
-            {"wasted", wasted},
+            {"lines_per_second", all.lines / seconds},
+            {"mean_crossings", mean},
+            {"deviation", std::sqrt(std::max(0.0, all.squares / all.lines - mean * mean))},
+            {"wasted", 1.0 - all.met / all.lines},
             {"relative_error", error},
             {"efficiency", 1.0 / (error * error * seconds / options.repeats)}};
 }
@@ -70,13 +105,20 @@ Result<void> run(const Options& options) {
     if (!tracer) return tl::unexpected(tracer.error());
     double surface = 0.0;
     for (const double area : patches->areas) surface += area;
+    const auto bundles = radiosity::BundleTracer::build(mesh);
+    if (!bundles) return tl::unexpected(bundles.error());
+    const double box_area = radiosity::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
+    const double cell_area = surface / static_cast<double>(mesh.triangle_count());
     nlohmann::json rows = nlohmann::json::array();
-    for (const LineMethod method :
-         {LineMethod::sphere_points, LineMethod::disc, LineMethod::bundles, LineMethod::walls})
-        for (const measure::Sequence sequence : {measure::Sequence::pseudo_random, measure::Sequence::quasi_random}) {
-            if (method == LineMethod::bundles && sequence == measure::Sequence::quasi_random) continue;
-            rows.push_back(compare(*tracer, surface, method, sequence, options));
-        }
+    for (const measure::Sequence sequence : {measure::Sequence::pseudo_random, measure::Sequence::quasi_random}) {
+        for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
+            rows.push_back(compare(radiosity::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
+                return by_lines(*tracer, radiosity::LineSource(tracer->bounds(), method, seed, sequence), options);
+            }));
+        rows.push_back(compare("bundles", sequence, surface, options, [&](std::uint64_t seed) {
+            return by_bundles(*bundles, cell_area, box_area, seed, sequence, options);
+        }));
+    }
     const char* best = radiosity::to_string(radiosity::choose_method(*tracer, options.seed));
     if (!options.json.empty())
         return write_json(options.json, {{"scene", source->name},
@@ -84,7 +126,7 @@ Result<void> run(const Options& options) {
                                          {"surface", surface},
                                          {"chosen", best},
                                          {"methods", rows}});
-    std::printf("%s: %zu triangles, %.0f square metres; chosen: %s\n", source->name.c_str(), mesh.triangle_count(),
+    std::printf("%s: %zu triangles, %.0f square metres; lines one by one from: %s\n", source->name.c_str(), mesh.triangle_count(),
                 surface, best);
     std::printf("%-8s %-7s %12s %10s %10s %8s %10s %12s\n", "method", "numbers", "lines/s", "crossings", "deviation",
                 "wasted", "error", "efficiency");

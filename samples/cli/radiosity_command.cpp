@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     std::string scene, method = "global", out, png, json, checkpoint, map;
-    std::uint64_t lines = 1'000'000, seed = 1;
+    std::uint64_t lines = 20'000'000, seed = 1;
     double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
     unsigned threads = 1;
 };
@@ -123,6 +123,13 @@ Result<void> run(const Options& options) {
     if (!tracer) return tl::unexpected(tracer.error());
     const auto seen = radiosity::visibility_complexity(
         *tracer, radiosity::LineSource(tracer->bounds(), radiosity::LineMethod::walls, options.seed), 50);
+    glm::dvec3 light(0.0);
+    double area = 0.0;
+    for (std::size_t i = 0; i < lit->patches.count(); ++i) {
+        light += lit->patches.areas[i] * glm::dvec3(solver->radiosity()[i]);
+        area += lit->patches.areas[i];
+    }
+    light /= area;
     const nlohmann::json report = {
         {"scene", source->name},
         {"patches", lit->patches.count()},
@@ -135,6 +142,7 @@ Result<void> run(const Options& options) {
         {"relative_error", solver->relative_error()},
         {"unseen", solver->unseen()},
         {"bounces", solver->bounces_of_last_run()},
+        {"mean_radiosity", {light.x, light.y, light.z}},
         {"seconds", seconds},
         {"visibility",
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};

@@ -35,13 +35,44 @@ glm::vec3 compressed(const glm::vec3& light) {
     return glm::clamp(light * ((1.0f + l / (kWhite * kWhite)) / (1.0f + l)), 0.0f, 1.0f);
 }
 
-double automatic_edge(const TriangleMesh& mesh) {
-    double surface = 0.0;
-    for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
-        const auto at = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[t + k]]); };
-        surface += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+// How long edges may be where: `edge` around the middle of the scene's triangles, and beyond the three quarters of them
+// that are nearest ever longer, so that a town's countryside does not take the town's patches.
+struct EdgeLengths {
+    glm::dvec3 center{0.0};
+    double radius = 0.0, edge = 0.0;
+
+    [[nodiscard]] double factor(const glm::dvec3& p) const {
+        return std::max(1.0, glm::length(p - center) / std::max(radius, 1e-30));
     }
-    return 3.0 * std::sqrt(surface / std::max(kLeastTriangles, static_cast<double>(mesh.triangle_count())));
+    double operator()(const glm::vec3& p) const { return edge * factor(glm::dvec3(p)); }
+};
+
+EdgeLengths automatic_edges(const TriangleMesh& mesh) {
+    const std::size_t count = mesh.triangle_count();
+    std::vector<glm::dvec3> middles(count);
+    for (std::size_t t = 0; t < count; ++t)
+        for (std::size_t k = 0; k < 3; ++k)
+            middles[t] += glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]) / 3.0;
+    const auto quantile = [](std::vector<double> values, double share) {
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+        std::nth_element(values.begin(), at, values.end());
+        return *at;
+    };
+    EdgeLengths lengths;
+    std::vector<double> values(count);
+    for (int k = 0; k < 3; ++k) {
+        for (std::size_t t = 0; t < count; ++t) values[t] = middles[t][k];
+        lengths.center[k] = quantile(values, 0.5);
+    }
+    for (std::size_t t = 0; t < count; ++t) values[t] = glm::length(middles[t] - lengths.center);
+    lengths.radius = quantile(values, 0.75);
+    double cells = 0.0;  // that an edge of 1 would make
+    for (std::size_t t = 0; t < count; ++t) {
+        const auto at = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]); };
+        cells += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0))) / std::pow(lengths.factor(middles[t]), 2.0);
+    }
+    lengths.edge = 2.0 * std::sqrt(cells / std::max(kLeastTriangles, static_cast<double>(count)));
+    return lengths;
 }
 
 radiosity::Material operator+(const radiosity::Material& a, const radiosity::Material& b) {
@@ -84,10 +115,15 @@ float automatic_exposure(const LitScene& scene, const radiosity::Solver& solver)
 }  // namespace
 
 Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
-    if (edge == 0.0) edge = automatic_edge(scene.mesh);
+    EdgeLengths lengths;
+    if (edge == 0.0) {
+        lengths = automatic_edges(scene.mesh);
+        edge = lengths.edge;
+    }
     auto mended = radiosity::mend_t_junctions(scene.mesh, kTolerance);
     if (!mended) return tl::unexpected(mended.error());
-    auto refined = radiosity::refine(mended->mesh, edge);
+    auto refined = lengths.edge > 0.0 ? radiosity::refine(mended->mesh, radiosity::EdgeLength(lengths))
+                                      : radiosity::refine(mended->mesh, edge);
     if (!refined) return tl::unexpected(refined.error());
     LitScene result;
     result.patches.mesh.positions = std::move(refined->mesh.positions);

@@ -16,8 +16,8 @@ struct LitScene {
 
 inline constexpr float kMostReflectance = 0.9f;  // of white paint; light must end
 
-// T-junctions mended, edges of at most `edge` metres, small triangles in groups of that size. edge = 0: as long as
-// evenly spread triangles of the same number would have, taken as 50,000 at least.
+// T-junctions mended, edges of at most `edge` metres, small triangles in groups of that size. edge = 0: such
+// that the scene has up to a few times its triangles, 50,000 at least, and longer far from where most of them are.
 [[nodiscard]] Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge);
 
 // Three vertices a triangle in display-linear colours: (emission + reflectance · irradiance) · exposure, compressed so

@@ -100,7 +100,7 @@ TEST_SUITE("radiosity/solver") {
         CHECK(Solver::create(dark, options).error().code == ErrorCode::degenerate);
         options = quick();
         options.outside.sky = glm::vec3(1.0f);
-        options.first_shot = 0;
+        options.cutoff = 0.0;
         CHECK(Solver::create(dark, options).error().code == ErrorCode::out_of_range);
     }
 

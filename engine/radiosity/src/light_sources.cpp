@@ -49,7 +49,7 @@ double Solver::exposed_share(std::size_t patch) const {
     return static_cast<double>(drawn_[patch] - buried_[patch]) / static_cast<double>(drawn_[patch]);
 }
 
-void Solver::shoot_lamps(Light& arrived, Executor& executor) const {
+void Solver::shoot_lamps(Light& arrived, Executor& executor) {
     const Patches& p = *patches_;
     const auto emission = [&](std::uint32_t t) { return glm::dvec3(p.materials[p.patch_of_triangle[t]].emission); };
     Vector<std::uint32_t> lamps;
@@ -68,6 +68,7 @@ void Solver::shoot_lamps(Light& arrived, Executor& executor) const {
     const measure::UnitPoints points(mixed(options_.seed, kLampStream), options_.sequence);
     const std::uint64_t first = runs_ * options_.first_shot;
     const double each = sum / static_cast<double>(options_.first_shot);
+    lines_traced_ += options_.first_shot;
     trace_in_order(
         tracer_, options_.first_shot, executor,
         [&](std::uint64_t i) {
@@ -84,7 +85,7 @@ void Solver::shoot_lamps(Light& arrived, Executor& executor) const {
 }
 
 // From points of each patch that faces the sun: only whether it is seen is left to chance.
-void Solver::look_for_sun(Light& arrived, Executor& executor) const {
+void Solver::look_for_sun(Light& arrived, Executor& executor) {
     const glm::dvec3 irradiance(options_.outside.sun);
     if (!(total(irradiance) > 0.0)) return;
     const Patches& p = *patches_;
@@ -112,6 +113,7 @@ void Solver::look_for_sun(Light& arrived, Executor& executor) const {
         }
     }
     Vector<double> lit(p.count(), 0.0);
+    lines_traced_ += looks.size();
     trace_in_order(
         tracer_, looks.size(), executor,
         [&](std::uint64_t i) {

@@ -22,7 +22,7 @@ double squared_length(const glm::vec3& a, const glm::vec3& b) {
 
 class Refiner {
   public:
-    Refiner(const TriangleMesh& mesh, double longest_edge) : longest_(longest_edge * longest_edge) {
+    Refiner(const TriangleMesh& mesh, EdgeLength longest_edge) : longest_(longest_edge) {
         result.mesh = mesh;
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) result.source.push_back(static_cast<std::uint32_t>(t));
     }
@@ -51,7 +51,8 @@ class Refiner {
     bool is_long(std::uint32_t a, std::uint32_t b) const {
         const glm::vec3 &p = result.mesh.positions[a], &q = result.mesh.positions[b];
         const glm::vec3 m = middle(p, q);
-        return squared_length(p, q) > longest_ && m != p && m != q;
+        const double longest = longest_(m);
+        return squared_length(p, q) > longest * longest && m != p && m != q;
     }
 
     std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) {
@@ -100,7 +101,7 @@ class Refiner {
         }
     }
 
-    double longest_;
+    EdgeLength longest_;
     std::unordered_map<std::uint64_t, std::uint32_t, std::hash<std::uint64_t>, std::equal_to<>,
                        Allocator<std::pair<const std::uint64_t, std::uint32_t>>>
         midpoints_;
@@ -108,16 +109,21 @@ class Refiner {
 
 }  // namespace
 
-Result<RefinedMesh> refine(const TriangleMesh& mesh, double longest_edge, std::size_t most_triangles) {
+Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge, std::size_t most_triangles) {
     if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    if (!(longest_edge > 0.0))
-        return fail(ErrorCode::out_of_range, kNoItem, "refine: the longest edge must be positive");
     Refiner refiner(mesh, longest_edge);
     while (refiner.round())
         if (refiner.result.source.size() > most_triangles)
             return fail(ErrorCode::budget_exceeded, refiner.result.source.size(),
                         "refine: more than " + std::to_string(most_triangles) + " triangles; allow longer edges");
     return std::move(refiner.result);
+}
+
+Result<RefinedMesh> refine(const TriangleMesh& mesh, double longest_edge, std::size_t most_triangles) {
+    if (!(longest_edge > 0.0))
+        return fail(ErrorCode::out_of_range, kNoItem, "refine: the longest edge must be positive");
+    const auto everywhere = [longest_edge](const glm::vec3&) { return longest_edge; };
+    return refine(mesh, EdgeLength(everywhere), most_triangles);
 }
 
 }  // namespace crofton::radiosity

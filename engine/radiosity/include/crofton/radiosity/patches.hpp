@@ -1,6 +1,7 @@
 // Surfaces that give and take light: triangles grouped into patches of one radiosity each.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <cstdint>
@@ -49,6 +50,10 @@ struct RefinedMesh {
 // share an edge are cut alike: where `mesh` has no T-junctions the result has none, also across meshes. Errors: as
 // validate(TriangleMesh); longest_edge not positive; more than `most_triangles` (budget_exceeded).
 [[nodiscard]] Result<RefinedMesh> refine(const TriangleMesh& mesh, double longest_edge,
+                                         std::size_t most_triangles = std::size_t{1} << 24);
+// The same with a length of its own for each place: `longest_edge` of an edge's middle.
+using EdgeLength = FunctionRef<double(const glm::vec3& middle)>;
+[[nodiscard]] Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge,
                                          std::size_t most_triangles = std::size_t{1} << 24);
 
 // A patch number for each triangle: those of at least size²/4 are patches of their own, smaller ones share one with

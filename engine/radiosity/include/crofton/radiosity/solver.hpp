@@ -26,7 +26,7 @@ enum class Transport : std::uint8_t {
 
 struct SolverOptions {
     std::uint64_t lines = 0;              // global lines of a run's first gathering; 0: 64 bundles
-    std::uint64_t first_shot = 1u << 18;  // rays from the lamps per run
+    std::uint64_t first_shot = 0;         // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
     std::optional<LineMethod> method;     // absent: bundles
     Transport transport = Transport::global;
     measure::Sequence sequence = measure::Sequence::quasi_random;
@@ -93,8 +93,8 @@ class Solver {
     void list_triangles();
     [[nodiscard]] double lines_of_bundle() const;
     [[nodiscard]] std::uint32_t triangle_of(std::size_t patch, double u) const;
-    void shoot_lamps(Light& arrived, Executor& executor) const;
-    void look_for_sun(Light& arrived, Executor& executor) const;
+    void shoot_lamps(Light& arrived, Executor& executor);
+    void look_for_sun(Light& arrived, Executor& executor);
     void gather(const Gathering& what, Light& arrived, Executor& executor);
     void gather_lines(const Gathering& what, Light& arrived, Executor& executor);
     void gather_bundles(const Gathering& what, Light& arrived, Executor& executor);

@@ -1,0 +1,106 @@
+#include <doctest/doctest.h>
+#include <cmath>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+
+namespace {
+
+// A closed box whose faces look inward, of one material.
+std::string box(const std::string& material) {
+    write_contents(scratch().file("box.mtl"), "newmtl m\n" + material);
+    const std::string path = scratch().file("box.obj");
+    write_contents(path,
+                   "mtllib box.mtl\nusemtl m\n"
+                   "v 0 0 0\nv 3 0 0\nv 3 1 0\nv 0 1 0\nv 0 0 2\nv 3 0 2\nv 3 1 2\nv 0 1 2\n"
+                   "f 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nf 5 6 2 1\nf 4 3 7 8\n");
+    return "'" + path + "'";
+}
+const char* const kGlowing = "Kd 0.5 0.5 0.5\nKe 1 1 1\n";
+// Kd is sRGB; every face gives off 1, so the light is 1/(1 − reflectance) everywhere.
+const double kFurnace = 1.0 / (1.0 - std::pow((0.5 + 0.055) / 1.055, 2.4));
+
+std::string common() {
+    return " --sun 0 --sky 0 --edge 0.5 ";
+}
+
+}  // namespace
+
+TEST_SUITE("cli/radiosity") {
+    TEST_CASE("bad input is refused by name and leaves no output behind") {
+        const std::string out = scratch().file("bad.json");
+        const auto refused = [&](const std::string& arguments, const char* reason) {
+            const CliRun run = run_cli(arguments + " --json '" + out + "'");
+            CHECK(run.status == 2);
+            CHECK_MESSAGE(run.err.find(reason) != std::string::npos, run.err);
+            CHECK_FALSE(std::filesystem::exists(out));
+        };
+        refused("radiosity '" + scratch().file("missing.obj") + "'", "missing.obj");
+        refused("radiosity " + box(kGlowing) + common() + "--method guess", "guess");
+        refused("radiosity " + box(kGlowing) + common() + "--lines 5 --error 0.1", "--error");
+        refused("radiosity " + box("Kd 0.5 0.5 0.5\n") + common(), "nothing gives light");
+        refused("radiosity " + box("Kd 0.5 0.5 0.5\nKe -1 0 0\n") + common(), "emission");
+        const std::string damaged = scratch().file("damaged.state");
+        write_contents(damaged, "no checkpoint");
+        refused("radiosity " + box(kGlowing) + common() + "--checkpoint '" + damaged + "'", "damaged.state");
+        refused("lines '" + scratch().file("missing.obj") + "'", "missing.obj");
+        CHECK(run_cli("radiosity").status == 2);
+        CHECK(run_cli("lines " + box(kGlowing) + " --repeats 0").status == 2);
+    }
+
+    TEST_CASE("furnace: every method finds 1/(1 - reflectance), with the emission and reflectance of the file") {
+        for (const char* method : {"global", "local", "bundles", "walls"}) {
+            const CliRun run =
+                run_cli("radiosity " + box(kGlowing) + common() + "--lines 400000 --json - --method " + method);
+            CHECK(run.status == 0);
+            const auto report = run.json();
+            REQUIRE(report.is_object());
+            CHECK(report["method"] == method);
+            CHECK(report["lines"].get<double>() >= 400000.0);
+            for (const auto& channel : report["mean_radiosity"])
+                CHECK(channel.get<double>() == doctest::Approx(kFurnace).epsilon(0.01));
+        }
+    }
+
+    TEST_CASE("--error runs until the estimated error is reached") {
+        const CliRun run = run_cli("radiosity " + box(kGlowing) + common() + "--error 0.01 --json -");
+        CHECK(run.status == 0);
+        CHECK(run.json()["relative_error"].get<double>() <= 0.01);
+        CHECK(run.json()["runs"].get<int>() >= 2);
+    }
+
+    TEST_CASE("interrupted and resumed, or with more threads, a run writes the same bytes") {
+        const std::string whole = scratch().file("whole.glb"), resumed = scratch().file("resumed.glb"),
+                          threads = scratch().file("threads.glb"), state = scratch().file("run.state");
+        const std::string scene = "radiosity " + box(kGlowing) + common();
+        CHECK(run_cli(scene + "--lines 300000 --out '" + whole + "'").status == 0);
+        CHECK(run_cli(scene + "--lines 150000 --checkpoint '" + state + "'").status == 0);
+        CHECK(run_cli(scene + "--lines 300000 --checkpoint '" + state + "' --out '" + resumed + "'").status == 0);
+        CHECK(run_cli(scene + "--lines 300000 --threads 3 --out '" + threads + "'").status == 0);
+        const std::string bytes = contents_of(whole);
+        CHECK(bytes.substr(0, 4) == "glTF");
+        CHECK(bytes.find("KHR_materials_unlit") != std::string::npos);
+        CHECK(bytes == contents_of(resumed));
+        CHECK(bytes == contents_of(threads));
+        // The state is of this scene only.
+        CHECK(run_cli("radiosity room --checkpoint '" + state + "'").status == 2);
+    }
+
+    TEST_CASE("lines: every way to draw them with its figures, and the choice") {
+        const CliRun run = run_cli("lines " + box(kGlowing) + " --blocks 2 --repeats 3 --json -");
+        CHECK(run.status == 0);
+        const auto report = run.json();
+        REQUIRE(report.is_object());
+        CHECK(report["surface"].get<double>() == doctest::Approx(22.0));
+        CHECK(report["chosen"] == "walls");
+        CHECK(report["methods"].size() == 8);
+        for (const auto& row : report["methods"]) {
+            for (const char* key : {"lines_per_second", "deviation", "wasted", "relative_error", "efficiency"})
+                CHECK(row.contains(key));
+            // Every line that meets the box crosses it twice.
+            CHECK(row["mean_crossings"].get<double>() ==
+                  doctest::Approx(2.0 * (1.0 - row["wasted"].get<double>())).epsilon(0.01));
+        }
+    }
+}
