@@ -150,6 +150,7 @@ class GltfReader {
             const auto id = source_.scene.add_mesh(std::move(*made), mesh.name);
             if (!id) return in_file(name, "", id.error());
             ids.push_back(*id);
+            note_unlit(*id, mesh.primitives[p].material);
             const glm::vec3 emission = emission_of(mesh.primitives[p].material);
             if (emission == glm::vec3(0.0f)) continue;
             source_.emission.resize(*id + 1);
@@ -170,6 +171,13 @@ class GltfReader {
         for (std::size_t k = 0; k < 3 && k < m.emissiveFactor.size(); ++k)
             result[static_cast<int>(k)] = static_cast<float>(m.emissiveFactor[k] * strength);
         return result;
+    }
+
+    void note_unlit(scene::MeshId mesh, int material) {
+        if (!exists(material, model_.materials.size())) return;
+        if (model_.materials[static_cast<std::size_t>(material)].extensions.count("KHR_materials_unlit") == 0) return;
+        source_.unlit.resize(mesh + std::size_t{1});
+        source_.unlit[mesh] = 1;
     }
 
     Result<TriangleMesh> mesh_of(const tinygltf::Primitive& primitive, const std::string& name,

@@ -25,6 +25,8 @@ struct SceneSource {
     std::vector<scene::InstanceId> movers;  // ascending: the instances that animate() moves; may be empty
     std::vector<std::string> warnings;      // what a file held that was left out, and why
     std::function<void(scene::Scene&, std::uint32_t)> motion;
+    // By mesh: 1 where the colours are light already (glTF's KHR_materials_unlit). Empty: none.
+    std::vector<std::uint8_t> unlit = {};
     // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
     std::vector<std::vector<glm::vec3>> emission = {};
 

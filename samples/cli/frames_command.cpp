@@ -101,8 +101,7 @@ class FramesRun {
                                triangles_of(source_->scene)};
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
             return tl::unexpected(written.error());
-        if (auto written = write_report(facts, frames, verification); !written)
-            return tl::unexpected(written.error());
+        if (auto written = write_report(facts, frames, verification); !written) return tl::unexpected(written.error());
         if (verification)
             for (const std::string& message : verification->messages)
                 std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
@@ -153,7 +152,7 @@ class FramesRun {
     Result<void> prepare_drawing(const ImageSize& size) {
         std::vector<std::uint8_t> is_mover(source_->scene.instance_count(), 0);
         for (const scene::InstanceId instance : pipeline_->movers()) is_mover[instance] = 1;
-        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover);
+        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover, source_->unlit);
         if (options_.no_draw) return {};
         auto drawing = make_drawing(*list_, size);
         if (drawing) {
@@ -189,8 +188,9 @@ class FramesRun {
         picture.camera = frame.camera;
         picture.transforms = list_->transforms();
         picture.ranges = list_->ranges();
-        // Half of the light is haze at three times the size of the place.
-        picture.environment.haze_distance = static_cast<float>(3.0 * glm::length(focus_.half_extents()));
+        // Half of the light is haze at three times the size of the place; none where the light is baked in.
+        const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
+        picture.environment.haze_distance = static_cast<float>(haze);
         const auto counters = drawing_->rasterizer.draw(picture);
         if (!counters) return tl::unexpected(counters.error());
         frame.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,

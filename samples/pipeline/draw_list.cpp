@@ -42,7 +42,7 @@ glm::dmat3 normal_matrix(const glm::dmat3& linear) {
 }  // namespace
 
 DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId> order,
-                   std::span<const std::uint8_t> is_mover)
+                   std::span<const std::uint8_t> is_mover, std::span<const std::uint8_t> unlit)
     : scene_(scene), baked_origin_(middle_of(scene)), instances_(order.begin(), order.end()) {
     const std::vector<MeshVertices> meshes = vertices_of_meshes(scene);
     std::size_t baked_vertices = 0;
@@ -59,6 +59,7 @@ DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId>
         ranks_[instance] = rank;
         const bool baked = bake && !is_mover[instance];
         baked_.push_back(baked);
+        unlit_.push_back(mesh < unlit.size() ? unlit[mesh] : std::uint8_t{0});
         if (!baked) {
             if (shared[mesh].index_count == 0) shared[mesh] = append(meshes[mesh].vertices, meshes[mesh].indices);
             parts_.push_back(shared[mesh]);
@@ -98,12 +99,15 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
     ranges_.clear();
     transforms_.clear();
     transforms_.push_back(render::draw_transform(to_clip(glm::dmat3(1.0), baked_origin_), glm::dmat3(1.0)));
+    transforms_.push_back(transforms_[0]);
+    transforms_[1].unlit = 1.0f;
     for (const std::uint32_t rank : selected_) {
-        std::uint32_t transform = 0;
+        std::uint32_t transform = unlit_[rank];
         if (!baked_[rank]) {
             const scene::Transform& world = scene_.world(scene_.node_of(instances_[rank]));
             transform = static_cast<std::uint32_t>(transforms_.size());
             transforms_.push_back(render::draw_transform(to_clip(world.linear, world.translation), world.linear));
+            transforms_.back().unlit = unlit_[rank];
         }
         ranges_.push_back({parts_[rank].first_index, parts_[rank].index_count, transform});
     }

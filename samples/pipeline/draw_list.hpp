@@ -14,9 +14,10 @@ namespace crofton::pipeline {
 // a transform each.
 class DrawList {
   public:
-    // `order` lists the instances as they should lie in the buffer, a tree's leaf order; `is_mover` is by instance.
+    // `order` lists the instances as they should lie in the buffer, a tree's leaf order; `is_mover` is by instance,
+    // `unlit` by mesh and may be shorter: those meshes show their colours as they are.
     DrawList(const scene::Scene& scene, std::span<const scene::InstanceId> order,
-             std::span<const std::uint8_t> is_mover);
+             std::span<const std::uint8_t> is_mover, std::span<const std::uint8_t> unlit = {});
 
     [[nodiscard]] std::span<const render::Vertex> vertices() const { return vertices_; }
     [[nodiscard]] std::span<const std::uint32_t> indices() const { return indices_; }
@@ -25,6 +26,8 @@ class DrawList {
     void select(std::span<const scene::InstanceId> visible, const Camera& camera);
     [[nodiscard]] std::span<const render::DrawRange> ranges() const { return ranges_; }
     [[nodiscard]] std::span<const render::DrawTransform> transforms() const { return transforms_; }
+    // Baked instances share these first transforms, lit and unlit; the others are one instance's each.
+    static constexpr std::uint32_t kSharedTransforms = 2;
     // The instance that ranges()[i] draws.
     [[nodiscard]] scene::InstanceId instance_of(std::size_t range) const { return instances_[selected_[range]]; }
 
@@ -48,7 +51,7 @@ class DrawList {
     std::vector<scene::InstanceId> instances_;  // by rank: the order in the buffer
     std::vector<std::uint32_t> ranks_;          // by instance
     std::vector<Part> parts_;                   // by rank
-    std::vector<std::uint8_t> baked_;           // by rank
+    std::vector<std::uint8_t> baked_, unlit_;   // by rank
     std::vector<std::uint32_t> selected_;       // ranks, ascending
     std::vector<render::DrawRange> ranges_;
     std::vector<render::DrawTransform> transforms_;

@@ -102,7 +102,8 @@ Result<void> Session::load(const SceneRequest& request) {
     }
     std::vector<std::uint8_t> is_mover(stage_->scene().instance_count(), 0);
     for (const scene::InstanceId mover : stage_->source().movers) is_mover[mover] = 1;
-    list_ = std::make_unique<pipeline::DrawList>(stage_->scene(), stage_->pipeline().spatial_order(), is_mover);
+    list_ = std::make_unique<pipeline::DrawList>(stage_->scene(), stage_->pipeline().spatial_order(), is_mover,
+                                                 stage_->source().unlit);
     return upload_geometry();
 }
 

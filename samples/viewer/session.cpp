@@ -140,13 +140,15 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
     frame.ranges = painter_.ranges();
     frame.wire_ranges = painter_.wire_ranges();
     frame.lines = lines_.vertices();
-    // Colours that mean something are not hazed.
+    // Colours that mean something are not hazed, nor is light that has been computed.
     if (settings_.coloring != Coloring::lit) {
         frame.environment.haze_distance = 0.0f;
         frame.environment.sky = false;
         frame.environment.horizon = glm::vec3(0.012f, 0.014f, 0.02f);
     } else {
-        frame.environment.haze_distance = static_cast<float>(2.5 * glm::length(stage_->extent().half_extents()));
+        const bool hazy = stage_->source().unlit.empty();
+        const double distance = hazy ? 2.5 * glm::length(stage_->extent().half_extents()) : 0.0;
+        frame.environment.haze_distance = static_cast<float>(distance);
     }
     return rasterizer_->submit(frame, picture);
 }

@@ -113,6 +113,24 @@ json set(int frame, const json& switches) {
     return {{"frame", frame}, {"set", switches}};
 }
 
+// A square of 2 m across the z axis, its colour (1/4, 1/2, 1/16).
+std::string square_gltf(bool unlit) {
+    json material{{"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 0.0625, 1.0}}}}};
+    if (unlit) material["extensions"] = {{"KHR_materials_unlit", json::object()}};
+    // Base64 of the floats −1 −1 0, 1 −1 0, 1 1 0, −1 −1 0, 1 1 0, −1 1 0.
+    const std::string data =
+        "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAA";
+    return json{{"asset", {{"version", "2.0"}}},
+                {"scenes", {{{"nodes", {0}}}}},
+                {"nodes", {{{"mesh", 0}}}},
+                {"materials", {material}},
+                {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"material", 0}}}}}}},
+                {"accessors", {{{"bufferView", 0}, {"componentType", 5126}, {"count", 6}, {"type", "VEC3"}}}},
+                {"bufferViews", {{{"buffer", 0}, {"byteLength", 72}}}},
+                {"buffers", {{{"byteLength", 72}, {"uri", "data:application/octet-stream;base64," + data}}}}}
+        .dump();
+}
+
 const json& picture(const ViewRun& result, const std::string& name) {
     for (const json& entry : result.document["pictures"])
         if (entry["file"] == scratch().file(name)) return entry;
@@ -343,6 +361,29 @@ TEST_SUITE("viewer/window") {
         CHECK(picture(result, "dropped.png")["statistics"]["instances"] == 1);
         CHECK(picture(result, "kept.png")["statistics"]["instances"] == 1);
         CHECK(result.run.err.find("damaged.obj") != std::string::npos);
+    }
+    TEST_CASE("a material without light shows its colour as it is, until it is tinted; one with light is shaded") {
+        for (const bool unlit : {true, false}) {
+            const std::string file = scratch().file("square.gltf");
+            write_contents(file, square_gltf(unlit));
+            const json eye{{"position", {0, 0, 3}}, {"forward", {0, 0, -1}}};
+            const ViewRun result = view({set(0, {{"panels", false}}),
+                                         {{"frame", 0}, {"drop", file}},
+                                         {{"frame", 1}, {"camera", eye}},
+                                         shot(2, "square.png"),
+                                         set(3, {{"coloring", "verdict"}}),
+                                         shot(4, "tinted.png")},
+                                        {}, false);
+            check_clean(result);
+            // Square roots of 1/4, 1/2 and 1/16 in bytes.
+            const auto as_given = [](int r, int g, int b) {
+                return std::abs(r - 128) <= 1 && std::abs(g - 180) <= 1 && std::abs(b - 64) <= 1;
+            };
+            const int count = Pixels(scratch().file("square.png")).count(as_given);
+            CHECK((unlit ? count > 5000 : count == 0));
+            CHECK(Pixels(scratch().file("tinted.png")).count(as_given) == 0);
+            CHECK(Pixels(scratch().file("tinted.png")).green() > 5000);
+        }
     }
     TEST_CASE("time stands still when paused, and steps frame by frame") {
         const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
