@@ -69,6 +69,11 @@ bool Session::handle_key(const std::string& key) {
         s.method.cull = static_cast<pipeline::CullMode>((static_cast<int>(s.method.cull) + 1) % 3);
         return true;
     }
+    if (key == "Y") {
+        Triangulation& t = s.method.triangulation;
+        t = static_cast<Triangulation>((static_cast<std::size_t>(t) + 1) % std::size(kTriangulationNames));
+        return true;
+    }
     if (key == "T") {
         const int height = static_cast<int>(stage_->pipeline().tree().height());
         s.tree_level = s.tree_level + 1 >= height ? -1 : s.tree_level + 1;

@@ -110,19 +110,22 @@ void plots(const Journal& journal) {
 
 template <class Enum>
 void combo(const char* label, Enum& value, std::span<const Enum> choices) {
-    if (!ImGui::BeginCombo(label, pipeline::to_string(value))) return;
+    if (!ImGui::BeginCombo(label, to_string(value))) return;
     for (const Enum choice : choices)
-        if (ImGui::Selectable(pipeline::to_string(choice), choice == value)) value = choice;
+        if (ImGui::Selectable(to_string(choice), choice == value)) value = choice;
     ImGui::EndCombo();
 }
 
-void method(const char* bounds_label, const char* cull_label, Method& value) {
+void method(const char* bounds_label, const char* cull_label, const char* triangulation_label, Method& value) {
     using enum pipeline::BoundsKind;
     static constexpr pipeline::BoundsKind kBounds[] = {sphere, aabb, obb_volume, obb_area, obb_perimeter, obb_frustum};
     static constexpr pipeline::CullMode kModes[] = {pipeline::CullMode::none, pipeline::CullMode::flat,
                                                     pipeline::CullMode::tree};
     combo(bounds_label, value.bounds, std::span<const pipeline::BoundsKind>(kBounds));
     combo(cull_label, value.cull, std::span<const pipeline::CullMode>(kModes));
+    static constexpr Triangulation kTriangulations[] = {Triangulation::loaded, Triangulation::ear,
+                                                        Triangulation::delaunay, Triangulation::minimum_weight};
+    combo(triangulation_label, value.triangulation, std::span<const Triangulation>(kTriangulations));
 }
 
 void switches(const PanelInput& input, PanelWish& wish) {
@@ -130,7 +133,7 @@ void switches(const PanelInput& input, PanelWish& wish) {
     auto coloring = static_cast<int>(s.coloring);
     if (ImGui::Combo("colour (C)", &coloring, kColoringNames, static_cast<int>(std::size(kColoringNames))))
         s.coloring = static_cast<Coloring>(coloring);
-    method("bounds (N)", "cull (M)", s.method);
+    method("bounds (N)", "cull (M)", "triangles (Y)", s.method);
     ImGui::Checkbox("freeze (F)", &s.freeze);
     ImGui::SameLine();
     ImGui::Checkbox("inset (I)", &s.inset);
@@ -144,7 +147,7 @@ void switches(const PanelInput& input, PanelWish& wish) {
     ImGui::Checkbox("collisions (K)", &s.collisions);
     ImGui::SameLine();
     ImGui::Checkbox("compare (G)", &s.compare);
-    if (s.compare) method("B: bounds", "B: cull", s.other);
+    if (s.compare) method("B: bounds", "B: cull", "B: triangles", s.other);
     const int height = static_cast<int>(input.stage.pipeline().tree().height());
     ImGui::SliderInt("tree level (T)", &s.tree_level, -1, height - 1, s.tree_level < 0 ? "off" : "%d");
     ImGui::SliderInt("views (V)", &s.cascades, 1, 8);

@@ -36,6 +36,20 @@ Result<void> set_method(Method& method, const std::string& name, bool bounds, co
     return {};
 }
 
+// One of `names` by its place.
+template <class Enum, std::size_t N>
+Result<void> set_named(Enum& target, const std::string& name, const char* const (&names)[N],
+                       const nlohmann::json& value) {
+    std::string known;
+    for (std::size_t i = 0; i < N; ++i) {
+        known += (i > 0 ? ", " : "one of ") + std::string(names[i]);
+        if (!value.is_string() || value.get<std::string>() != names[i]) continue;
+        target = static_cast<Enum>(i);
+        return {};
+    }
+    return bad_value(name, known.c_str());
+}
+
 Result<void> set_whole(int& target, const std::string& name, const nlohmann::json& value, int low, int high) {
     if (!value.is_number_integer() || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high)
         return fail(
@@ -66,24 +80,20 @@ Result<void> set_switch(Settings& settings, const std::string& name, const nlohm
         settings.time_scale = value.get<double>();
         return {};
     }
-    if (name == "coloring") {
-        if (!value.is_string()) return bad_value(name, "a name");
-        for (std::size_t i = 0; i < std::size(kColoringNames); ++i) {
-            if (value.get<std::string>() != kColoringNames[i]) continue;
-            settings.coloring = static_cast<Coloring>(i);
-            return {};
-        }
-        return bad_value(name, "one of lit, verdict, improper, collision, depth, shape");
-    }
+    if (name == "coloring") return set_named(settings.coloring, name, kColoringNames, value);
+    if (name == "triangulation") return set_named(settings.method.triangulation, name, kTriangulationNames, value);
+    if (name == "other_triangulation") return set_named(settings.other.triangulation, name, kTriangulationNames, value);
     return fail(ErrorCode::invalid_argument, kNoItem, "there is no switch '" + name + "'");
 }
 
 nlohmann::json to_json(const Settings& settings) {
-    nlohmann::json result{{"coloring", kColoringNames[static_cast<std::size_t>(settings.coloring)]},
+    nlohmann::json result{{"coloring", to_string(settings.coloring)},
                           {"bounds_kind", pipeline::to_string(settings.method.bounds)},
                           {"cull", pipeline::to_string(settings.method.cull)},
                           {"other_bounds_kind", pipeline::to_string(settings.other.bounds)},
                           {"other_cull", pipeline::to_string(settings.other.cull)},
+                          {"triangulation", to_string(settings.method.triangulation)},
+                          {"other_triangulation", to_string(settings.other.triangulation)},
                           {"tree_level", settings.tree_level},
                           {"cascades", settings.cascades},
                           {"time_scale", settings.time_scale}};

@@ -13,12 +13,24 @@ namespace crofton::viewer {
 enum class Coloring : std::uint8_t { lit, verdict, improper, collision, depth, shape };
 inline constexpr const char* kColoringNames[] = {"lit", "verdict", "improper", "collision", "depth", "shape"};
 
-// What culling decides by; two of these can be compared side by side.
+// How polygons and the planar patches of meshes are cut into triangles; `loaded`: as the scene came.
+enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };
+inline constexpr const char* kTriangulationNames[] = {"loaded", "ear", "delaunay", "minimum-weight"};
+
+// What a frame's work depends on; two of these can be compared side by side.
 struct Method {
     pipeline::BoundsKind bounds = pipeline::BoundsKind::obb_perimeter;
     pipeline::CullMode cull = pipeline::CullMode::tree;
+    Triangulation triangulation = Triangulation::loaded;
     bool operator==(const Method&) const = default;
 };
+
+[[nodiscard]] inline const char* to_string(Coloring coloring) {
+    return kColoringNames[static_cast<std::size_t>(coloring)];
+}
+[[nodiscard]] inline const char* to_string(Triangulation triangulation) {
+    return kTriangulationNames[static_cast<std::size_t>(triangulation)];
+}
 
 struct Settings {
     Method method;
@@ -39,8 +51,9 @@ struct Settings {
     double time_scale = 1.0;
 };
 
-// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "other_bounds_kind", "other_cull",
-// "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or range; nothing is changed then.
+// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "other_bounds_kind",
+// "other_cull", "other_triangulation", "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or
+// range; nothing is changed then.
 [[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const nlohmann::json& value);
 [[nodiscard]] nlohmann::json to_json(const Settings& settings);
 

@@ -4,6 +4,7 @@
 #include <crofton/geometry/aabb.hpp>
 #include <glm/geometric.hpp>
 
+#include "assets/retriangulate.hpp"
 #include "pipeline/camera_path.hpp"
 
 namespace crofton::viewer {
@@ -19,6 +20,17 @@ Camera typical_camera() {
     Camera camera;
     camera.far = 200.0;
     return camera;
+}
+
+triangulate::Method triangulation_method(Triangulation triangulation) {
+    switch (triangulation) {
+        case Triangulation::ear:
+            return triangulate::Method::ear;
+        case Triangulation::delaunay:
+            return triangulate::Method::delaunay;
+        default:
+            return triangulate::Method::minimum_weight;
+    }
 }
 
 pipeline::PipelineOptions options_of(const Method& method, const Settings& settings) {
@@ -47,6 +59,9 @@ Result<std::unique_ptr<Stage>> Stage::load(const SceneRequest& request, const Me
     options.instances = request.instances;
     auto source = assets::load_scene(request.source, options);
     if (!source) return tl::unexpected(std::move(source.error()));
+    if (method.triangulation != Triangulation::loaded)
+        if (auto cut = assets::retriangulate(*source, options, triangulation_method(method.triangulation)); !cut)
+            return tl::unexpected(std::move(cut.error()));
     std::unique_ptr<Stage> stage(new Stage(std::move(*source)));
     stage->source_.scene.update();
     const scene::Scene& scene = stage->source_.scene;
@@ -62,6 +77,7 @@ Result<std::unique_ptr<Stage>> Stage::load(const SceneRequest& request, const Me
 }
 
 bool Stage::needs_reload(const Method& method) const {
+    if (method.triangulation != method_.triangulation) return true;
     if (!uses_own_boxes(method.bounds) && !uses_own_boxes(method_.bounds)) return false;
     return method.bounds != method_.bounds;
 }

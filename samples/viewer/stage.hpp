@@ -19,10 +19,10 @@ struct SceneRequest {
 
 class Stage {
   public:
-    // Loads the scene and fits its boxes as the method's bound asks. Errors: as assets::load_scene.
+    // Loads the scene, fits its boxes and cuts its triangles as the method asks. Errors: as assets::load_scene.
     [[nodiscard]] static Result<std::unique_ptr<Stage>> load(const SceneRequest& request, const Method& method,
                                                              const Settings& settings);
-    // True where `method` needs other boxes than the scene was loaded with: then load() anew.
+    // True where `method` needs other boxes or triangles than the scene was loaded with: then load() anew.
     [[nodiscard]] bool needs_reload(const Method& method) const;
     // Takes over switches that need no reload; rebuilds the tree only where one changed.
     [[nodiscard]] Result<void> configure(const Method& method, const Settings& settings);

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "assets/retriangulate.hpp"
 #include "viewer/eye.hpp"
 #include "viewer/journal.hpp"
 #include "viewer/overlay.hpp"
@@ -58,6 +59,64 @@ TEST_SUITE("viewer/picking") {
         CHECK(hit->distance == doctest::Approx(glm::length(hit->at)));
         // The cursor's tangent, times the depth.
         CHECK(hit->at.y == doctest::Approx(-0.05 * std::tan(0.5 * camera.fov_y) * 4.0));
+    }
+}
+
+TEST_SUITE("assets/retriangulate") {
+    // A rhombus with diagonals of 10 and 2, cut along the long one, facing −z.
+    assets::SceneSource rhombus(bool as_polygon) {
+        assets::SceneSource source{"rhombus", scene::Scene(), {}, {}, {}, {}};
+        if (as_polygon) {
+            scene::PlanarPolygon flat;
+            flat.polygon = {{{-5, 0}, {0, -1}, {5, 0}, {0, 1}}, {4}};
+            const std::array<std::uint32_t, 3> triangles[] = {{2, 1, 0}, {3, 2, 0}};
+            REQUIRE(source.scene.add_polygon(flat, triangles));
+        } else {
+            TriangleMesh mesh;
+            mesh.positions = {{-5, 0, 0}, {0, -1, 0}, {5, 0, 0}, {0, 1, 0}};
+            mesh.indices = {2, 1, 0, 3, 2, 0};
+            REQUIRE(source.scene.add_mesh(mesh));
+        }
+        REQUIRE(source.scene.add_node(scene::kNone, {}));
+        REQUIRE(source.scene.add_instance(0, 0));
+        return source;
+    }
+    TEST_CASE("the least weight takes the short diagonal; facing, area, ids and counts stay, for meshes and polygons") {
+        for (const bool as_polygon : {false, true}) {
+            CAPTURE(as_polygon);
+            assets::SceneSource source = rhombus(as_polygon);
+            REQUIRE(assets::retriangulate(source, {}, triangulate::Method::minimum_weight));
+            REQUIRE(source.scene.instance_count() == 1);
+            CHECK((source.scene.polygon(0) != nullptr) == as_polygon);
+            const TriangleMesh& mesh = source.scene.mesh(0);
+            REQUIRE(mesh.triangle_count() == 2);
+            double area = 0.0;
+            for (std::size_t t = 0; t < 6; t += 3) {
+                int on_short_diagonal = 0;
+                for (std::size_t k = 0; k < 3; ++k) on_short_diagonal += mesh.indices[t + k] % 2 == 1;
+                CHECK(on_short_diagonal == 2);
+                const glm::vec3 a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]],
+                                c = mesh.positions[mesh.indices[t + 2]];
+                area += 0.5 * static_cast<double>(glm::cross(b - a, c - a).z);
+            }
+            CHECK(area == doctest::Approx(-10.0));
+        }
+    }
+    TEST_CASE("a polygon that crosses itself, and a mesh without any flat patch, stay as they are") {
+        assets::SceneSource source{"odd", scene::Scene(), {}, {}, {}, {}};
+        scene::PlanarPolygon bow;
+        bow.polygon = {{{0, 0}, {2, 2}, {2, 0}, {0, 2}}, {4}};
+        const std::array<std::uint32_t, 3> one[] = {{0, 1, 2}};
+        REQUIRE(source.scene.add_polygon(bow, one));
+        TriangleMesh tent;
+        tent.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3f, 0.3f, 1}};
+        tent.indices = {0, 1, 3, 1, 2, 3, 2, 0, 3};
+        REQUIRE(source.scene.add_mesh(tent));
+        REQUIRE(source.scene.add_node(scene::kNone, {}));
+        REQUIRE(source.scene.add_instance(0, 1));
+        REQUIRE(assets::retriangulate(source, {}, triangulate::Method::ear));
+        CHECK(source.scene.mesh(0).triangle_count() == 1);
+        CHECK(source.scene.mesh(1).indices == tent.indices);
     }
 }
 

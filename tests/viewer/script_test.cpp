@@ -50,6 +50,8 @@ TEST_SUITE("viewer/settings") {
         CHECK_FALSE(set_switch(settings, "cascades", 2.5));
         CHECK_FALSE(set_switch(settings, "time_scale", -1.0));
         CHECK_FALSE(set_switch(settings, "cull", "octree"));
+        CHECK_FALSE(set_switch(settings, "triangulation", "fan"));
+        CHECK_FALSE(set_switch(settings, "triangulation", 2));
         CHECK_FALSE(set_switch(settings, "bounds_kind", "capsule"));
         CHECK(to_json(settings) == to_json(Settings{}));
     }
@@ -60,7 +62,7 @@ TEST_SUITE("viewer/settings") {
         settings.tree_level = 2;
         settings.cascades = 3;
         settings.method = {pipeline::BoundsKind::sphere, pipeline::CullMode::flat};
-        settings.other = {pipeline::BoundsKind::aabb, pipeline::CullMode::none};
+        settings.other = {pipeline::BoundsKind::aabb, pipeline::CullMode::none, Triangulation::delaunay};
         Settings copy;
         const nlohmann::json written = to_json(settings);
         for (const auto& [name, value] : written.items()) CHECK(set_switch(copy, name, value));
