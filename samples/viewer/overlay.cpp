@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/collide/mesh_mesh.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 
 namespace crofton::viewer {
 namespace {
 
 constexpr std::uint32_t kOutside = rgba(225, 60, 70), kBound = rgba(250, 235, 90), kFrustum = rgba(255, 255, 255),
                         kTree = rgba(110, 220, 255), kPair = rgba(255, 90, 60), kContact = rgba(255, 250, 80),
-                        kSelection = rgba(90, 170, 255);
+                        kSelection = rgba(90, 170, 255), kSeparation = rgba(80, 255, 210);
 constexpr std::array<std::uint32_t, 8> kCascades{rgba(255, 90, 90),   rgba(255, 190, 70),  rgba(130, 230, 90),
                                                  rgba(70, 220, 220),  rgba(100, 140, 255), rgba(210, 110, 255),
                                                  rgba(255, 120, 200), rgba(200, 200, 200)};
@@ -49,8 +49,11 @@ void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage
     if (settings.bounds)
         for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
     if (settings.tree_level >= 0) draw_tree_level(lines, stage.pipeline().tree(), settings.tree_level);
-    contacts_ = 0;
-    if (settings.coloring == Coloring::collision && settings.collisions) draw_pairs(lines, stage, frame);
+    contacts_ = separations_ = 0;
+    if (settings.coloring == Coloring::collision && settings.collisions) {
+        draw_pairs(lines, stage, frame);
+        draw_separations(lines, stage, frame);
+    }
     if (selected < scene.instance_count() && !scene.is_removed(selected)) {
         lines.box(boxes[selected], kSelection);
         lines.axes(scene.world_boxes()[selected]);
@@ -93,30 +96,31 @@ void Overlay::draw_pairs(LineList& lines, const Stage& stage, const pipeline::Fr
     }
 }
 
-const tree::MeshTree* Overlay::tree_of(const scene::Scene& scene, scene::MeshId mesh) {
-    auto& slot = trees_[mesh];
-    if (!slot)
-        if (auto built = tree::MeshTree::build(scene.mesh(mesh)))
-            slot = std::make_unique<tree::MeshTree>(std::move(*built));
-    return slot.get();
+void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b) {
+    finder_.find(scene, a, b, found_);
+    contacts_ += found_.size();
+    const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[a].half_extents));
+    for (std::size_t i = 0; i < std::min(found_.size(), kMaxContactsOfPair); ++i) {
+        lines.segment(found_[i].begin, found_[i].end, kContact);
+        lines.cross(0.5 * (found_[i].begin + found_[i].end), size, kContact);
+    }
 }
 
-void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b) {
-    const scene::Transform &world_a = scene.world(scene.node_of(a)), &world_b = scene.world(scene.node_of(b));
-    const collide::Pose pose_a{world_a.linear, world_a.translation}, pose_b{world_b.linear, world_b.translation};
-    // Scaled bodies have no pose; their boxes are shown alone.
-    if (!collide::validate(pose_a) || !collide::validate(pose_b)) return;
-    const tree::MeshTree *tree_a = tree_of(scene, scene.mesh_of(a)), *tree_b = tree_of(scene, scene.mesh_of(b));
-    if (tree_a == nullptr || tree_b == nullptr) return;
-    Vector<collide::MeshContact> found;
-    collide::contacts(*tree_a, *tree_b, collide::relative(pose_a, pose_b), found);
-    contacts_ += found.size();
-    const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[a].half_extents));
-    for (std::size_t i = 0; i < std::min(found.size(), kMaxContactsOfPair); ++i) {
-        const glm::dvec3 begin = collide::transform(pose_a, found[i].segment.begin);
-        const glm::dvec3 end = collide::transform(pose_a, found[i].segment.end);
-        lines.segment(begin, end, kContact);
-        lines.cross(0.5 * (begin + end), size, kContact);
+// Between moving bodies in view that come close.
+void Overlay::draw_separations(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame) {
+    const auto boxes = stage.scene().world_boxes();
+    std::vector<scene::InstanceId> movers;
+    std::set_intersection(frame.visible_ids.begin(), frame.visible_ids.end(), stage.pipeline().movers().begin(),
+                          stage.pipeline().movers().end(), std::back_inserter(movers));
+    for (const auto& [a, b] : near_pairs(boxes, movers, kMaxPairs)) {
+        const auto gap = separation(boxes[a], boxes[b]);
+        if (!gap) continue;
+        ++separations_;
+        lines.segment(gap->begin, gap->end, kSeparation);
+        const double smaller =
+            std::min(glm::length(glm::dvec3(boxes[a].half_extents)), glm::length(glm::dvec3(boxes[b].half_extents)));
+        lines.cross(gap->begin, 0.1 * smaller, kSeparation);
+        lines.cross(gap->end, 0.1 * smaller, kSeparation);
     }
 }
 

@@ -1,9 +1,6 @@
 // What is drawn over the scene as lines: bounds, frusta, contacts.
 #pragma once
-#include <crofton/tree/mesh_tree.hpp>
-#include <memory>
-#include <unordered_map>
-
+#include "contact_finder.hpp"
 #include "line_list.hpp"
 #include "settings.hpp"
 #include "stage.hpp"
@@ -25,17 +22,19 @@ class Overlay {
     void draw(LineList& lines, const Settings& settings, const Stage& stage, const pipeline::FrameStatistics& frame,
               std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum);
     // Forgets what belongs to a scene that is gone.
-    void clear() { trees_.clear(); }
+    void clear() { finder_.clear(); }
     [[nodiscard]] std::uint64_t contact_count() const { return contacts_; }
+    [[nodiscard]] std::uint64_t separation_count() const { return separations_; }
 
   private:
     void draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const;
     void draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
     void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);
-    const tree::MeshTree* tree_of(const scene::Scene& scene, scene::MeshId mesh);
+    void draw_separations(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
 
-    std::unordered_map<scene::MeshId, std::unique_ptr<tree::MeshTree>> trees_;
-    std::uint64_t contacts_ = 0;
+    ContactFinder finder_;
+    std::vector<Segment> found_;
+    std::uint64_t contacts_ = 0, separations_ = 0;
 };
 
 }  // namespace crofton::viewer

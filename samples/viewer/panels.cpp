@@ -185,8 +185,10 @@ void legend(const PanelInput& input) {
         }
     if (input.settings.coloring == Coloring::shape)
         ImGui::TextUnformatted("triangles: red = slivers, green = equilateral");
-    if (input.settings.coloring == Coloring::collision)
+    if (input.settings.coloring == Coloring::collision) {
         ImGui::Text("contacts between triangles: %" PRIu64, input.overlay.contact_count());
+        ImGui::Text("near misses with their separating axis: %" PRIu64, input.overlay.separation_count());
+    }
 }
 
 }  // namespace

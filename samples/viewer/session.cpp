@@ -196,6 +196,7 @@ Result<void> Session::save_screenshots() {
                              {"tints", std::move(tints)},
                              {"views", std::move(views)},
                              {"contacts", overlay_.contact_count()},
+                             {"separations", overlay_.separation_count()},
                              {"lines", lines_.vertices().size() / 2}});
         if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
         if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;

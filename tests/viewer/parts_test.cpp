@@ -2,10 +2,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
 #include "assets/retriangulate.hpp"
+#include "viewer/contact_finder.hpp"
 #include "viewer/eye.hpp"
 #include "viewer/journal.hpp"
 #include "viewer/overlay.hpp"
@@ -117,6 +120,83 @@ TEST_SUITE("assets/retriangulate") {
         REQUIRE(assets::retriangulate(source, {}, triangulate::Method::ear));
         CHECK(source.scene.mesh(0).triangle_count() == 1);
         CHECK(source.scene.mesh(1).indices == tent.indices);
+    }
+}
+
+TEST_SUITE("viewer/contact_finder") {
+    // A unit cube, twelve triangles.
+    TriangleMesh cube() {
+        TriangleMesh mesh;
+        for (int i = 0; i < 8; ++i)
+            mesh.positions.push_back(
+                glm::vec3((i & 1) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 0.5f : -0.5f, (i & 4) != 0 ? 0.5f : -0.5f));
+        mesh.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                        2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+        return mesh;
+    }
+    TEST_CASE("contacts of scaled, sheared and mirrored bodies lie on both surfaces; apart there are none") {
+        const glm::dmat3 linears[] = {glm::dmat3(1.0), glm::dmat3(3, 0, 0, 0, 1, 0, 0, 0, 0.5),
+                                      // Turned, stretched and sheared; then mirrored.
+                                      glm::dmat3(0.8, 0.6, 0, -1.2, 1.6, 0, 0.3, 0.4, 1.5),
+                                      glm::dmat3(-1, 0, 0, 0.2, 1, 0, 0, 0, 2)};
+        for (const glm::dmat3& linear_a : linears)
+            for (const glm::dmat3& linear_b : linears) {
+                scene::Scene scene;
+                const auto mesh = scene.add_mesh(cube());
+                REQUIRE(mesh);
+                const glm::dvec3 at(100.0, 5.0, -3.0);
+                for (const auto& [linear, place] : {std::pair{linear_a, at},
+                                                    {linear_b, at + glm::dvec3(0.3, 0.45, 0.1)},
+                                                    {linear_b, at + glm::dvec3(9.0, 0.0, 0.0)}}) {
+                    const auto node = scene.add_node(scene::kNone, {linear, place});
+                    REQUIRE(node);
+                    REQUIRE(scene.add_instance(*node, *mesh));
+                }
+                scene.update();
+                ContactFinder finder;
+                std::vector<Segment> found;
+                finder.find(scene, 0, 1, found);
+                CHECK(found.size() > 2);
+                for (const Segment& segment : found)
+                    for (const glm::dvec3& p : {segment.begin, segment.end})
+                        for (const scene::InstanceId i : {0u, 1u}) {
+                            const scene::Transform& world = scene.world(scene.node_of(i));
+                            const glm::dvec3 local = glm::abs(glm::inverse(world.linear) * (p - world.translation));
+                            CHECK(std::max({local.x, local.y, local.z}) == doctest::Approx(0.5).epsilon(1e-5));
+                        }
+                finder.find(scene, 0, 2, found);
+                CHECK(found.empty());
+            }
+    }
+    TEST_CASE("the separation spans the gap along a line that has one box on each side; boxes that meet have none") {
+        Obb a, b;
+        a.half_extents = {1.0f, 2.0f, 1.0f};
+        b.half_extents = {1.0f, 1.0f, 1.0f};
+        b.center = {1.5, 0.0, 0.0};
+        CHECK_FALSE(separation(a, b));
+        b.center = {1.0, -3.5, 0.5};
+        const auto gap = separation(a, b);
+        REQUIRE(gap);
+        // Only the y axis separates these; the gap is 3.5 − 2 − 1.
+        CHECK(gap->begin.y == doctest::Approx(-2.0));
+        CHECK(gap->end.y == doctest::Approx(-2.5));
+        CHECK(gap->begin.x == doctest::Approx(0.5));
+        CHECK(gap->end.x == doctest::Approx(0.5));
+    }
+    TEST_CASE("pairs that nearly meet are found once, those that meet or are far are not") {
+        std::vector<Obb> boxes(5);
+        const double x[] = {0.0, 2.5, 1.0, 30.0, 33.0};
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            boxes[i].center.x = x[i];
+            boxes[i].half_extents = glm::vec3(1.0f);
+        }
+        const scene::InstanceId all[] = {0, 1, 2, 3, 4};
+        const auto pairs = near_pairs(boxes, all, 100);
+        REQUIRE(pairs.size() == 2);
+        CHECK(pairs[0] == std::pair<scene::InstanceId, scene::InstanceId>(0, 1));
+        CHECK(pairs[1] == std::pair<scene::InstanceId, scene::InstanceId>(3, 4));
+        CHECK(near_pairs(boxes, all, 1).size() == 1);
+        CHECK(near_pairs(boxes, {}, 100).empty());
     }
 }
 

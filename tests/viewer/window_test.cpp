@@ -279,6 +279,11 @@ TEST_SUITE("viewer/window") {
             if (tint["name"] == "improper") CHECK(tint["instances"] == improper["statistics"]["improper"]);
         const json& collision = picture(result, "collision.png");
         CHECK((collision["statistics"]["colliding_pairs"] > 0) == (Pixels(scratch().file("collision.png")).red() > 0));
+        // Near misses show what separates them; both kinds go with the collisions.
+        CHECK(collision["separations"] > 0);
+        CHECK(picture(result, "none.png")["separations"] == 0);
+        CHECK(picture(result, "none.png")["contacts"] == 0);
+        CHECK(picture(result, "none.png")["lines"] == 0);
         CHECK(picture(result, "none.png")["statistics"]["colliding_pairs"] == 0);
         CHECK(Pixels(scratch().file("none.png")).red() == 0);
     }
