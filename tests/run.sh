@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=release
 if [[ $# -gt 0 && $1 != -* ]]; then preset=$1; shift; fi
-third_party/install.sh
+third_party/install.sh --tests
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 cmake --preset "$preset" -DCROFTON_TESTS=ON >"$log" 2>&1 || { cat "$log" >&2; exit 1; }

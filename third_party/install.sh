@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that Crofton needs and this machine lacks; says nothing when there are none.
 #   third_party/install.sh            what building, running and testing need
+#   third_party/install.sh --tests    also a browser, in which the tests open the report page
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
 #   third_party/install.sh --engines  also the engines, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
@@ -17,14 +18,16 @@ packages=(
     # tests
     doctest-dev libgmp-dev xvfb
 )
+test_packages=(chromium)
 engine_packages=(libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 
 for argument in "$@"; do
     case "$argument" in
+        --tests) packages+=("${test_packages[@]}") ;;
         --bench) packages+=("${bench_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--bench] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--bench] [--engines]" >&2; exit 2 ;;
     esac
 done
 

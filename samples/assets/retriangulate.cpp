@@ -93,6 +93,7 @@ Result<void> retriangulate(SceneSource& source, const LoadOptions& options, tria
     auto made = Retriangulation(source.scene, method).run(options);
     if (!made) return tl::unexpected(std::move(made.error()));
     source.scene = std::move(*made);
+    source.emission.clear();
     return {};
 }
 

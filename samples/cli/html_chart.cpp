@@ -7,7 +7,7 @@
 namespace crofton::cli {
 namespace {
 
-constexpr double kWidth = 640.0, kHeight = 240.0, kLeft = 64.0, kRight = 12.0, kTop = 12.0, kBottom = 28.0;
+constexpr double kWidth = 640.0, kHeight = 240.0, kLeft = 88.0, kRight = 12.0, kTop = 12.0, kBottom = 28.0;
 
 std::string number(double value) {
     char text[32];
@@ -56,6 +56,7 @@ std::string html_escape(const std::string& text) {
 
 std::string readable(double value) {
     char text[64];
+    if (std::fabs(value) >= 100.0 && std::fabs(value) < 1e15) value = std::round(value);
     if (value != std::floor(value) || std::fabs(value) >= 1e15) {
         std::snprintf(text, sizeof text, std::fabs(value) >= 100.0 ? "%.0f" : "%.3g", value);
         return text;

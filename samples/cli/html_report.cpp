@@ -18,12 +18,12 @@ body { margin: 0 auto; padding: 1.2rem; max-width: 80rem; background: var(--grou
   font: 16px/1.5 system-ui, sans-serif; }
 h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 .3rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .6rem; }
 small, .quiet { color: var(--quiet); } figure { margin: 0; }
-.tiles, .charts, .pictures { display: grid; gap: .8rem; grid-template-columns: repeat(auto-fit, minmax(min(100%, 10rem), 1fr)); }
+.tiles, .charts, .pictures { display: grid; gap: .8rem; grid-template-columns: repeat(auto-fit, minmax(min(100%, 8.4rem), 1fr)); }
 .charts, .pictures { grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); }
 .tiles > div, .chart, .pictures figure { background: var(--card); border: 1px solid var(--rule); border-radius: .5rem; padding: .7rem; }
 .tiles b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
 .pictures img { width: 100%; height: auto; display: block; border-radius: .3rem; }
-svg { width: 100%; height: auto; display: block; } svg text { fill: var(--quiet); font-size: 12px; }
+svg { width: 100%; height: auto; display: block; } svg text { fill: var(--quiet); font-size: 17px; }
 .grid { stroke: var(--rule); } polyline { fill: none; stroke-width: 2; stroke-linejoin: round; }
 polyline.s0 { stroke: var(--s0); } polyline.s1 { stroke: var(--s1); } polyline.s2 { stroke: var(--s2); }
 polyline.s3 { stroke: var(--s3); } polyline.s4 { stroke: var(--s4); }
@@ -134,7 +134,7 @@ std::string pictures(const std::vector<ReportPicture>& list) {
 std::string settings(const ReportContents& c) {
     std::string html = "<h2>Settings</h2><div class=\"scroll\"><table id=\"settings\">\n";
     for (const auto& [name, value] : c.settings)
-        html += "<tr><td>" + html_escape(name) + "</td><td>" + html_escape(value) + "</td></tr>\n";
+        if (!value.empty()) html += "<tr><td>" + html_escape(name) + "</td><td>" + html_escape(value) + "</td></tr>\n";
     return html + "</table></div>\n";
 }
 

@@ -142,6 +142,9 @@ void Session::perform(const Action& action) {
             wanted_size_ = {static_cast<std::uint32_t>(action.at.x), static_cast<std::uint32_t>(action.at.y)};
             if (window_) window_->set_size(action.at.x, action.at.y);
             break;
+        case Action::Kind::lose_device:
+            lose_device_ = true;
+            break;
         case Action::Kind::quit:
             quit_ = true;
             break;

@@ -54,6 +54,7 @@ Result<void> Session::finish() {
     document["device"] = device_->name();
     document["counts_exactly"] = device_->counts_exactly();
     document["validation_messages"] = nlohmann::json::array();
+    for (const std::string& message : lost_messages_) document["validation_messages"].push_back(message);
     for (const std::string& message : device_->validation_messages())
         document["validation_messages"].push_back(message);
     document["settings"] = to_json(settings_);

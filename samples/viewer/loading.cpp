@@ -30,20 +30,26 @@ Result<void> Session::start() {
         if (!actions) return tl::unexpected(std::move(actions.error()));
         script_.assign(actions->begin(), actions->end());
     }
+    if (options_.window)
+        if (auto started = start_window(); !started) return started;
     if (auto started = start_device(); !started) return started;
     if (auto started = start_interface(); !started) return started;
     if (auto loaded = load(options_.scene); !loaded) return loaded;
     return load_replay();
 }
 
+Result<void> Session::start_window() {
+    auto window = Window::create("Crofton", static_cast<int>(options_.width), static_cast<int>(options_.height));
+    if (!window) return tl::unexpected(std::move(window.error()));
+    window_ = std::move(*window);
+    return {};
+}
+
 Result<void> Session::start_device() {
     render::DeviceOptions wanted;
     wanted.name = options_.device;
     wanted.validation = options_.validation;
-    if (options_.window) {
-        auto window = Window::create("Crofton", static_cast<int>(options_.width), static_cast<int>(options_.height));
-        if (!window) return tl::unexpected(std::move(window.error()));
-        window_ = std::move(*window);
+    if (window_) {
         wanted.instance_extensions = Window::instance_extensions();
         wanted.device_extensions = Window::device_extensions();
     }
@@ -65,7 +71,11 @@ Result<void> Session::start_interface() {
     imgui_ = true;
     ImGui::GetIO().IniFilename = nullptr;
     if (window_) imgui_window_ = ImGui_ImplGlfw_InitForOther(window_->handle(), true);
-    apply_style(window_ ? window_->content_scale() : 1.0f);
+    apply_style(options_.scale > 0.0f ? options_.scale : window_ ? window_->content_scale() : 1.0f);
+    return start_ui_renderer();
+}
+
+Result<void> Session::start_ui_renderer() {
     auto ui = UiRenderer::create(device_->context());
     if (!ui) return tl::unexpected(std::move(ui.error()));
     ui_ = std::move(*ui);
@@ -73,6 +83,20 @@ Result<void> Session::start_interface() {
     if (!commands) return tl::unexpected(std::move(commands.error()));
     ui_commands_ = std::move(*commands);
     return {};
+}
+
+// A device or a surface is gone: all that lived on it is made anew, the scene and the user's view stay.
+Result<void> Session::recover() {
+    for (const std::string& message : device_->validation_messages()) lost_messages_.push_back(message);
+    ui_.reset();
+    ui_commands_ = {};
+    rasterizer_.reset();
+    if (window_) window_->detach();
+    device_.reset();
+    if (auto started = start_device(); !started) return started;
+    if (auto started = start_ui_renderer(); !started) return started;
+    stale_size_ = true;
+    return upload_geometry();
 }
 
 Result<void> Session::load(const SceneRequest& request) {

@@ -1,6 +1,7 @@
 #include "panels.hpp"
 
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
 #include "scene_panel.hpp"
@@ -9,6 +10,8 @@ namespace crofton::viewer {
 namespace {
 
 using Frame = pipeline::FrameStatistics;
+
+constexpr float kFontPixels = 13.0f;  // what Dear ImGui's own font is made for
 
 ImVec4 display_color(const glm::vec3& linear) {
     return {std::sqrt(linear.r), std::sqrt(linear.g), std::sqrt(linear.b), 1.0f};
@@ -74,12 +77,10 @@ void statistics_table(const PanelInput& input) {
 void counters(const PanelInput& input) {
     if (input.drawn == nullptr || !input.drawn->gpu) return;
     const Frame& frame = *input.drawn;
-    ImGui::Text("clipped: predicted %" PRIu64 ", counted %" PRIu64, frame.triangles_clipped,
-                frame.gpu->clipping_primitives);
     const bool same = frame.triangles_clipped == frame.gpu->clipping_primitives;
-    ImGui::SameLine();
     ImGui::TextColored(same ? ImVec4(0.4f, 0.9f, 0.4f, 1.0f) : ImVec4(1.0f, 0.5f, 0.3f, 1.0f),
-                       same ? "equal" : "differ");
+                       "clipped: predicted %" PRIu64 " %s %" PRIu64 " counted", frame.triangles_clipped,
+                       same ? "=" : "but", frame.gpu->clipping_primitives);
     ImGui::Text("GPU: assembled %" PRIu64 ", samples %" PRIu64, frame.gpu->input_assembly_primitives,
                 frame.gpu->samples_passed);
 }
@@ -156,7 +157,7 @@ void switches(const PanelInput& input, PanelWish& wish) {
     wish.step = ImGui::Button("step (.)");
     ImGui::SameLine();
     auto scale = static_cast<float>(s.time_scale);
-    ImGui::SetNextItemWidth(90.0f);
+    ImGui::SetNextItemWidth(7.0f * ImGui::GetFontSize());
     if (ImGui::SliderFloat("time", &scale, 0.0f, 4.0f, "%.2fx")) s.time_scale = static_cast<double>(scale);
     wish.frame_all = ImGui::Button("frame all (Home)");
     ImGui::SameLine();
@@ -173,7 +174,8 @@ void switches(const PanelInput& input, PanelWish& wish) {
 
 void legend(const PanelInput& input) {
     for (const Painter::Count& tint : input.painter.counts()) {
-        ImGui::ColorButton(tint.name, display_color(tint.color), ImGuiColorEditFlags_NoTooltip, ImVec2(12.0f, 12.0f));
+        ImGui::ColorButton(tint.name, display_color(tint.color), ImGuiColorEditFlags_NoTooltip,
+                           ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
         ImGui::SameLine();
         ImGui::Text("%s: %" PRIu64, tint.name, tint.instances);
     }
@@ -199,14 +201,18 @@ void apply_style(float scale) {
     style.WindowRounding = 4.0f;
     style.Colors[ImGuiCol_WindowBg].w = 0.86f;
     style.ScaleAllSizes(scale);
-    ImGui::GetIO().FontGlobalScale = scale;
+    // Drawn at its size, not enlarged.
+    ImFontConfig font;
+    font.SizePixels = std::round(kFontPixels * scale);
+    ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 
 PanelWish draw_panels(const PanelInput& input) {
     PanelWish wish;
     const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float unit = ImGui::GetFontSize() / kFontPixels;
     ImGui::SetNextWindowPos(ImVec2(8.0f, 8.0f), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(330.0f, display.y - 16.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(330.0f * unit, display.y - 16.0f), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Crofton")) {
         const double ms = input.journal.mean([](const JournalEntry& e) { return e.frame_us * 1e-3; }, 30);
         ImGui::Text("%s: %.1f frames/s", input.stage.source().name.c_str(), ms > 0.0 ? 1000.0 / ms : 0.0);

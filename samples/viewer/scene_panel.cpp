@@ -1,5 +1,6 @@
 #include "scene_panel.hpp"
 
+#include <algorithm>
 #include <cinttypes>
 
 namespace crofton::viewer {
@@ -108,8 +109,9 @@ std::span<const scene::InstanceId> NodeTree::instances(scene::NodeId node) const
 
 void scene_panel(const PanelInput& input, PanelWish& wish) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(display.x - 328.0f, 8.0f), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(320.0f, 260.0f), ImGuiCond_FirstUseEver);
+    const float font = ImGui::GetFontSize(), width = std::min(26.0f * font, 0.5f * display.x);
+    ImGui::SetNextWindowPos(ImVec2(display.x - width - 8.0f, 8.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(width, 14.0f * font), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Scene")) {
         ImGui::Text("%zu nodes, %zu instances, %" PRIu64 " triangles", input.stage.scene().node_count(),
                     input.stage.scene().instance_count(), input.stage.triangle_count());

@@ -46,6 +46,8 @@ Result<Action> parse_action(const std::string& name, const nlohmann::json& value
         action.at = {value[0].get<int>(), value[1].get<int>()};
         if (name == "resize" && (action.at.x < 1 || action.at.y < 1 || action.at.x > 16384 || action.at.y > 16384))
             return bad_event(number, "a size must be from 1 to 16384");
+    } else if (name == "lose_device") {
+        action.kind = Action::Kind::lose_device;
     } else if (name == "quit") {
         action.kind = Action::Kind::quit;
     } else {

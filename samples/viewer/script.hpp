@@ -10,7 +10,7 @@
 namespace crofton::viewer {
 
 struct Action {
-    enum class Kind { event, camera, set, screenshot, click, resize, quit } kind = Kind::event;
+    enum class Kind { event, camera, set, screenshot, click, resize, lose_device, quit } kind = Kind::event;
     std::uint32_t frame = 0;
     Event event;         // event: a key or a dropped file
     Camera camera;       // camera
@@ -22,7 +22,7 @@ struct Action {
 // {"events": [{"frame": 3, "key": "F"}, {"frame": 4, "set": {"coloring": "verdict"}}, {"frame": 5, "camera": {…}},
 //  {"frame": 6, "screenshot": "a.png"}, {"frame": 7, "click": [640, 360]}, {"frame": 8, "resize": [800, 600]},
 //  {"frame": 9, "drop": "scene.glb"}, {"frame": 10, "key_down": "W"}, {"frame": 20, "key_up": "W"}, {"frame": 30,
-//  "quit": true}]}
+//  "quit": true}]} and {"frame": 12, "lose_device": true}, which goes on as after a lost Vulkan device.
 // Frames never decrease. Errors name the event by its number.
 [[nodiscard]] Result<std::vector<Action>> parse_script(const std::string& text);
 [[nodiscard]] Result<std::vector<Action>> load_script(const std::string& path);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <thread>
+#include <utility>
 
 #include "assets/file.hpp"
 #include "pipeline/camera_path.hpp"
@@ -16,6 +17,8 @@ namespace crofton::viewer {
 namespace {
 
 constexpr VkExtent2D kInsetSize{400, 225};
+// A driver that loses its device again and again is given up on.
+constexpr int kMaxRecoveries = 5;
 
 double microseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
@@ -47,6 +50,15 @@ bool Session::running() const {
 }
 
 Result<void> Session::turn() {
+    auto turned = try_turn();
+    if (turned || turned.error().code != ErrorCode::unavailable) return turned;
+    if (recoveries_++ == kMaxRecoveries) return turned;
+    report(turned.error());
+    std::fprintf(stderr, "crofton: starting the device anew\n");
+    return recover();
+}
+
+Result<void> Session::try_turn() {
     const auto start = Clock::now();
     if (window_) {
         window_->wait_while_minimised();
@@ -58,6 +70,7 @@ Result<void> Session::turn() {
     last_turn_ = start;
     handle_events();
     run_script();
+    if (std::exchange(lose_device_, false)) return tl::unexpected(render::vulkan_error(VK_ERROR_DEVICE_LOST, "script"));
     if (auto followed = follow_settings(); !followed) return followed;
     if (auto resized = resize(); !resized) return resized;
     advance(seconds);

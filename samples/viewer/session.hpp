@@ -35,8 +35,11 @@ class Session {
     using Clock = std::chrono::steady_clock;
 
     // Loading (loading.cpp)
+    [[nodiscard]] Result<void> start_window();
     [[nodiscard]] Result<void> start_device();
     [[nodiscard]] Result<void> start_interface();
+    [[nodiscard]] Result<void> start_ui_renderer();
+    [[nodiscard]] Result<void> recover();
     [[nodiscard]] Result<void> load(const SceneRequest& request);
     [[nodiscard]] Result<void> upload_geometry();
     [[nodiscard]] Result<void> follow_settings();
@@ -54,6 +57,7 @@ class Session {
     void grant(const PanelWish& wish);
 
     // One turn (session.cpp)
+    [[nodiscard]] Result<void> try_turn();
     [[nodiscard]] Result<void> resize();
     void advance(double seconds);
     [[nodiscard]] Result<void> cull();
@@ -94,6 +98,9 @@ class Session {
     std::deque<Action> script_;
     std::vector<Camera> replay_, recording_;
     bool replaying_ = false, is_recording_ = false, quit_ = false, step_ = false, stale_size_ = true;
+    bool lose_device_ = false;
+    int recoveries_ = 0;
+    std::vector<std::string> lost_messages_;  // validation's, of devices that are gone
     std::uint32_t frame_index_ = 0, exports_ = 0;
     double scene_time_ = 0.0;  // in frames of 1/60 s
     VkExtent2D wanted_size_{};

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace crofton::viewer {
 namespace {
@@ -53,18 +54,24 @@ Result<void> Window::attach(const render::VulkanContext& context) {
     return create_swapchain();
 }
 
+void Window::detach() {
+    if (context_ == nullptr) return;
+    const auto& vk = context_->vk;
+    vk.vkDeviceWaitIdle(context_->device);
+    vk.vkDestroyFence(context_->device, std::exchange(done_, VK_NULL_HANDLE), nullptr);
+    vk.vkDestroySemaphore(context_->device, std::exchange(acquired_, VK_NULL_HANDLE), nullptr);
+    vk.vkDestroySemaphore(context_->device, std::exchange(copied_, VK_NULL_HANDLE), nullptr);
+    if (commands_ != VK_NULL_HANDLE) vk.vkFreeCommandBuffers(context_->device, context_->command_pool, 1, &commands_);
+    commands_ = VK_NULL_HANDLE;
+    if (swapchain_ != VK_NULL_HANDLE) vk.vkDestroySwapchainKHR(context_->device, swapchain_, nullptr);
+    swapchain_ = VK_NULL_HANDLE;
+    if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(context_->instance, surface_, nullptr);
+    surface_ = VK_NULL_HANDLE;
+    context_ = nullptr;
+}
+
 Window::~Window() {
-    if (context_ != nullptr) {
-        const auto& vk = context_->vk;
-        vk.vkDeviceWaitIdle(context_->device);
-        vk.vkDestroyFence(context_->device, done_, nullptr);
-        vk.vkDestroySemaphore(context_->device, acquired_, nullptr);
-        vk.vkDestroySemaphore(context_->device, copied_, nullptr);
-        if (commands_ != VK_NULL_HANDLE)
-            vk.vkFreeCommandBuffers(context_->device, context_->command_pool, 1, &commands_);
-        if (swapchain_ != VK_NULL_HANDLE) vk.vkDestroySwapchainKHR(context_->device, swapchain_, nullptr);
-        if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(context_->instance, surface_, nullptr);
-    }
+    detach();
     if (window_ != nullptr) glfwDestroyWindow(window_);
     glfwTerminate();
 }

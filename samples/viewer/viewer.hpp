@@ -14,6 +14,7 @@ struct ViewerOptions {
     Settings settings;
     std::uint32_t width = 1280, height = 720;
     bool window = true;
+    float scale = 0.0f;  // of texts and panels; 0: as the window system says
     bool validation = false;
     std::string device;               // part of its name; empty: CROFTON_DEVICE or the best
     std::string camera;               // a path to replay: orbit, street, random or a file; empty: none

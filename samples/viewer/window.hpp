@@ -33,6 +33,8 @@ class Window {
     // Makes surface and swapchain. Errors: the device cannot present here; Vulkan's. The context must outlive the
     // window.
     [[nodiscard]] Result<void> attach(const render::VulkanContext& context);
+    // Undoes attach(), before its device goes; another may follow.
+    void detach();
 
     // Processes what the window system has to say; events gather until taken.
     void poll();

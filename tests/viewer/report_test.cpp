@@ -56,5 +56,34 @@ TEST_SUITE("cli/html_report") {
         for (const char* id : {"chart-instances", "chart-triangles", "chart-time", "chart-pairs", "chart-nodes"})
             CHECK(parsed.find("id=\"" + std::string(id) + "\"") != std::string::npos);
         CHECK(count_of(parsed, "<polyline") == count_of(page, "<polyline"));
+        // Laid out: nothing is wider than the screen, charts have a size, and the page follows the reader's colours.
+        const std::string probe =
+            "<script>document.title = JSON.stringify({screen: document.documentElement.clientWidth, "
+            "page: document.documentElement.scrollWidth, charts: [...document.querySelectorAll('svg')].map(e => "
+            "e.getBoundingClientRect().width), pictures: [...document.images].map(e => e.naturalWidth), "
+            "ground: getComputedStyle(document.body).backgroundColor})</script>";
+        const std::string probed = scratch().file("probed.html");
+        write_contents(probed, page + probe);
+        std::string grounds[2];
+        for (const int light : {0, 1})
+            for (const int width : {500, 1280}) {
+                CAPTURE(width);
+                const std::string layout = "chromium --headless --no-sandbox --disable-gpu --user-data-dir='" +
+                                           scratch().file("chromium") +
+                                           "' --blink-settings=preferredColorScheme=" + std::to_string(light) +
+                                           " --window-size=" + std::to_string(width) + ",900 --dump-dom 'file://" +
+                                           probed + "' >'" + dom + "' 2>/dev/null";
+                REQUIRE(std::system(layout.c_str()) == 0);
+                const std::string laid_out = contents_of(dom);
+                const std::size_t begin = laid_out.find("<title>") + 7, end = laid_out.find("</title>");
+                REQUIRE(end > begin);
+                const auto found = nlohmann::json::parse(laid_out.substr(begin, end - begin), nullptr, false);
+                REQUIRE(found.is_object());
+                CHECK(found["page"] <= found["screen"]);
+                for (const auto& chart : found["charts"]) CHECK(chart.get<double>() > 200.0);
+                for (const auto& picture : found["pictures"]) CHECK(picture == 160);
+                grounds[light] = found["ground"];
+            }
+        CHECK(grounds[0] != grounds[1]);
     }
 }

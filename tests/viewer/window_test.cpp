@@ -421,6 +421,34 @@ TEST_SUITE("viewer/window") {
             CHECK(Pixels(scratch().file("tinted.png")).green() > 5000);
         }
     }
+    TEST_CASE("a lost device is replaced: a message, the same picture, nothing to say for validation") {
+        CROFTON_REQUIRE_DISPLAY();
+        for (const bool window : {true, false}) {
+            const ViewRun result = view({set(0, {{"paused", true}, {"panels", false}}),
+                                         shot(1, "whole.png"),
+                                         {{"frame", 2}, {"lose_device", true}},
+                                         shot(3, "anew.png"),
+                                         set(4, {{"inset", true}, {"panels", true}}),
+                                         {{"frame", 6}, {"quit", true}}},
+                                        {}, window);
+            check_clean(result);
+            CHECK(result.run.err.find("VK_ERROR_DEVICE_LOST") != std::string::npos);
+            CHECK(Pixels(scratch().file("anew.png")).different(Pixels(scratch().file("whole.png"))) == 0);
+        }
+    }
+    TEST_CASE("texts and panels grow with the display's scale") {
+        const json script{{{"frame", 0}, {"resize", {1600, 900}}},
+                          shot(2, "panels.png"),
+                          set(3, {{"panels", false}}),
+                          shot(4, "plain.png")};
+        int covered[2];
+        for (const int scale : {1, 2}) {
+            check_clean(view(script, "--scale " + std::to_string(scale), false));
+            covered[scale - 1] = Pixels(scratch().file("panels.png")).different(Pixels(scratch().file("plain.png")));
+        }
+        CHECK(covered[1] > 3 * covered[0] / 2);
+        CHECK(covered[1] < 4 * covered[0]);
+    }
     TEST_CASE("time stands still when paused, and steps frame by frame") {
         const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}}),
                                      shot(1, "a.png"),

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Makes the README's pictures anew, beside this script. Needs a build (tests/run.sh or samples/run.sh), and Chromium for
+# the report's.   docs/pictures/make.sh [CROFTON]
+set -euo pipefail
+cd "$(dirname "$0")"
+crofton=${1:-../../build/release/bin/crofton}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$crofton" view --no-window --script verdicts.json --after 8 --screenshot verdicts.png
+"$crofton" frames town --camera orbit --frames 12 --size 960x540 --png "$work/town"
+cp "$work"/town/*0003.png town.png
+"$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
+"$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
+if command -v chromium >/dev/null; then
+    "$crofton" frames town --frames 120 --size 480x270 --verify --report "$work/report.html"
+    chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" \
+        --blink-settings=preferredColorScheme=1 --window-size=960,900 --screenshot="$work/report.png" \
+        "file://$work/report.html" >/dev/null 2>&1
+    cp "$work/report.png" report.png
+fi
