@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/core/thread_pool.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <limits>
 #include <oracle/exact_bounds.hpp>
@@ -223,6 +224,27 @@ TEST_SUITE("cull/bound_set") {
         CHECK(inside > 5000);
     }
 
+    TEST_CASE("points nearer to the view's planes than a list's integers can tell get classify's verdicts") {
+        for (const double offset : {0.0, 1e6}) {
+            oracle::NearMisses random(16, offset);
+            for (int trial = 0; trial < 12; ++trial) {
+                const Frustum frustum = *frustum_of(random.camera());
+                const auto corners = *frustum_corners(frustum);
+                std::vector<Sphere> points;
+                for (int n = 0; n < 4000; ++n) points.push_back({random.surface_point(frustum, corners), 0.0});
+                cull::SphereSet set;
+                set.assign(points);
+                const double quantum = set.chunks()[0].quantum;
+                for (Sphere& point : points) point.center += random.number(0.0, 0.3) * quantum * random.direction();
+                set.assign(points);
+                cull::VerdictBits bits;
+                cull::cull(set, points, {frustum}, bits);
+                for (std::size_t i = 0; i < points.size(); ++i)
+                    REQUIRE(bits.verdict(i) == cull::classify(frustum, points[i]));
+            }
+        }
+    }
+
     TEST_CASE("32 views in one pass see what each sees alone, each within its layers") {
         for (const std::size_t count : {1u, 70u, 9000u}) {
             const oracle::Crowd crowd = oracle::random_crowd(count, 1e6, 12);
@@ -281,5 +303,16 @@ TEST_SUITE("cull/bound_set") {
             improper += expected;
         }
         CHECK(improper > 10);
+        const std::vector<cull::View> views{{*frustum_of(random.camera())}, {*frustum_of(random.camera())}};
+        std::vector<std::uint32_t> masks(crowd.boxes.size());
+        std::vector<cull::Statistics> statistics(2);
+        ThreadPool two(2);
+        cull::cull(set, crowd.boxes, {}, views, masks, cull::Mode::exact, two, statistics);
+        for (std::size_t v = 0; v < 2; ++v) {
+            cull::cull(set, crowd.boxes, views[v], bits);
+            CHECK(statistics[v].improper == bits.statistics.improper);
+            CHECK(statistics[v].straddling == bits.statistics.straddling);
+            CHECK(statistics[v].boxes_tested == bits.statistics.boxes_tested);
+        }
     }
 }

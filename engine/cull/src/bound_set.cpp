@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <mutex>
 
 #include "box_constraints.hpp"
 #include "list_kernel.hpp"
@@ -212,12 +213,15 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
 template <class Bound>
 void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
           std::span<const std::uint32_t> layer_masks, std::span<const View> views, std::span<std::uint32_t> view_masks,
-          Mode mode, Executor& executor) {
+          Mode mode, Executor& executor, std::span<Statistics> statistics) {
     CROFTON_ASSERT(bounds.size() == set.size(), "cull needs the bounds that the set was given");
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     CROFTON_ASSERT(view_masks.size() == set.size(), "cull needs one view mask per bound");
     CROFTON_ASSERT(layer_masks.empty() || layer_masks.size() == set.size(),
                    "cull needs one layer mask per bound, or none");
+    CROFTON_ASSERT(statistics.empty() || statistics.size() == views.size(), "one Statistics per view, or none");
+    std::fill(statistics.begin(), statistics.end(), Statistics{});
+    std::mutex summing;
     KernelView kernel_views[kMaxViews];
     bool usable[kMaxViews], vectors[kMaxViews];
     for (std::size_t v = 0; v < views.size(); ++v) {
@@ -230,11 +234,12 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
     executor.parallel_for(set.chunks().size(), 2, [&](std::size_t begin, std::size_t end, unsigned) {
         ListKernelOutput output;
         ViewBits seen[kMaxViews];
+        Statistics cost[kMaxViews];
         for (std::size_t c = begin; c < end; ++c) {
             const std::size_t first = c * kChunk, count = std::min(kChunk, set.size() - first);
             std::size_t seeing = 0;
             for (std::size_t v = 0; v < views.size(); ++v) {
-                query.run(c, views[v], kernel_views[v], usable[v], vectors[v], output);
+                cost[v] += query.run(c, views[v], kernel_views[v], usable[v], vectors[v], output);
                 const std::size_t words = (count + 63) / 64;
                 if (std::all_of(output.visible, output.visible + words, [](std::uint64_t w) { return w == 0; }))
                     continue;
@@ -245,6 +250,8 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
             mark_views_kernel(seen, seeing, count, layer_masks.empty() ? nullptr : &layer_masks[first],
                               &view_masks[first]);
         }
+        const std::lock_guard lock(summing);
+        for (std::size_t v = 0; v < statistics.size(); ++v) statistics[v] += cost[v];
     });
 }
 
@@ -261,7 +268,7 @@ template class BoundSet<Sphere>;
                        VerdictBits&, Mode, Executor&);                                                        \
     template void cull(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,                  \
                        std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>, Mode, \
-                       Executor&);
+                       Executor&, std::span<Statistics>);
 CROFTON_CULL_LIST_QUERIES(Obb)
 CROFTON_CULL_LIST_QUERIES(Aabb)
 CROFTON_CULL_LIST_QUERIES(Sphere)

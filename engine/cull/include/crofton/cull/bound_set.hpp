@@ -82,11 +82,12 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
           VerdictBits& verdicts, Mode mode = Mode::exact, Executor& executor = serial_executor());
 
 // Up to 32 views in one pass: bit v of view_masks[i] says that views[v] sees bound i. Without layer masks everything is
-// in all layers. Requires one view mask, and one layer mask or none, per bound. Allocates nothing.
+// in all layers; layers are looked at last, so that `statistics`, one per view or none, count all bounds. Requires one
+// view mask, and one layer mask or none, per bound. Allocates nothing.
 template <class Bound>
 void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
           std::span<const std::uint32_t> layer_masks, std::span<const View> views, std::span<std::uint32_t> view_masks,
-          Mode mode = Mode::exact, Executor& executor = serial_executor());
+          Mode mode = Mode::exact, Executor& executor = serial_executor(), std::span<Statistics> statistics = {});
 
 // The indices of the bits that are set, ascending, into `ids`, which needs room for 16 more than there are; returns how
 // many.
