@@ -82,8 +82,8 @@ void lines_in_bundles(benchmark::State& state) {
     double count = 0.0, crossings = 0.0;
     std::uint64_t k = 0;
     for (auto _ : state) {
-        const Bundle bundle = make_bundle(s.bundles.bounds(), s.cell_area(static_cast<double>(state.range(1))),
-                                          points.at<2>(k), k);
+        const Bundle bundle =
+            make_bundle(s.bundles.bounds(), s.cell_area(static_cast<double>(state.range(1))), points.at<2>(k), k);
         ++k;
         s.bundles.all_hits(bundle, scratch, hits);
         count += bundle.lines;
@@ -117,8 +117,9 @@ class SampledRows {
             if (rays_[i] == 0 || other.rays_[i] == 0) return;
             const auto factor = [&](const SampledRows& rows) {
                 const auto found = rows.transfers_.find(key);
-                return found == rows.transfers_.end() ? 0.0
-                                                      : static_cast<double>(found->second) / static_cast<double>(rows.rays_[i]);
+                return found == rows.transfers_.end()
+                           ? 0.0
+                           : static_cast<double>(found->second) / static_cast<double>(rows.rays_[i]);
             };
             sum += patches_.areas[i] * std::pow(factor(*this) - factor(other), 2.0);
         };
@@ -152,7 +153,8 @@ void visit(const LineHits& hits, const Patches& patches, SampledRows& rows) {
     }
 }
 
-// Two independent estimates, each `seconds` of tracing; keeping the sample's transfers is left out of the time, for all alike.
+// Two independent estimates, each `seconds` of tracing; keeping the sample's transfers is left out of the time, for all
+// alike.
 template <class Step>
 void measure_factors(benchmark::State& state, const Scene& s, double seconds, Step&& step) {
     for (auto _ : state) {
@@ -231,16 +233,16 @@ void factors_by_local_lines(benchmark::State& state, Cast&& cast) {
             const glm::dvec3 a = corner(0), u = corner(1) - a, v = corner(2) - a;
             double x = random.uniform(), y = random.uniform();
             if (x + y > 1.0) x = 1.0 - x, y = 1.0 - y;
-            rays.push_back({{a + x * u + y * v,
-                             measure::cosine_direction(glm::normalize(glm::cross(u, v)), random.point<2>())},
-                            i});
+            rays.push_back(
+                {{a + x * u + y * v, measure::cosine_direction(glm::normalize(glm::cross(u, v)), random.point<2>())},
+                 i});
         }
         cast(s, std::span<const Ray>(rays), std::span(hits).first(rays.size()));
         const double spent = seconds_since(start);
         for (std::size_t r = 0; r < rays.size(); ++r)
             rows.add(begin + static_cast<std::uint32_t>(r), hits[r].triangle == Hit::kNothing ? kSky
-                                                            : hits[r].front ? hits[r].triangle
-                                                                            : kBack);
+                                                            : hits[r].front                   ? hits[r].triangle
+                                                                                              : kBack);
         return spent;
     });
     state.SetLabel(scene_name(static_cast<int>(state.range(0))));

@@ -24,8 +24,8 @@ EmbreeScene::EmbreeScene(const TriangleMesh& mesh) : data_(std::make_unique<Data
     data_->scene = rtcNewScene(data_->device);
     rtcSetSceneBuildQuality(data_->scene, RTC_BUILD_QUALITY_HIGH);
     const RTCGeometry geometry = rtcNewGeometry(data_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                              mesh.positions.size());
+    void* positions =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size());
     std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * 12);
     void* indices =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangle_count());

@@ -126,8 +126,8 @@ Result<void> run(const Options& options) {
                                          {"surface", surface},
                                          {"chosen", best},
                                          {"methods", rows}});
-    std::printf("%s: %zu triangles, %.0f square metres; lines one by one from: %s\n", source->name.c_str(), mesh.triangle_count(),
-                surface, best);
+    std::printf("%s: %zu triangles, %.0f square metres; lines one by one from: %s\n", source->name.c_str(),
+                mesh.triangle_count(), surface, best);
     std::printf("%-8s %-7s %12s %10s %10s %8s %10s %12s\n", "method", "numbers", "lines/s", "crossings", "deviation",
                 "wasted", "error", "efficiency");
     for (const auto& row : rows)

@@ -51,8 +51,7 @@ EdgeLengths automatic_edges(const TriangleMesh& mesh) {
     const std::size_t count = mesh.triangle_count();
     std::vector<glm::dvec3> middles(count);
     for (std::size_t t = 0; t < count; ++t)
-        for (std::size_t k = 0; k < 3; ++k)
-            middles[t] += glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]) / 3.0;
+        for (std::size_t k = 0; k < 3; ++k) middles[t] += glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]) / 3.0;
     const auto quantile = [](std::vector<double> values, double share) {
         const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
         std::nth_element(values.begin(), at, values.end());
@@ -69,7 +68,8 @@ EdgeLengths automatic_edges(const TriangleMesh& mesh) {
     double cells = 0.0;  // that an edge of 1 would make
     for (std::size_t t = 0; t < count; ++t) {
         const auto at = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[3 * t + k]]); };
-        cells += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0))) / std::pow(lengths.factor(middles[t]), 2.0);
+        cells +=
+            0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0))) / std::pow(lengths.factor(middles[t]), 2.0);
     }
     lengths.edge = 2.0 * std::sqrt(cells / std::max(kLeastTriangles, static_cast<double>(count)));
     return lengths;

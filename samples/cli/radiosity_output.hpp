@@ -10,8 +10,8 @@ namespace crofton::cli {
 
 // Patches, and what their triangles look like for themselves.
 struct LitScene {
-    radiosity::Patches patches;      // its mesh's colours are the reflectance at each corner
-    Vector<glm::vec3> emission;      // by triangle
+    radiosity::Patches patches;  // its mesh's colours are the reflectance at each corner
+    Vector<glm::vec3> emission;  // by triangle
 };
 
 inline constexpr float kMostReflectance = 0.9f;  // of white paint; light must end

@@ -96,8 +96,9 @@ TEST_SUITE("radiosity/bundle_tracer") {
         LineHits hits;
         std::size_t odd = 0, lines = 0;
         for (int k = 0; k < 20; ++k) {
-            const Bundle bundle = make_bundle(tracer->bounds(), 0.001, {0.05 * k + 0.01, 0.618 * k - std::floor(0.618 * k)},
-                                              static_cast<std::uint64_t>(k));
+            const Bundle bundle =
+                make_bundle(tracer->bounds(), 0.001, {0.05 * k + 0.01, 0.618 * k - std::floor(0.618 * k)},
+                            static_cast<std::uint64_t>(k));
             tracer->all_hits(bundle, scratch, hits);
             std::uint32_t begin = 0;
             for (const std::uint32_t end : hits.ends) {

@@ -186,6 +186,32 @@ TEST_SUITE("radiosity/solver") {
         CHECK(sun->radiosity()[0].x == doctest::Approx(0.5 * 2.0 * std::sqrt(0.5)).epsilon(0.01));
     }
 
+    TEST_CASE(
+        "what lies inside a solid counts neither as dark nor as lit: the open half of a floor has the whole sky") {
+        Shape s;
+        s.parallelogram({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, 0);
+        // A closed slab, its faces outward, hides half of the floor and shades nothing of the rest.
+        shapes::Shape slab;
+        slab.room({1, -1e-3f, 0}, {2, 1e-3f, 2}, 1);
+        for (std::size_t t = 0; t < slab.mesh.triangle_count(); ++t) {
+            const auto at = [&](std::size_t k) { return slab.mesh.positions[slab.mesh.indices[3 * t + k]]; };
+            s.triangle(at(0), at(2), at(1), slab.patches[t]);
+        }
+        const Patches patches = patches_of(s, std::vector<Material>(7, {glm::vec3(0.0f), glm::vec3(0.5f)}));
+        for (const Transport transport : {Transport::global, Transport::local}) {
+            SolverOptions options = quick();
+            options.transport = transport;
+            options.outside.sky = glm::vec3(1.0f);
+            options.outside.sun = glm::vec3(2.0f);
+            auto solver = Solver::create(patches, options);
+            REQUIRE(solver.has_value());
+            for (int run = 0; run < 8; ++run) solver->run();
+            CHECK(solver->exposed_share(0) == doctest::Approx(0.5).epsilon(0.05));
+            CHECK(solver->irradiance()[0].x == doctest::Approx(3.0).epsilon(0.01));
+            CHECK(solver->radiosity()[0].x == doctest::Approx(1.5).epsilon(0.01));
+        }
+    }
+
     TEST_CASE("the estimated error is the true one's size, and four times the runs halve it") {
         const Box box = lit_box(3);
         const Patches patches = patches_of(box.shape, box.materials);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/triangulate/triangulate.hpp>
-#include <glm/geometric.hpp>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <string>
 
 namespace crofton::radiosity {
@@ -21,7 +21,8 @@ using Cell = std::array<std::int64_t, 3>;
 class PointGrid {
   public:
     PointGrid(const TriangleMesh& mesh, double cell) : mesh_(mesh), cell_(cell) {
-        for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) entries_.push_back({key(cell_of(mesh.positions[v])), v});
+        for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
+            entries_.push_back({key(cell_of(mesh.positions[v])), v});
         const auto before = [&](const Entry& a, const Entry& b) {
             if (a.key != b.key) return a.key < b.key;
             const glm::vec3 &p = mesh.positions[a.vertex], &q = mesh.positions[b.vertex];
@@ -53,7 +54,8 @@ class PointGrid {
             for (std::int64_t y = a[1]; y <= b[1]; ++y)
                 for (std::int64_t z = a[2]; z <= b[2]; ++z) {
                     const std::uint64_t wanted = key({x, y, z});
-                    for (std::size_t slot = slot_of(wanted); heads_[slot] != kNone; slot = (slot + 1) & (heads_.size() - 1)) {
+                    for (std::size_t slot = slot_of(wanted); heads_[slot] != kNone;
+                         slot = (slot + 1) & (heads_.size() - 1)) {
                         std::uint32_t e = heads_[slot];
                         if (entries_[e].key != wanted) continue;
                         for (; e < entries_.size() && entries_[e].key == wanted; ++e) visit(entries_[e].vertex);
@@ -105,7 +107,8 @@ void points_on_side(const TriangleMesh& mesh, const PointGrid& grid, double cell
     if (!(length > 2.0 * tolerance)) return;
     const auto pieces = static_cast<std::size_t>(std::ceil(std::min(length / cell, 1e6)));
     for (std::size_t k = 0; k < pieces; ++k) {
-        const double n = static_cast<double>(pieces), s = static_cast<double>(k) / n, t = static_cast<double>(k + 1) / n;
+        const double n = static_cast<double>(pieces), s = static_cast<double>(k) / n,
+                     t = static_cast<double>(k + 1) / n;
         const glm::dvec3 u = p + s * d, v = p + t * d;
         grid.near(glm::min(u, v) - tolerance, glm::max(u, v) + tolerance, [&](std::uint32_t vertex) {
             const glm::dvec3 x(mesh.positions[vertex]);
@@ -115,9 +118,8 @@ void points_on_side(const TriangleMesh& mesh, const PointGrid& grid, double cell
             if (glm::length(x - p - along * d) <= tolerance) result.push_back({along, vertex});
         });
     }
-    std::sort(result.begin(), result.end(), [](const OnSide& x, const OnSide& y) {
-        return x.at != y.at ? x.at < y.at : x.vertex < y.vertex;
-    });
+    std::sort(result.begin(), result.end(),
+              [](const OnSide& x, const OnSide& y) { return x.at != y.at ? x.at < y.at : x.vertex < y.vertex; });
     // Of points that fall on one step, the first.
     result.erase(std::unique(result.begin(), result.end(),
                              [](const OnSide& x, const OnSide& y) {
@@ -168,8 +170,9 @@ class Mender {
         const double square = glm::dot(side, side);
         const double x = glm::dot(other, side) / square, y = glm::length(glm::cross(side, other)) / square;
         const auto on_lattice = [](double u) { return std::round(u * kSteps) / kSteps; };
-        corners_ = {glm::dvec2(0.0), glm::dvec2(1.0, 0.0),
-                    glm::dvec2(on_lattice(std::clamp(x, -1e6, 1e6)), std::max(1.0 / kSteps, on_lattice(std::min(y, 1e6))))};
+        corners_ = {
+            glm::dvec2(0.0), glm::dvec2(1.0, 0.0),
+            glm::dvec2(on_lattice(std::clamp(x, -1e6, 1e6)), std::max(1.0 / kSteps, on_lattice(std::min(y, 1e6))))};
         outline_.polygon.points.clear();
         outline_.vertices.clear();
     }
@@ -239,7 +242,8 @@ class Mender {
 
 Result<RefinedMesh> mend_t_junctions(const TriangleMesh& mesh, double tolerance) {
     if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    if (!(tolerance >= 0.0)) return fail(ErrorCode::out_of_range, kNoItem, "mending: the tolerance must not be negative");
+    if (!(tolerance >= 0.0))
+        return fail(ErrorCode::out_of_range, kNoItem, "mending: the tolerance must not be negative");
     if (mesh.indices.empty()) return RefinedMesh{mesh, {}};
     return Mender(mesh, tolerance).mend();
 }

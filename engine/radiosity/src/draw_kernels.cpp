@@ -41,7 +41,8 @@ void project(const DrawnTriangles* blocks, std::size_t count, const GridFrame& g
             const auto range = [&](const V* v, float end, std::int32_t* low, std::int32_t* high) {
                 const V least = hn::Max(zero, hn::Min(v[0], hn::Min(v[1], v[2])));
                 const V most = hn::Min(hn::Set(d, end), hn::Add(hn::Max(v[0], hn::Max(v[1], v[2])), hn::Set(d, 1.0f)));
-                hn::Store(hn::ConvertTo(di, least), di, low + at);  // truncates: both are at least 0, or the range is empty
+                hn::Store(hn::ConvertTo(di, least), di,
+                          low + at);  // truncates: both are at least 0, or the range is empty
                 hn::Store(hn::ConvertTo(di, most), di, high + at);
             };
             range(x, grid.columns, out.column_low, out.column_high);

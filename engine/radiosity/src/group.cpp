@@ -18,7 +18,9 @@ Key key_of(const TriangleMesh& mesh, std::uint32_t t, std::uint32_t label, doubl
     int axis = 0;
     for (int k = 1; k < 3; ++k)
         if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
-    const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(std::clamp(x / size, -9e15, 9e15))); };
+    const auto cell = [&](double x) {
+        return static_cast<std::int64_t>(std::floor(std::clamp(x / size, -9e15, 9e15)));
+    };
     return {cell(center.x), cell(center.y), cell(center.z), 2 * axis + (normal[axis] < 0.0 ? 1 : 0), label};
 }
 
@@ -45,9 +47,8 @@ Vector<std::uint32_t> group_small_triangles(const TriangleMesh& mesh, std::span<
     }
     Vector<std::uint32_t> order(small.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
-    });
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (i > 0 && keys[order[i]] != keys[order[i - 1]]) ++next;
         patches[small[order[i]]] = next;

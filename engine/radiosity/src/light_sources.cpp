@@ -108,8 +108,8 @@ void Solver::look_for_sun(Light& arrived, Executor& executor) {
             const Corners c = corners_of(p, triangle);
             const double cosine = glm::dot(glm::normalize(glm::cross(c.b - c.a, c.c - c.a)), to_sun);
             if (cosine > 0.0)
-                looks.push_back({i, triangle, static_cast<float>(u[0]), static_cast<float>(u[1]),
-                                 static_cast<float>(cosine)});
+                looks.push_back(
+                    {i, triangle, static_cast<float>(u[0]), static_cast<float>(u[1]), static_cast<float>(cosine)});
         }
     }
     Vector<double> lit(p.count(), 0.0);

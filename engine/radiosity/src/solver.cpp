@@ -27,7 +27,8 @@ Result<void> check(const SolverOptions& options) {
     };
     if (!valid(options.outside.sky) || !valid(options.outside.sun))
         return fail(ErrorCode::out_of_range, kNoItem, "radiosity: sky and sun must be finite and not negative");
-    if (!(options.cutoff > 0.0)) return fail(ErrorCode::out_of_range, kNoItem, "radiosity: the cutoff must be positive");
+    if (!(options.cutoff > 0.0))
+        return fail(ErrorCode::out_of_range, kNoItem, "radiosity: the cutoff must be positive");
     if (options.lines > std::uint64_t{1} << 40)
         return fail(ErrorCode::out_of_range, kNoItem, "radiosity: more than 2^40 lines in one gathering");
     if (total(glm::dvec3(options.outside.sun)) > 0.0 && !(glm::length(options.outside.to_sun) > 0.0))
@@ -50,9 +51,7 @@ Solver::Solver(const Patches& patches, const SolverOptions& options, LineTracer 
     mean_.assign(patches.count(), glm::vec3(0.0f));
     for (const double area : patches.areas) surface_ += area;
     box_area_ = LineSource(tracer_.bounds(), LineMethod::walls, options.seed).surface_area();
-    if (options_.lines == 0)
-        options_.lines = static_cast<std::uint64_t>(
-            std::ceil(64.0 * lines_of_bundle()));
+    if (options_.lines == 0) options_.lines = static_cast<std::uint64_t>(std::ceil(64.0 * lines_of_bundle()));
     if (options_.first_shot == 0)
         options_.first_shot = std::clamp<std::uint64_t>(options_.lines / 4, 1u << 12, 1u << 18);
     list_triangles();

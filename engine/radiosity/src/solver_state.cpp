@@ -57,7 +57,8 @@ double Solver::relative_error() const {
     double error = 0.0, size = 0.0;
     for (std::size_t i = 0; i < sum_.size(); ++i)
         for (int k = 0; k < 3; ++k) {
-            const double mean = sum_[i][k] / n, reflectance = static_cast<double>(patches_->materials[i].reflectance[k]);
+            const double mean = sum_[i][k] / n,
+                         reflectance = static_cast<double>(patches_->materials[i].reflectance[k]);
             const double variance = std::max(0.0, (squares_[i][k] / n - mean * mean) * n / (n - 1.0));
             const double light = static_cast<double>(patches_->materials[i].emission[k]) + reflectance * mean;
             error += patches_->areas[i] * reflectance * reflectance * variance / n;

@@ -25,9 +25,9 @@ enum class Transport : std::uint8_t {
 };
 
 struct SolverOptions {
-    std::uint64_t lines = 0;              // global lines of a run's first gathering; 0: 64 bundles
-    std::uint64_t first_shot = 0;         // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
-    std::optional<LineMethod> method;     // absent: bundles
+    std::uint64_t lines = 0;           // global lines of a run's first gathering; 0: 64 bundles
+    std::uint64_t first_shot = 0;      // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
+    std::optional<LineMethod> method;  // absent: bundles
     Transport transport = Transport::global;
     measure::Sequence sequence = measure::Sequence::quasi_random;
     std::uint64_t seed = 1;
@@ -66,7 +66,8 @@ class Solver {
     // before the second run.
     [[nodiscard]] double relative_error() const;
     [[nodiscard]] double unseen() const;
-    // The share of a patch that lies in the open, as its rays so far tell; 0 where all is buried, 1 before the first run.
+    // The share of a patch that lies in the open, as its rays so far tell; 0 where all is buried, 1 before the first
+    // run.
     [[nodiscard]] double exposed_share(std::size_t patch) const;
     [[nodiscard]] LineMethod method() const { return method_; }
     [[nodiscard]] std::uint64_t lines_traced() const { return lines_traced_; }
