@@ -89,7 +89,10 @@ FaceSearch::Outcome MinimumWeight::solve_face(std::span<const glm::dvec2> points
     }
     const std::size_t before = diagonals_.size();
     Outcome outcome = Outcome::gave_up;
-    if (!simple) {
+    // A search once begun goes on to its first triangulation, so none begins late.
+    if (!simple && watch.stopped_now(fraction)) {
+        outcome = Outcome::gave_up;
+    } else if (!simple) {
         outcome = search_.solve(points, graph_, faces_, name, watch, corners_, diagonals_);
     } else if (!watch.stopped(fraction)) {
         const double weight = program_.solve(faces_.walk(name), watch, fraction);
