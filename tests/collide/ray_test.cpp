@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
+#include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/collide/ray.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <vector>
 
 #include "meshes.hpp"
 #include "oracle/exact_boxes.hpp"
@@ -95,5 +97,86 @@ TEST_SUITE("collide/ray") {
         std::mt19937_64 random(4);
         const auto tree = tree::MeshTree::build(wavy_torus(0.6, 0.59, 0.0, 16, 16));
         for (int trial = 0; trial < 20000; ++trial) CHECK(hits_any(Ray{{0.6, 0.0, 0.0}, random_vector(random)}, *tree));
+    }
+
+    TriangleMesh cube_mesh() {
+        TriangleMesh mesh;
+        for (int i = 0; i < 8; ++i)
+            mesh.positions.push_back(glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+        mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+        return mesh;
+    }
+
+    TEST_CASE("rays within a triangle's plane do not hit it, but what bounds it in a closed mesh is hit") {
+        TriangleMesh sheet;
+        sheet.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+        sheet.indices = {0, 1, 2};
+        const auto flat = tree::MeshTree::build(sheet);
+        CHECK_FALSE(raycast(Ray{{-1, 1, 0}, {1, 0, 0}}, *flat).has_value());
+        CHECK_FALSE(raycast(Ray{{-1, 0, 0}, {1, 0, 0}}, *flat).has_value());  // along an edge
+        CHECK_FALSE(raycast(Ray{{1, 1, 0}, {0.3, 0.7, 0}}, *flat).has_value());
+        CHECK(raycast(Ray{{-1, 1, 0}, {1, 0, 1e-300}}, *flat).has_value() == false);
+        CHECK(raycast(Ray{{-1, 1, -1e-60}, {1, 0, 1e-60}}, *flat).has_value());  // meets x = 0, if ever so flatly
+        const auto cube = tree::MeshTree::build(cube_mesh());
+        for (const double y : {-1.0, -0.5, 0.0, 0.25, 1.0}) {
+            const auto hit = raycast(Ray{{-5, y, 1}, {1, 0, 0}}, *cube);  // within the plane of a face
+            REQUIRE(hit.has_value());
+            CHECK(hit->t == 4.0);
+        }
+        CHECK(raycast(Ray{{-5, 1, 1}, {2, 0, 0}}, *cube)->t == 2.0);    // along an edge
+        CHECK(raycast(Ray{{-5, -5, -5}, {1, 1, 1}}, *cube)->t == 4.0);  // along a diagonal, through two corners
+        CHECK_FALSE(raycast(Ray{{-5, 0, std::nextafter(1.0, 2.0)}, {1, 0, 0}}, *cube).has_value());
+    }
+
+    TEST_CASE("watertight: no ray from inside a closed mesh is lost at an edge or a vertex") {
+        const TriangleMesh meshes[] = {cube_mesh(), wavy_torus(1.0, 0.6, 0.2, 24, 12)};
+        for (const TriangleMesh& mesh : meshes) {
+            const auto tree = tree::MeshTree::build(mesh);
+            std::mt19937_64 random(8);
+            std::vector<glm::dvec3> origins;
+            while (origins.size() < 4) {
+                const glm::dvec3 p = glm::dvec3(0.8, 0.0, 0.0) + 0.3 * random_vector(random);
+                if (contains(*tree, p)) origins.push_back(p);
+            }
+            int lost = 0;
+            const auto shoot = [&](const glm::dvec3& from, const glm::dvec3& target) {
+                lost += !raycast(Ray{from, target - from}, *tree).has_value();
+                lost += !hits_any(Ray{from, 1e-7 * (target - from)}, *tree);
+            };
+            for (const glm::dvec3& from : origins)
+                for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const glm::dvec3 a = vertex(mesh, t, k), b = vertex(mesh, t, (k + 1) % 3);
+                        shoot(from, a);
+                        for (const double s : {0.5, 0.25, 1.0 / 3.0, 0.1, 1e-9}) shoot(from, a + s * (b - a));
+                    }
+            CHECK(lost == 0);
+        }
+    }
+
+    TEST_CASE("grazing rays: needles of triangles seen edge-on are hit where rational arithmetic hits them") {
+        std::mt19937_64 random(9);
+        int hits = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            const glm::dvec3 direction = glm::normalize(random_vector(random)), origin = 2.0 * random_vector(random);
+            const double off = std::pow(10.0, -double(trial % 18));
+            TriangleMesh mesh;
+            for (int k = 0; k < 3; ++k)
+                mesh.positions.push_back(
+                    glm::vec3(origin + (3.0 + random_vector(random).x) * direction + off * random_vector(random)));
+            mesh.indices = {0, 1, 2};
+            const auto tree = tree::MeshTree::build(mesh);
+            const Ray ray{origin, direction};
+            const auto truth = oracle_hit(ray, mesh);
+            const auto hit = raycast(ray, *tree);
+            CHECK(hit.has_value() == truth.has_value());
+            if (hit && truth) {
+                CHECK(hit->t > 1.9);
+                CHECK(hit->t < 6.0);
+            }
+            hits += truth.has_value();
+        }
+        CHECK(hits > 100);
     }
 }

@@ -75,8 +75,27 @@ HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
     return static_cast<std::uint32_t>(bits[0]) << l;
 }
 
+// Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a triangle
+// that is hit is hit there, also where the line lies so close to its plane that rounding leaves nothing of the quotient.
+HWY_INLINE VD parameters(DD d, const VD (&p)[3][3], const VD* direction) {
+    VD u[3], v[3], n[3];
+    for (int i = 0; i < 3; ++i) {
+        u[i] = hn::Sub(p[1][i], p[0][i]);
+        v[i] = hn::Sub(p[2][i], p[0][i]);
+    }
+    cross(u, v, n);
+    const VD by_plane = hn::Div(dot(n, p[0]), dot(n, direction));
+    const VD per_length = hn::Div(hn::Set(d, 1.0), dot(direction, direction));
+    const VD at[3] = {hn::Mul(dot(p[0], direction), per_length), hn::Mul(dot(p[1], direction), per_length),
+                      hn::Mul(dot(p[2], direction), per_length)};
+    const VD low = hn::Min(at[0], hn::Min(at[1], at[2])), high = hn::Max(at[0], hn::Max(at[1], at[2]));
+    const VD margin = hn::Mul(hn::Max(hn::Abs(low), hn::Abs(high)), hn::Set(d, 1e-12));
+    const VD least = hn::Sub(low, margin), most = hn::Add(high, margin);
+    return hn::IfThenElse(hn::Lt(by_plane, least), least, hn::IfThenElse(hn::Le(by_plane, most), by_plane, most));
+}
+
 // The line passes through a triangle iff its three determinants with the edges do not differ in sign. `open`: lanes
-// where a sign is uncertain; t of each lane by the plane.
+// where a sign is uncertain.
 HWY_INLINE std::uint32_t triangle_hits(const tree::MeshLeaf& leaf, const RayQuery& q, double* t, std::uint32_t& open) {
     const DD d;
     const hn::Rebind<float, DD> df;
@@ -102,13 +121,7 @@ HWY_INLINE std::uint32_t triangle_hits(const tree::MeshLeaf& leaf, const RayQuer
             negative = hn::Or(negative, down);
             unknown = hn::Or(unknown, hn::Not(hn::Or(up, down)));
         }
-        VD u[3], v[3], n[3];
-        for (int i = 0; i < 3; ++i) {
-            u[i] = hn::Sub(p[1][i], p[0][i]);
-            v[i] = hn::Sub(p[2][i], p[0][i]);
-        }
-        cross(u, v, n);
-        hn::Store(hn::Div(dot(n, p[0]), dot(n, direction)), d, t + l);
+        hn::Store(parameters(d, p, direction), d, t + l);
         const MD agree = hn::Not(hn::And(positive, negative));
         hits |= bits_of(d, hn::AndNot(unknown, agree), l);
         open |= bits_of(d, hn::And(unknown, agree), l);
