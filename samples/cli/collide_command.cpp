@@ -37,6 +37,8 @@ const char* name_of(collide::Containment containment) {
             return "a_inside_b";
         case collide::Containment::b_inside_a:
             return "b_inside_a";
+        case collide::Containment::partly:
+            return "partly";
         default:
             return "none";
     }
@@ -188,7 +190,8 @@ void add_collide_command(CLI::App& app, Outcome& outcome) {
         ->capture_default_str();
     command->add_option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output");
     command->footer(
-        "A closed mesh inside the other counts as a hit and is reported in `contained`. Depth is an upper bound: the "
+        "A closed mesh inside the other counts as a hit and is reported in `contained`; `partly` where some of its pieces\n"
+        "are inside, but not all. Depth is an upper bound: the "
         "shortest\n"
         "way out of those along the axes of both frames and boxes, the mean contact normal and the line of centres.\n"
         "Exit status: 0 answered, 2 bad usage or input.\n\n"

@@ -1,9 +1,11 @@
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <cmath>
 #include <crofton/collide/mesh_mesh.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "../../engine/collide/src/closest_points.hpp"
 #include "meshes.hpp"
 
 using namespace crofton;
@@ -126,6 +128,39 @@ TEST_SUITE("collide/mesh_mesh") {
         CHECK_FALSE(contains(outer, {-1.0, -1.0, -2.0}));
     }
 
+    TEST_CASE("of a mesh in several pieces each is asked; vertices that only coincide hold a piece together") {
+        const auto pieces = [](std::initializer_list<glm::vec3> places, float half) {
+            TriangleMesh mesh;
+            for (const glm::vec3& place : places) {
+                TriangleMesh one = cube(double(half));
+                for (const std::uint32_t index : one.indices) {  // every triangle with corners of its own
+                    mesh.indices.push_back(std::uint32_t(mesh.positions.size()));
+                    mesh.positions.push_back(one.positions[index] + place);
+                }
+            }
+            return tree_of(mesh);
+        };
+        const auto outer = tree_of(cube(1.0));
+        const auto both = pieces({{-0.5f, 0.0f, 0.0f}, {0.5f, 0.0f, 0.0f}}, 0.1f);
+        CHECK(both.pieces().size() == 2);
+        CHECK(containment(outer, both, {}) == Containment::b_inside_a);
+        CHECK(containment(both, outer, {}) == Containment::a_inside_b);
+        for (const float first : {0.5f, 3.0f}) {  // whichever piece comes first
+            const auto half = pieces({{first, 0.0f, 0.0f}, {3.5f - first, 0.0f, 0.0f}}, 0.1f);
+            CHECK(containment(outer, half, {}) == Containment::partly);
+            CHECK(containment(half, outer, {}) == Containment::partly);
+        }
+        CHECK(containment(outer, pieces({{3.0f, 0.0f, 0.0f}, {5.0f, 0.0f, 0.0f}}, 0.1f), {}) == Containment::none);
+        // A shell with a hollow: what is in the hollow is outside.
+        TriangleMesh shell = cube(1.0);
+        const TriangleMesh hollow = cube(0.5);
+        for (const std::uint32_t index : hollow.indices) shell.indices.push_back(index + 8);
+        for (const glm::vec3& p : hollow.positions) shell.positions.push_back(p);
+        CHECK(containment(tree_of(shell), tree_of(cube(0.25)), {}) == Containment::none);
+        CHECK(containment(tree_of(shell), tree_of(cube(0.1)), {glm::dmat3(1.0), {0.75, 0.0, 0.0}}) ==
+              Containment::b_inside_a);
+    }
+
     TEST_CASE("the depth is the shortest way out, of the directions tried") {
         const auto a = tree_of(cube(1.0)), b = tree_of(cube(0.5));
         const MeshDepth side = penetration(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});
@@ -133,6 +168,39 @@ TEST_SUITE("collide/mesh_mesh") {
         CHECK(side.direction.x == doctest::Approx(1.0));
         CHECK(penetration(a, b, {glm::dmat3(1.0), {0.1, 0.0, 0.0}}, {}).depth == doctest::Approx(1.4).epsilon(1e-4));
         CHECK(penetration(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
+    }
+
+    TEST_CASE("the distance is, to the bit, the least of all pairs of triangles, near and far, of like and unlike size") {
+        std::mt19937_64 random(13);
+        for (int trial = 0; trial < 40; ++trial) {
+            const TriangleMesh a = wavy_torus(1.0, 0.3, 0.2, 10, 8);
+            TriangleMesh b = wavy_torus(0.7, 0.4, 0.1, 9, 7);
+            const double size = trial % 4 == 0 ? 100.0 : 1.0;
+            for (glm::vec3& p : b.positions) p *= float(size);
+            const Pose pose = random_pose(random, trial % 4 == 1 ? 50.0 : 4.0 * size);
+            const auto tree_a = tree_of(a), tree_b = tree_of(b);
+            ClosestPoints best;
+            for (std::size_t i = 0; i < a.triangle_count(); ++i)
+                for (std::size_t j = 0; j < b.triangle_count(); ++j)
+                    closest_of_triangles(triangle(a, i, {}), triangle(b, j, pose), best);
+            if (intersects(tree_a, tree_b, pose)) continue;
+            CHECK(distance(tree_a, tree_b, pose).distance == std::sqrt(best.squared));
+        }
+    }
+
+    TEST_CASE("far meshes are told apart along the way between them: few triangles are measured") {
+        const auto ring = tree_of(wavy_torus(1.0, 0.3, 0.2, 96, 64));
+        TriangleMesh large = wavy_torus(1.0, 0.3, 0.2, 96, 64);
+        for (glm::vec3& p : large.positions) p *= 100.0f;
+        const auto other = tree_of(large);
+        std::mt19937_64 random(14);
+        MeshStatistics statistics;
+        for (int trial = 0; trial < 20; ++trial) {
+            Pose pose = random_pose(random, 0.0);
+            pose.translation = 400.0 * glm::normalize(random_vector(random));
+            (void)distance(ring, other, pose, std::numeric_limits<double>::infinity(), &statistics);
+        }
+        CHECK(statistics.exact_tests / 20 < 200);  // pairs of triangles, of 151 million
     }
 
     TEST_CASE("distance and tolerance agree with known gaps and with each other") {

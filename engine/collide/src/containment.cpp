@@ -93,9 +93,12 @@ bool contains(const tree::MeshTree& mesh, const glm::dvec3& point) {
 }
 
 Containment containment_of_disjoint(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a) {
-    if (is_inside(a, Pose{}, transform(b_to_a, vertex_of(b.leaves()[0], 0, 0)))) return Containment::b_inside_a;
-    if (is_inside(b, b_to_a, vertex_of(a.leaves()[0], 0, 0))) return Containment::a_inside_b;
-    return Containment::none;
+    std::size_t of_a = 0, of_b = 0;
+    for (const glm::vec3& p : b.pieces()) of_b += is_inside(a, Pose{}, transform(b_to_a, glm::dvec3(p)));
+    if (of_b == b.pieces().size()) return Containment::b_inside_a;
+    for (const glm::vec3& p : a.pieces()) of_a += is_inside(b, b_to_a, glm::dvec3(p));
+    if (of_a == a.pieces().size()) return Containment::a_inside_b;
+    return of_a + of_b > 0 ? Containment::partly : Containment::none;
 }
 
 Containment containment(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,

@@ -105,6 +105,46 @@ HWY_INLINE void gather(const LeafLanes& in_a, std::uint32_t lane_a, const LeafLa
     pairs.of_b[n] = {in_b.leaf, lane_b};
 }
 
+// How far each triangle of a reaches along `direction`, and where each of b begins.
+HWY_INLINE void extents_along(const LeafLanes& in_a, const LeafLanes& in_b, const float* direction, double* end_of_a,
+                              double* begin_of_b) {
+    const DD d;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        VD a[3], b[3];
+        for (int v = 0; v < 3; ++v) {
+            a[v] = b[v] = hn::Zero(d);
+            for (int i = 0; i < 3; ++i) {
+                const VD along = hn::Set(d, static_cast<double>(direction[i]));
+                a[v] = hn::MulAdd(hn::Load(d, in_a.vertex[v][i] + l), along, a[v]);
+                b[v] = hn::MulAdd(hn::Load(d, in_b.vertex[v][i] + l), along, b[v]);
+            }
+        }
+        hn::Store(hn::Max(a[0], hn::Max(a[1], a[2])), d, end_of_a + l);
+        hn::Store(hn::Min(b[0], hn::Min(b[1], b[2])), d, begin_of_b + l);
+    }
+}
+
+// The rounding of such an extent is below 2^-50 of this, the sum of the largest coordinates.
+HWY_INLINE double magnitude_of(const LeafLanes& in_a, const LeafLanes& in_b) {
+    double sum = 0.0;
+    for (const LeafLanes* in : {&in_a, &in_b})
+        for (int i = 0; i < 3; ++i) sum += HWY_MAX(-in->all_low[i], 0.0) + HWY_MAX(in->all_high[i], 0.0);
+    return sum;
+}
+
+// Bit l is set unless begin[l] lies at least sqrt(limit) beyond `end`, by more than `doubt`. The factor covers a
+// direction that is not quite of unit length.
+HWY_INLINE std::uint32_t lanes_before(const double* begin, double end, double doubt, double limit) {
+    const DD d;
+    std::uint32_t beyond = 0;
+    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        const VD from = hn::Load(d, begin + l), to = hn::Set(d, end);
+        const VD gap = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(from, to), hn::Set(d, doubt)));
+        beyond |= bits_of(d, hn::Gt(hn::Mul(hn::Mul(gap, gap), hn::Set(d, 0.999998)), hn::Set(d, limit)), l);
+    }
+    return ~beyond;
+}
+
 // Bit l is set unless the bounds of the two triangles are at least sqrt(limit) apart.
 HWY_INLINE std::uint32_t near_mask(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b, double limit) {
     const DD d;

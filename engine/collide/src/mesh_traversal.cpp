@@ -163,8 +163,13 @@ bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, L
     load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+    alignas(64) double end_of_a[tree::kMeshWidth], begin_of_b[tree::kMeshWidth];
+    extents_along(leaves.a, leaves.b, nearest.direction, end_of_a, begin_of_b);
+    const double doubt = 0x1p-48 * magnitude_of(leaves.a, leaves.b);
     for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        std::uint32_t near = near_mask(leaves.a, lane, leaves.b, nearest.squared) & all_lanes(leaf_b);
+        std::uint32_t near = lanes_before(begin_of_b, end_of_a[lane], doubt, nearest.squared) & all_lanes(leaf_b);
+        if (near == 0) continue;
+        near &= near_mask(leaves.a, lane, leaves.b, nearest.squared);
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);

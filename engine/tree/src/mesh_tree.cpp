@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "mesh_pieces.hpp"
 #include "symmetric_eigen.hpp"
 
 namespace crofton::tree {
@@ -219,10 +220,14 @@ Result<MeshTree> MeshTreeBuilder::build() {
                     "mesh: the index count is not a multiple of three");
     if (mesh_.triangle_count() >= (std::size_t{1} << 28))
         return fail(ErrorCode::out_of_range, mesh_.triangle_count(), "mesh: 2^28 triangles or more");
-    if (auto valid = measure::validate(criterion_); !valid) return tl::unexpected<Error>(valid.error());
+    if (auto sound = measure::validate(criterion_); !sound) return tl::unexpected<Error>(sound.error());
     collect();
     if (references_.empty()) return fail(ErrorCode::empty, kNoItem, "mesh: no valid triangle");
     tree_.triangle_count_ = references_.size();
+    Vector<std::uint32_t> valid;
+    valid.reserve(references_.size());
+    for (const Reference& reference : references_) valid.push_back(reference.triangle);
+    tree_.pieces_ = piece_points(mesh_, valid);
     const std::size_t leaf_estimate = references_.size() / kMeshWidth + 1;
     tree_.leaves_.reserve(leaf_estimate);
     tree_.nodes_.reserve(leaf_estimate / 4 + 1);

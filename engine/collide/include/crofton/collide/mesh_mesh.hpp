@@ -51,7 +51,8 @@ struct MeshDepth {
 [[nodiscard]] MeshDepth penetration(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a,
                                     std::span<const MeshContact> contacts);
 
-enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a };
+// Of a mesh in several pieces each is asked: all of them inside the other mesh, or `partly`: some but not all.
+enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 
 // Whether one mesh lies within the other without their surfaces meeting; `none` when they meet. The outer mesh is to be
 // closed: the answer is the parity of its surface's crossings with a line, decided exactly.

@@ -29,6 +29,8 @@ class MeshTree {
     [[nodiscard]] const MeshBox& root_box() const { return root_box_; }
     [[nodiscard]] std::span<const std::uint32_t> rejected() const { return rejected_; }  // triangles, ascending
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }         // rejected ones not counted
+    // A vertex of each connected piece; triangles are connected where vertices are shared by index or by position.
+    [[nodiscard]] std::span<const glm::vec3> pieces() const { return pieces_; }
     // The largest magnitude of any coordinate: rounding errors in the mesh's frame scale with it.
     [[nodiscard]] float extent() const { return extent_; }
 
@@ -37,6 +39,7 @@ class MeshTree {
     Vector<MeshNode> nodes_;
     Vector<MeshLeaf> leaves_;
     Vector<std::uint32_t> rejected_;
+    Vector<glm::vec3> pieces_;
     MeshBox root_box_{};
     std::size_t triangle_count_ = 0;
     float extent_ = 0.0f;
