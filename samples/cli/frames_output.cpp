@@ -18,7 +18,7 @@ using pipeline::FrameStatistics;
 
 constexpr std::size_t kMaxRows = 24;
 
-using Text = std::array<char, 256>;
+using Text = std::array<char, 512>;
 
 template <class... Args>
 std::string format(const char* pattern, Args... args) {
@@ -61,6 +61,13 @@ void print_table(const SceneFacts& scene, std::span<const FrameStatistics> frame
                    mean([](const auto& f) { return f.triangles_submitted; }),
                    mean([](const auto& f) { return f.triangles_passed; }),
                    mean([](const auto& f) { return f.colliding_pairs; }));
+    text += format(
+        "collisions: %.1f pairs of boxes tested; early outs: %.1f by faces of the first, %.1f of the second, %.1f by edges; "
+        "%.1f refined, %.1f contact points\n",
+        mean([](const auto& f) { return f.pairs_tested; }), mean([](const auto& f) { return f.separated_by_face_a; }),
+        mean([](const auto& f) { return f.separated_by_face_b; }),
+        mean([](const auto& f) { return f.separated_by_edges; }), mean([](const auto& f) { return f.pairs_refined; }),
+        mean([](const auto& f) { return f.contacts; }));
     text += format("microseconds: update %.0f, cull %.0f, collide %.0f, draw %.0f\n",
                    mean([](const auto& f) { return f.update_us; }), mean([](const auto& f) { return f.cull_us; }),
                    mean([](const auto& f) { return f.collide_us; }), mean([](const auto& f) { return f.draw_us; }));

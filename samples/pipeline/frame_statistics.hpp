@@ -33,6 +33,12 @@ struct FrameStatistics {
     std::uint64_t triangles_clipped = 0;    // predicted Σ (vertices of the clipped polygon − 2)
     std::optional<GpuCounts> gpu;           // absent without drawing
     std::uint64_t colliding_pairs = 0;
+    // Pairs whose axis-aligned bounds meet, and what told their boxes apart: early outs, by group of axes. The first
+    // equals the sum of the next three and colliding_pairs.
+    std::uint64_t pairs_tested = 0;
+    std::uint64_t separated_by_face_a = 0, separated_by_face_b = 0, separated_by_edges = 0;
+    std::uint64_t pairs_refined = 0;  // of all: decided in double or exactly, where float could not
+    std::uint64_t contacts = 0;       // points of the contact manifolds of the colliding pairs
     double update_us = 0.0, cull_us = 0.0, collide_us = 0.0, draw_us = 0.0;
     std::vector<std::uint32_t> visible_ids;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> colliding_ids;

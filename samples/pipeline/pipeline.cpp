@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <crofton/collide/convex_query.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/tree/box_tree.hpp>
 #include <utility>
@@ -126,6 +127,16 @@ struct Pipeline::State {
         for (const collide::Pair& pair : broadphase.pairs())
             frame.colliding_ids.emplace_back(movers[pair.first], movers[pair.second]);
         frame.colliding_pairs = frame.colliding_ids.size();
+        const collide::BatchStatistics& decided = broadphase.statistics().boxes;
+        frame.pairs_tested = broadphase.statistics().bound_pairs;
+        frame.separated_by_face_a = decided.separated_by_face_a;
+        frame.separated_by_face_b = decided.separated_by_face_b;
+        frame.separated_by_edges = decided.separated_by_edges;
+        frame.pairs_refined = decided.refined;
+        for (const collide::Pair& pair : broadphase.pairs()) {
+            const auto manifold = collide::contact_manifold(mover_boxes[pair.first], mover_boxes[pair.second]);
+            frame.contacts += static_cast<std::uint64_t>(manifold.count);
+        }
         return {};
     }
 };

@@ -1,7 +1,11 @@
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <cmath>
 #include <crofton/collide/world.hpp>
+#include <crofton/core/memory.hpp>
 #include <crofton/core/thread_pool.hpp>
+#include <cstdlib>
+#include <limits>
 
 #include "meshes.hpp"
 
@@ -24,6 +28,20 @@ struct Stage {
 scene::Transform at(const glm::dvec3& place, const glm::dmat3& linear = glm::dmat3(1.0)) {
     return {linear, place};
 }
+
+std::size_t allocations = 0;
+void* count_and_allocate(void*, std::size_t bytes, std::size_t alignment) {
+    ++allocations;
+    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+}
+void release(void*, void* memory, std::size_t, std::size_t) {
+    std::free(memory);
+}
+
+struct CountingMemory {
+    CountingMemory() { set_memory_hooks({count_and_allocate, release, nullptr}); }
+    ~CountingMemory() { reset_memory_hooks(); }
+};
 
 bool same(std::span<const InstancePair> a, std::span<const InstancePair> b) {
     return std::ranges::equal(a, b, [](const InstancePair& x, const InstancePair& y) {
@@ -124,5 +142,50 @@ TEST_SUITE("collide/world") {
                 REQUIRE(stage.scene.set_local(node, place).has_value());
             }
         }
+    }
+
+    TEST_CASE("instances with a transform that is not finite are named, and the others collide as without them") {
+        Stage stage, clean;
+        for (Stage* s : {&stage, &clean}) {
+            const auto mesh = *s->scene.add_mesh(wavy_torus(1.0, 0.4, 0.0));
+            s->add(mesh, at({0.0, 0.0, 0.0}));
+            s->add(mesh, at({0.5, 0.0, 0.0}));
+            s->add(mesh, at({9.0, 0.0, 0.0}));
+            s->scene.update();
+        }
+        World world, reference;
+        REQUIRE(reference.update(clean.scene).has_value());
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        (void)stage.scene.set_local(stage.nodes[2], at({nan, 0.0, 0.0}));
+        stage.scene.update();
+        REQUIRE(world.update(stage.scene).has_value());
+        CHECK(same(world.pairs(), reference.pairs()));
+        CHECK(world.pairs().size() == 1);
+    }
+
+    TEST_CASE("once warm a moving scene is collided without allocation") {
+        const CountingMemory counting;
+        Stage stage;
+        const auto ring = *stage.scene.add_mesh(wavy_torus(1.0, 0.3, 0.0, 12, 8));
+        for (int i = 0; i < 12; ++i) stage.add(ring, at({1.8 * (i % 4), 1.9 * (i / 4), 0.0}));
+        World world;
+        constexpr int kPeriod = 8;
+        const auto run = [&](int frame) {
+            for (std::size_t n = 0; n < stage.nodes.size(); ++n) {
+                const double shift = 0.05 * double((frame + int(n)) % kPeriod);
+                (void)stage.scene.set_local(stage.nodes[n],
+                                            at({1.8 * double(n % 4) + shift, 1.9 * double(n / 4), 0.0}));
+            }
+            stage.scene.update();
+            const std::size_t before = allocations;
+            REQUIRE(world.update(stage.scene).has_value());
+            return allocations - before;
+        };
+        CHECK(run(0) > 0);
+        for (int frame = 1; frame < 3 * kPeriod; ++frame) (void)run(frame);
+        std::size_t later = 0;
+        for (int frame = 0; frame < 5 * kPeriod; ++frame) later += run(frame);
+        CHECK(later == 0);
+        CHECK_FALSE(world.contacts().empty());
     }
 }

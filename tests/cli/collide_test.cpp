@@ -1,0 +1,148 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+using nlohmann::json;
+
+namespace {
+
+// A cube from −half to half, as an OBJ file.
+std::string cube_file(const std::string& name, double half) {
+    std::string text;
+    for (int i = 0; i < 8; ++i)
+        text += "v " + std::to_string(i & 1 ? half : -half) + " " + std::to_string(i & 2 ? half : -half) + " " +
+                std::to_string(i & 4 ? half : -half) + "\n";
+    text += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    const std::string path = scratch().file(name);
+    write_contents(path, text);
+    return path;
+}
+
+json answer(const std::string& arguments) {
+    const CliRun run = run_cli("collide " + arguments + " --json -");
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    return run.json();
+}
+
+}  // namespace
+
+TEST_SUITE("cli/collide") {
+    TEST_CASE("what cannot be read or understood ends with status 2 and is named") {
+        const std::string cube = cube_file("cube.obj", 1.0), pose = scratch().file("bad_pose.txt");
+        const auto refused = [](const std::string& arguments, const std::string& culprit) {
+            const CliRun run = run_cli("collide " + arguments);
+            CAPTURE(arguments);
+            CAPTURE(run.err);
+            CHECK(run.status == 2);
+            CHECK(run.out.empty());
+            CHECK(run.err.find(culprit) != std::string::npos);
+        };
+        refused("no-such-file.obj " + cube, "no-such-file.obj");
+        refused(cube + " no-such-other.obj", "no-such-other.obj");
+        refused(cube, "B");
+        refused(cube + " " + cube + " --mode sometimes", "sometimes");
+        refused(cube + " " + cube + " --pose 1,2,3", "1,2,3");
+        refused(cube + " " + cube + " --pose 1,2,3,1,0,0,0,9", "more than seven");
+        refused(cube + " " + cube + " --pose 0,0,0,0,0,0,0", "no direction");
+        refused(cube + " " + cube + " --pose nan,0,0,1,0,0,0", "NaN");
+        refused(cube + " " + cube + " --pose 0,inf,0,1,0,0,0", "infinite");
+        refused(cube + " " + cube + " --pose no-such-pose.txt", "no-such-pose.txt");
+        write_contents(pose, "1 2 3 four 0 0 0");
+        refused(cube + " " + cube + " --pose " + pose, "bad_pose.txt");
+        write_contents(scratch().file("nan.obj"), contents_of(cube) + "v 0 nan 0\nf 1 2 9\n");
+        refused(cube + " " + scratch().file("nan.obj"), "vertex 9");
+        write_contents(scratch().file("empty.obj"), "v 0 0 0\n");
+        refused(scratch().file("empty.obj") + " " + cube, "empty.obj");
+    }
+
+    TEST_CASE("a bad triangle is named and left out, and the others are answered") {
+        const std::string cube = cube_file("cube.obj", 1.0), torn = scratch().file("torn.obj");
+        write_contents(torn, contents_of(cube) + "v 1e20 0 0\nf 1 2 9\n");
+        const CliRun run = run_cli("collide " + torn + " " + cube + " --pose 1.5,0,0,1,0,0,0 --json -");
+        CHECK(run.status == 0);
+        CHECK(run.err.find("torn.obj") != std::string::npos);
+        CHECK(run.err.find("the first is 12") != std::string::npos);  // the thirteenth triangle
+        CHECK(run.json()["hit"] == true);
+    }
+
+    TEST_CASE("any: hit or not, with the pose inline or in a file") {
+        const std::string cube = cube_file("cube.obj", 1.0), pair = cube + " " + cube, file = scratch().file("pose.txt");
+        const json hit = answer(pair + " --pose 1.5,0.25,0,1,0,0,0");
+        CHECK(hit["hit"] == true);
+        CHECK(hit["distance"].is_null());
+        CHECK(hit["contained"] == "none");
+        CHECK(hit["triangle_tests"].get<int>() > 0);
+        CHECK(hit["milliseconds"]["build"].get<double>() >= 0.0);
+        CHECK(hit["milliseconds"]["query"].get<double>() >= 0.0);
+        for (const char* key : {"hit", "pairs", "contacts", "depth", "distance", "contained", "bv_tests",
+                                "triangle_tests", "milliseconds"})
+            CHECK(hit.contains(key));
+        CHECK(answer(pair + " --pose 2,0,0,1,0,0,0")["hit"] == true);  // touching
+        CHECK(answer(pair + " --pose 2.0000001,0,0,1,0,0,0")["hit"] == false);
+        CHECK(answer(pair)["hit"] == true);  // no pose: as the files have them
+        write_contents(file, "2.5 0 0\n0.92387953 0 0 0.38268343\n");  // an eighth of a turn brings the corner nearer
+        CHECK(answer(pair + " --pose " + file)["hit"] == false);
+        write_contents(file, "2.4 0 0\n0.92387953 0 0 0.38268343\n");
+        CHECK(answer(pair + " --pose " + file)["hit"] == true);
+        const CliRun text = run_cli("collide " + pair + " --pose 5,0,0,1,0,0,0");
+        CHECK(text.status == 0);
+        CHECK(text.out.find("no hit") != std::string::npos);
+        const std::string written = scratch().file("answer.json");
+        CHECK(run_cli("collide " + pair + " --json " + written).status == 0);
+        CHECK(json::parse(contents_of(written))["hit"] == true);
+    }
+
+    TEST_CASE("all: pairs of triangles, contacts on both surfaces, and the depth") {
+        const std::string cube = cube_file("cube.obj", 1.0);
+        const json all = answer(cube + " " + cube + " --pose 1.5,0.25,0.125,1,0,0,0 --mode all");
+        CHECK(all["hit"] == true);
+        CHECK(all["depth"].get<double>() == doctest::Approx(0.5).epsilon(1e-4));
+        REQUIRE(all["pairs"].size() > 4);
+        CHECK(all["contacts"].size() == all["pairs"].size());
+        for (std::size_t i = 0; i < all["contacts"].size(); ++i) {
+            const json& contact = all["contacts"][i];
+            CHECK(contact["triangles"] == all["pairs"][i]);
+            CHECK(all["pairs"][i][0].get<int>() < 12);
+            for (const char* end : {"begin", "end", "position"}) {
+                const auto p = contact[end].get<std::vector<double>>();
+                const double in_a = std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+                const double in_b =
+                    std::max({std::fabs(p[0] - 1.5), std::fabs(p[1] - 0.25), std::fabs(p[2] - 0.125)});
+                CHECK(in_a <= 1.0 + 1e-9);
+                CHECK(in_b <= 1.0 + 1e-9);
+            }
+            const auto n = contact["normal"].get<std::vector<double>>();
+            CHECK(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] == doctest::Approx(1.0));
+        }
+        const json apart = answer(cube + " " + cube + " --pose 9,0,0,1,0,0,0 --mode all");
+        CHECK(apart["hit"] == false);
+        CHECK(apart["pairs"].empty());
+        CHECK(apart["depth"] == 0.0);
+    }
+
+    TEST_CASE("distance: how far, and between which points") {
+        const std::string cube = cube_file("cube.obj", 1.0);
+        const json apart = answer(cube + " " + cube + " --pose 5,6,0.5,1,0,0,0 --mode distance");
+        CHECK(apart["hit"] == false);
+        CHECK(apart["distance"].get<double>() == doctest::Approx(5.0));
+        CHECK(apart["nearest"]["on_a"][0].get<double>() == doctest::Approx(1.0));
+        CHECK(apart["nearest"]["on_b"][0].get<double>() == doctest::Approx(4.0));
+        CHECK(answer(cube + " " + cube + " --pose 1,1,0,1,0,0,0 --mode distance")["distance"] == 0.0);
+    }
+
+    TEST_CASE("contain: a mesh inside the other is a hit, and which is inside is said") {
+        const std::string cube = cube_file("cube.obj", 1.0), small = cube_file("small.obj", 0.25);
+        CHECK(answer(cube + " " + small + " --mode contain")["contained"] == "b_inside_a");
+        CHECK(answer(small + " " + cube + " --mode contain")["contained"] == "a_inside_b");
+        CHECK(answer(small + " " + cube + " --mode contain")["hit"] == true);
+        CHECK(answer(cube + " " + small + " --pose 3,0,0,1,0,0,0 --mode contain")["contained"] == "none");
+        CHECK(answer(cube + " " + small + " --pose 1,0,0,1,0,0,0 --mode contain")["contained"] == "none");
+        CHECK(answer(cube + " " + small)["hit"] == true);  // in every mode
+    }
+}
