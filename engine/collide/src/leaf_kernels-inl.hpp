@@ -1,4 +1,5 @@
-// The triangles of two leaves in a's frame, and which of them may meet by their bounds; included once per instruction set.
+// The triangles of two leaves in a's frame, and which of them may meet by their bounds; included once per instruction
+// set.
 #if defined(CROFTON_COLLIDE_LEAF_KERNELS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_LEAF_KERNELS
 #undef CROFTON_COLLIDE_LEAF_KERNELS
@@ -20,8 +21,8 @@ struct LeafLanes {
     alignas(64) double vertex[3][3][tree::kMeshWidth];
     alignas(64) double low[3][tree::kMeshWidth];
     alignas(64) double high[3][tree::kMeshWidth];
-    double all_low[3], all_high[3];                  // of the whole leaf
-    std::uint32_t leaf = ~std::uint32_t{0};          // whose lanes these are
+    double all_low[3], all_high[3];          // of the whole leaf
+    std::uint32_t leaf = ~std::uint32_t{0};  // whose lanes these are
 };
 
 // The same roundings as transform(Pose) in pose.cpp: products and sums one by one, tiny results taken as zero.

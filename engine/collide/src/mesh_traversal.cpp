@@ -78,8 +78,8 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
         std::uint32_t near = partners(leaves.a, lane, leaves.b) & all_lanes(leaf_b);
         for (; near != 0; near &= near - 1) {
-            gather(leaves.a, lane, leaves.b,
-                   static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)), gathered);
+            gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
+                   gathered);
             if (gathered.count == tree::kMeshWidth && settle(gathered, visit)) return true;
         }
     }

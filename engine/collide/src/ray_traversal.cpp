@@ -75,8 +75,9 @@ HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
     return static_cast<std::uint32_t>(bits[0]) << l;
 }
 
-// Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a triangle
-// that is hit is hit there, also where the line lies so close to its plane that rounding leaves nothing of the quotient.
+// Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a
+// triangle that is hit is hit there, also where the line lies so close to its plane that rounding leaves nothing of the
+// quotient.
 HWY_INLINE VD parameters(DD d, const VD (&p)[3][3], const VD* direction) {
     VD u[3], v[3], n[3];
     for (int i = 0; i < 3; ++i) {
