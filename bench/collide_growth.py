@@ -2,7 +2,7 @@
 """How the broadphase's cost grows with the number of boxes, as SVG on standard output.
 
   bench_collide --benchmark_filter=broadphase --benchmark_out=growth.json --benchmark_out_format=json
-  bench/collide_growth.py growth.json > docs/collide_growth.svg
+  bench/collide_growth.py growth.json > docs/pictures/collide_growth.svg
 """
 import json
 import math

@@ -81,7 +81,8 @@ TEST_SUITE("cli/frames") {
             for (const char* field :
                  {"index", "camera", "instances", "visible", "inside", "straddling", "improper", "nodes_tested",
                   "triangles_submitted", "triangles_passed", "triangles_clipped", "gpu", "colliding_pairs", "update_us",
-                  "cull_us", "collide_us", "draw_us", "visible_ids", "colliding_ids"})
+                  "cull_us", "collide_us", "draw_us", "visible_ids", "colliding_ids", "pairs_tested", "separated_by_face_a",
+                  "separated_by_face_b", "separated_by_edges", "pairs_refined", "contacts"})
                 CHECK_MESSAGE(frame.contains(field), field);
             for (const char* field : {"position", "forward", "up", "fov_y", "aspect", "near", "far"})
                 CHECK_MESSAGE(frame["camera"].contains(field), field);
@@ -90,6 +91,12 @@ TEST_SUITE("cli/frames") {
             CHECK(frame["triangles_passed"].get<int>() <= frame["triangles_submitted"].get<int>());
             CHECK(frame["visible_ids"].size() == frame["visible"].get<std::size_t>());
             CHECK(frame["colliding_ids"].size() == frame["colliding_pairs"].get<std::size_t>());
+            const int separated = frame["separated_by_face_a"].get<int>() + frame["separated_by_face_b"].get<int>() +
+                                  frame["separated_by_edges"].get<int>();
+            CHECK(frame["pairs_tested"].get<int>() == separated + frame["colliding_pairs"].get<int>());
+            CHECK(frame["pairs_refined"].get<int>() <= frame["pairs_tested"].get<int>());
+            CHECK(frame["contacts"].get<int>() <= 8 * frame["colliding_pairs"].get<int>());
+            CHECK(frame["contacts"].get<int>() >= frame["colliding_pairs"].get<int>());
             if (frame["gpu"].is_object()) {
                 CHECK(frame["gpu"]["input_assembly_primitives"] == frame["triangles_submitted"]);
                 CHECK(frame["gpu"]["clipping_invocations"] == frame["triangles_submitted"]);
