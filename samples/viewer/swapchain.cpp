@@ -95,7 +95,10 @@ Result<void> Window::create_swapchain() {
     // The picture's values are display values already: no second gamma.
     VkSurfaceFormatKHR format = formats.front();
     for (const VkSurfaceFormatKHR& offered : formats)
-        if (offered.format == VK_FORMAT_B8G8R8A8_UNORM || offered.format == VK_FORMAT_R8G8B8A8_UNORM) format = offered;
+        if (offered.format == VK_FORMAT_R8G8B8A8_UNORM) format = offered;
+    for (const VkSurfaceFormatKHR& offered : formats)
+        if (offered.format == render::kColorFormat) format = offered;
+    format_ = format.format;
 
     VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
     info.surface = surface_;
@@ -134,12 +137,19 @@ void Window::record_copy(VkCommandBuffer commands, VkImage picture, VkExtent2D s
                    VK_ACCESS_TRANSFER_WRITE_BIT)};
     vk.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kTransfer, kTransfer, 0, 0,
                             nullptr, 0, nullptr, static_cast<std::uint32_t>(before.size()), before.data());
-    VkImageBlit region{};
-    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.srcOffsets[1] = {static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height), 1};
-    region.dstOffsets[1] = {static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height), 1};
-    vk.vkCmdBlitImage(commands, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, onto,
-                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
+    const VkImageSubresourceLayers whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    if (format_ == render::kColorFormat && size.width == extent_.width && size.height == extent_.height) {
+        const VkImageCopy region{whole, {}, whole, {}, {size.width, size.height, 1}};
+        vk.vkCmdCopyImage(commands, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, onto,
+                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    } else {
+        VkImageBlit region{};
+        region.srcSubresource = region.dstSubresource = whole;
+        region.srcOffsets[1] = {static_cast<std::int32_t>(size.width), static_cast<std::int32_t>(size.height), 1};
+        region.dstOffsets[1] = {static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height), 1};
+        vk.vkCmdBlitImage(commands, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, onto,
+                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
+    }
     const std::array after{
         barrier_of(picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                    VK_ACCESS_TRANSFER_READ_BIT, VK_ACCESS_SHADER_READ_BIT),

@@ -106,7 +106,7 @@ Result<void> UiRenderer::create_layouts() {
 
 Result<void> UiRenderer::create_render_pass() {
     VkAttachmentDescription color{};
-    color.format = VK_FORMAT_R8G8B8A8_UNORM;
+    color.format = render::kColorFormat;
     color.samples = VK_SAMPLE_COUNT_1_BIT;
     color.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;

@@ -65,6 +65,7 @@ class Window {
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     std::vector<VkImage> images_;
     VkExtent2D extent_{};
+    VkFormat format_ = VK_FORMAT_UNDEFINED;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     VkSemaphore acquired_ = VK_NULL_HANDLE, copied_ = VK_NULL_HANDLE;
     VkFence done_ = VK_NULL_HANDLE;

@@ -1,10 +1,10 @@
 // The render pass and the four pipelines, as one owner.
 #pragma once
+#include <crofton/render/resources.hpp>
 #include <crofton/render/vulkan_context.hpp>
 
 namespace crofton::render {
 
-inline constexpr VkFormat kColorFormat = VK_FORMAT_R8G8B8A8_UNORM;
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 inline constexpr std::uint32_t kPushConstantBytes = 128;  // what every device offers
 

@@ -197,7 +197,14 @@ Result<void> Rasterizer::read_pixels(Image& image, std::uint32_t picture) {
     image.width = target.extent.width;
     image.height = target.extent.height;
     image.rgba.resize(target.readback.size);
-    std::memcpy(image.rgba.data(), target.readback.mapped, image.rgba.size());
+    static_assert(kColorFormat == VK_FORMAT_B8G8R8A8_UNORM);
+    const auto* bgra = reinterpret_cast<const std::uint8_t*>(target.readback.mapped);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        image.rgba[i] = bgra[i + 2];
+        image.rgba[i + 1] = bgra[i + 1];
+        image.rgba[i + 2] = bgra[i];
+        image.rgba[i + 3] = bgra[i + 3];
+    }
     return {};
 }
 

@@ -125,7 +125,7 @@ class Rasterizer {
     [[nodiscard]] std::uint32_t width(std::uint32_t picture = 0) const;
     [[nodiscard]] std::uint32_t height(std::uint32_t picture = 0) const;
 
-    // For a window: the picture between draws, in SHADER_READ_ONLY_OPTIMAL, usable as colour attachment, transfer
+    // For a window: the picture between draws, of kColorFormat, in SHADER_READ_ONLY_OPTIMAL, usable as colour attachment, transfer
     // source and sampled image. Must be left in that layout, idle. Null where there is no such picture.
     [[nodiscard]] const ImageResource* native_image(std::uint32_t picture = 0) const;
 

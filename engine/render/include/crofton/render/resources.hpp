@@ -45,6 +45,9 @@ class Buffer {
 [[nodiscard]] Result<Buffer> create_static_buffer(const VulkanContext& context, const void* data, VkDeviceSize size,
                                                   VkBufferUsageFlags usage);
 
+// The order of colours that windows take, on X11 alone so: a picture goes there by a copy of its bytes.
+inline constexpr VkFormat kColorFormat = VK_FORMAT_B8G8R8A8_UNORM;
+
 // A 2D image of one level with its memory and view.
 class ImageResource {
   public:
