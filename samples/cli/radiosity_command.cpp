@@ -160,6 +160,11 @@ void add_radiosity_command(CLI::App& app, Outcome& outcome) {
     CLI::App* command =
         app.add_subcommand("radiosity", "Light a scene by global lines and bake it into vertex colours");
     command->footer(
+        "Colours are reflectances; above 0.9, white paint's, they count as 0.9, so that light ends. Triangles of no "
+        "area are "
+        "left out.\n"
+        "Light comes from the sun and the sky, from emission in glTF and OBJ materials, and from the town's and room's "
+        "lamps.\n\n"
         "Examples:\n"
         "  crofton radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
         "  crofton radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"

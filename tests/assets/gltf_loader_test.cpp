@@ -114,4 +114,25 @@ TEST_SUITE("assets/gltf_loader") {
                 yellow = yellow || (c.x > 0.5f && c.y > 0.2f && c.z < 0.15f);
         CHECK(yellow);
     }
+
+    TEST_CASE("a material's emission is its factor times its strength; without one nothing glows") {
+        const auto with_material = [](const std::string& material) {
+            std::string text = gltf_json("[{\"mesh\":0}]");
+            text.insert(text.find("\"indices\":1") + 11, ",\"material\":0");
+            return load_glb(text.insert(1, "\"materials\":[" + material + "],"));
+        };
+        const auto lamp = with_material(
+            "{\"emissiveFactor\":[1,0.5,0.25],\"extensions\":{\"KHR_materials_emissive_strength\":{"
+            "\"emissiveStrength\":8}}}");
+        REQUIRE(lamp.has_value());
+        REQUIRE(lamp->emission.size() == 1);
+        REQUIRE(lamp->emission[0].size() == 1);
+        CHECK(lamp->emission[0][0] == glm::vec3(8.0f, 4.0f, 2.0f));
+        const auto dim = with_material("{\"emissiveFactor\":[1,0.5,0.25]}");
+        REQUIRE(dim.has_value());
+        CHECK(dim->emission.at(0).at(0) == glm::vec3(1.0f, 0.5f, 0.25f));
+        const auto dark = with_material("{}");
+        REQUIRE(dark.has_value());
+        CHECK(dark->emission.empty());
+    }
 }

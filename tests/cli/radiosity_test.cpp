@@ -87,6 +87,12 @@ TEST_SUITE("cli/radiosity") {
         CHECK(run_cli("radiosity room --checkpoint '" + state + "'").status == 2);
     }
 
+    TEST_CASE("--png draws the lit scene") {
+        const std::string picture = scratch().file("lit.png");
+        CHECK(run_cli("radiosity " + box(kGlowing) + common() + "--lines 100000 --png '" + picture + "'").status == 0);
+        CHECK(contents_of(picture).substr(1, 3) == "PNG");
+    }
+
     TEST_CASE("lines: every way to draw them with its figures, and the choice") {
         const CliRun run = run_cli("lines " + box(kGlowing) + " --blocks 2 --repeats 3 --json -");
         CHECK(run.status == 0);
