@@ -77,7 +77,7 @@ bool meets_square(const Corners& c, const glm::dvec2& low) {
     const glm::dvec2 middle = low + 0.5;
     const glm::dvec2 d = c[1] - c[0], e = c[2] - c[0];
     const double turn = d.x * e.y - d.y * e.x > 0.0 ? 1.0 : -1.0;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 side = c[(i + 1) % 3] - c[i], to = middle - c[i];
         if (turn * (side.x * to.y - side.y * to.x) < -0.5 * (std::fabs(side.x) + std::fabs(side.y))) return false;
     }
@@ -86,7 +86,7 @@ bool meets_square(const Corners& c, const glm::dvec2& low) {
 
 bool covers(const Corners& c, const glm::dvec2& p) {
     int positive = 0, negative = 0;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 side = c[(i + 1) % 3] - c[i], to = p - c[i];
         const double turn = side.x * to.y - side.y * to.x;
         positive += turn > 0.0;

@@ -87,12 +87,12 @@ TEST_SUITE("cli/fit") {
         CHECK(mesh["hull_vertices"] == 8);
         CHECK(std::abs(mesh["center"][0].get<double>() - 10.0) < 1e-6);
         double half[3], product = 8.0, sum = 0.0;
-        for (int k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k) {
             half[k] = mesh["half_extents"][k].get<double>();
             product *= half[k];
             sum += 2.0 * half[k];
             double length = 0.0;
-            for (int j = 0; j < 3; ++j) length += std::pow(mesh["axes"][k][j].get<double>(), 2.0);
+            for (std::size_t j = 0; j < 3; ++j) length += std::pow(mesh["axes"][k][j].get<double>(), 2.0);
             CHECK(length == doctest::Approx(1.0).epsilon(1e-6));
         }
         CHECK(number(mesh, "volume") == doctest::Approx(product));

@@ -155,11 +155,11 @@ TEST_SUITE("cull/bound_set") {
         BoxSet set;
         set.assign(crowd.boxes);
         cull::VerdictBits bits;
-        for (int trial = 0; trial < 12; ++trial) {
+        for (unsigned trial = 0; trial < 12; ++trial) {
             cull::View view{*frustum_of(random.camera())};
             if (trial % 4 == 1) view.frustum.origin *= 1e29;
-            if (trial % 4 == 2) view.frustum.planes[trial % 6u].offset = trial % 8 == 2 ? 1e49 : -1e49;
-            if (trial % 4 == 3) view.frustum.planes[trial % 6u].offset = trial % 8 == 3 ? 1e31 : -1e31;
+            if (trial % 4 == 2) view.frustum.planes[trial % 6].offset = trial % 8 == 2 ? 1e49 : -1e49;
+            if (trial % 4 == 3) view.frustum.planes[trial % 6].offset = trial % 8 == 3 ? 1e31 : -1e31;
             for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
                 cull::cull(set, crowd.boxes, view, bits, mode);
                 for (std::size_t i = 0; i < crowd.boxes.size(); ++i)

@@ -221,7 +221,8 @@ TEST_SUITE("triangulate/minimum_weight") {
                 std::set<oracle::Point> distinct;
                 for (const auto& q : p.points) distinct.insert({q.x, q.y});
                 if (distinct.size() != p.points.size() || !is_valid(p)) continue;
-                INFO(name);
+                const std::string polygon = name;
+                INFO(polygon);
                 CHECK(compare(p, triangulator) == "");
             }
         }

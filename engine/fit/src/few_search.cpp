@@ -11,7 +11,7 @@ namespace {
 
 using kernels::kLanes;
 
-constexpr std::size_t kFrames = 256, kRows = kFrames / kLanes;
+constexpr std::size_t kFrames = 256;
 
 // Frames spread evenly over all orientations: by the symmetries of a box, Rodrigues vectors in a truncated cube, filled
 // by the generalised golden ratio's sequence (Roberts 2018). Those of one lane lie near each other.

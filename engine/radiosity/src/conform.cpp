@@ -20,7 +20,7 @@ using Cell = std::array<std::int64_t, 3>;
 // The distinct positions of a mesh in cells of a grid, to find those near a segment.
 class PointGrid {
   public:
-    PointGrid(const TriangleMesh& mesh, double cell) : mesh_(mesh), cell_(cell) {
+    PointGrid(const TriangleMesh& mesh, double cell) : cell_(cell) {
         for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
             entries_.push_back({key(cell_of(mesh.positions[v])), v});
         const auto before = [&](const Entry& a, const Entry& b) {
@@ -87,7 +87,6 @@ class PointGrid {
         return static_cast<std::size_t>(k >> 20) & (heads_.size() - 1);
     }
 
-    const TriangleMesh& mesh_;
     double cell_;
     Vector<Entry> entries_;
     Vector<std::uint32_t> heads_;
