@@ -1,9 +1,7 @@
 // Runs the culling benchmarks and ends with the ratios that matter, of times from the same run.
-#include <benchmark/benchmark.h>
-
 #include <cstdio>
-#include <map>
-#include <string>
+
+#include "least_times.hpp"
 
 namespace {
 
@@ -33,43 +31,24 @@ constexpr Pair kPairs[] = {
     {"tree, one thread / two", "tree_threads/1000000/1/real_time", "tree_threads/1000000/2/real_time"},
 };
 
-class Ratios : public benchmark::ConsoleReporter {
+class Ratios : public crofton::bench::LeastTimes {
   public:
-    Ratios() : ConsoleReporter(OO_Tabular) {}
+    Ratios() : LeastTimes(crofton::bench::Clock::elapsed, OO_Tabular) {}
 
-    void ReportRuns(const std::vector<Run>& runs) override {
-        ConsoleReporter::ReportRuns(runs);
-        for (const Run& run : runs) {
-            if (run.error_occurred || run.run_type != Run::RT_Iteration) continue;
-            const double scale = benchmark::GetTimeUnitMultiplier(run.time_unit);
-            std::string name = run.benchmark_name();
-            name = name.substr(0, name.find("/repeats:"));
-            const double time = run.GetAdjustedRealTime() / scale;
-            const auto [place, is_new] = times_.emplace(name, time);
-            if (!is_new && time < place->second) place->second = time;
-        }
-    }
-
-    void Finalize() override {
+  private:
+    void print_ratios(const std::map<std::string, double>& seconds) const override {
         std::puts("\nRatios of elapsed times, least of the repetitions of each:");
         for (const Pair& pair : kPairs) {
-            const auto other = times_.find(pair.other), ours = times_.find(pair.ours);
-            if (other != times_.end() && ours != times_.end())
+            const auto other = seconds.find(pair.other), ours = seconds.find(pair.ours);
+            if (other != seconds.end() && ours != seconds.end())
                 std::printf("  %-42s %-32s %8.2f\n", pair.what, pair.ours, other->second / ours->second);
         }
     }
-
-  private:
-    std::map<std::string, double> times_;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
     Ratios reporter;
-    benchmark::RunSpecifiedBenchmarks(&reporter);
-    benchmark::Shutdown();
-    return 0;
+    return crofton::bench::run(argc, argv, reporter);
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/sphere.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
@@ -18,11 +19,6 @@ enum class BoundsKind : std::uint8_t { sphere, aabb, obb_volume, obb_area, obb_p
 // The criterion by which the scene fits its boxes for this kind; `camera` is the frustum in use. Errors: for
 // obb_frustum, a camera whose frustum has no finite measures.
 [[nodiscard]] Result<measure::Criterion> criterion_for(BoundsKind kind, const Camera& camera);
-
-struct Sphere {
-    glm::dvec3 center{0.0};
-    double radius = 0.0;
-};
 
 // The bound of every instance in world coordinates, kept up to date. For boxes of the scene's own kind these are the
 // scene's world boxes; AABBs and spheres are taken around the mesh's vertices, so that no kind is handicapped by

@@ -26,18 +26,6 @@ double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-// By planes alone: near the frustum's edges a sphere outside may pass, which is one reason for boxes.
-cull::Verdict classify_sphere(const Frustum& frustum, const Sphere& sphere) {
-    const glm::dvec3 c = sphere.center - frustum.origin;
-    auto verdict = cull::Verdict::inside;
-    for (const Plane& plane : frustum.view()) {
-        const double distance = glm::dot(plane.normal, c) + plane.offset;
-        if (distance < -sphere.radius) return cull::Verdict::outside;
-        if (distance < sphere.radius) verdict = cull::Verdict::straddling;
-    }
-    return verdict;
-}
-
 }  // namespace
 
 Result<CullMode> cull_mode_from(const std::string& name) {
@@ -112,8 +100,10 @@ struct Pipeline::State {
         visible_ids.clear();
         for (std::size_t k = 0; k < visible.size(); ++k) {
             const scene::InstanceId instance = visible.ids()[k];
-            const auto verdict =
-                bounds.spheres().empty() ? visible.verdicts()[k] : classify_sphere(frustum, bounds.spheres()[instance]);
+            // Spheres by planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
+            const auto verdict = bounds.spheres().empty()
+                                     ? visible.verdicts()[k]
+                                     : cull::classify(frustum, bounds.spheres()[instance], cull::Mode::conservative);
             verdicts[instance] = verdict;
             if (verdict != cull::Verdict::outside) visible_ids.push_back(instance);
         }

@@ -1,10 +1,9 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
+#include <counting_memory.hpp>
 #include <crofton/collide/world.hpp>
-#include <crofton/core/memory.hpp>
 #include <crofton/core/thread_pool.hpp>
-#include <cstdlib>
 #include <limits>
 
 #include "meshes.hpp"
@@ -28,20 +27,6 @@ struct Stage {
 scene::Transform at(const glm::dvec3& place, const glm::dmat3& linear = glm::dmat3(1.0)) {
     return {linear, place};
 }
-
-std::size_t allocations = 0;
-void* count_and_allocate(void*, std::size_t bytes, std::size_t alignment) {
-    ++allocations;
-    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-}
-void release(void*, void* memory, std::size_t, std::size_t) {
-    std::free(memory);
-}
-
-struct CountingMemory {
-    CountingMemory() { set_memory_hooks({count_and_allocate, release, nullptr}); }
-    ~CountingMemory() { reset_memory_hooks(); }
-};
 
 bool same(std::span<const InstancePair> a, std::span<const InstancePair> b) {
     return std::ranges::equal(a, b, [](const InstancePair& x, const InstancePair& y) {
@@ -177,9 +162,9 @@ TEST_SUITE("collide/world") {
                                             at({1.8 * double(n % 4) + shift, 1.9 * double(n / 4), 0.0}));
             }
             stage.scene.update();
-            const std::size_t before = allocations;
+            const std::size_t before = counting.allocations();
             REQUIRE(world.update(stage.scene).has_value());
-            return allocations - before;
+            return counting.allocations() - before;
         };
         CHECK(run(0) > 0);
         for (int frame = 1; frame < 3 * kPeriod; ++frame) (void)run(frame);

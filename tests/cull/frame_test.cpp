@@ -3,11 +3,10 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
-#include <crofton/core/memory.hpp>
+#include <counting_memory.hpp>
 #include <crofton/core/thread_pool.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/many_views.hpp>
-#include <cstdlib>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -28,25 +27,27 @@ std::vector<cull::View> flight(std::size_t frames) {
     return views;
 }
 
-std::size_t allocations = 0;
-void* count_and_allocate(void*, std::size_t bytes, std::size_t alignment) {
-    ++allocations;
-    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-}
-void release(void*, void* memory, std::size_t, std::size_t) {
-    std::free(memory);
-}
-
-struct CountingMemory {
-    CountingMemory() { set_memory_hooks({count_and_allocate, release, nullptr}); }
-    ~CountingMemory() { reset_memory_hooks(); }
+// An axis-aligned box around each box, and a ball within it.
+struct OtherBounds {
+    explicit OtherBounds(const std::vector<Obb>& boxes) {
+        for (const Obb& box : boxes) {
+            aabbs.push_back(aabb_of(box));
+            spheres.push_back({box.center, double{box.half_extents.x}});
+        }
+        aabb_set.assign(aabbs);
+        sphere_set.assign(spheres);
+    }
+    std::vector<Aabb> aabbs;
+    std::vector<Sphere> spheres;
+    cull::AabbSet aabb_set;
+    cull::SphereSet sphere_set;
 };
 
 }  // namespace
 
 TEST_SUITE("cull/frame") {
     TEST_CASE("after the first frame nothing is allocated, moves and refits included") {
-        const CountingMemory counting;
+        const testing::CountingMemory counting;
         oracle::NearMisses random(3);
         const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 2);
         tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
@@ -55,16 +56,7 @@ TEST_SUITE("cull/frame") {
         cull::VisibleSet visible;
         cull::ManyVisible many;
         cull::VerdictBits bits;
-        cull::AabbSet aabb_set;
-        cull::SphereSet sphere_set;
-        std::vector<Aabb> aabbs;
-        std::vector<Sphere> spheres;
-        for (const Obb& box : crowd.boxes) {
-            aabbs.push_back(aabb_of(box));
-            spheres.push_back({box.center, double{box.half_extents.x}});
-        }
-        aabb_set.assign(aabbs);
-        sphere_set.assign(spheres);
+        const OtherBounds others(crowd.boxes);
         std::vector<std::uint32_t> masks(crowd.boxes.size()), items{1, 70, 4999};
         const std::vector<cull::View> views = flight(40);
         std::size_t warm = 0;
@@ -78,13 +70,13 @@ TEST_SUITE("cull/frame") {
             cull::cull(tree, std::span(views).subspan(at / 2, 4), many);
             set.update(items, crowd.boxes);
             cull::cull(set, crowd.boxes, views[at], bits);
-            cull::cull(aabb_set, aabbs, views[at], bits);
-            cull::cull(sphere_set, spheres, views[at], bits);
+            cull::cull(others.aabb_set, others.aabbs, views[at], bits);
+            cull::cull(others.sphere_set, others.spheres, views[at], bits);
             cull::cull(set, crowd.boxes, crowd.layers, std::span(views).subspan(at / 2, 4), masks);
-            if (f == views.size()) warm = allocations;
+            if (f == views.size()) warm = counting.allocations();
         }
         CHECK(warm > 0);
-        CHECK(allocations == warm);
+        CHECK(counting.allocations() == warm);
     }
 
     TEST_CASE("any number of threads gives the same ids in the same order, and the same statistics") {
@@ -120,16 +112,7 @@ TEST_SUITE("cull/frame") {
         const tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
         cull::BoxSet set;
         set.assign(crowd.boxes);
-        cull::AabbSet aabb_set;
-        cull::SphereSet sphere_set;
-        std::vector<Aabb> aabbs;
-        std::vector<Sphere> spheres;
-        for (const Obb& box : crowd.boxes) {
-            aabbs.push_back(aabb_of(box));
-            spheres.push_back({box.center, double{box.half_extents.x}});
-        }
-        aabb_set.assign(aabbs);
-        sphere_set.assign(spheres);
+        const OtherBounds others(crowd.boxes);
         std::vector<cull::View> views = flight(6);
         for (cull::View& view : views) view.frustum.origin += 1e6 * glm::dvec3(1.0, -0.7, 0.3);
         struct Answer {
@@ -157,9 +140,9 @@ TEST_SUITE("cull/frame") {
                     };
                     cull::cull(set, crowd.boxes, view, bits, mode);
                     keep();
-                    cull::cull(aabb_set, aabbs, view, bits, mode);
+                    cull::cull(others.aabb_set, others.aabbs, view, bits, mode);
                     keep();
-                    cull::cull(sphere_set, spheres, view, bits, mode);
+                    cull::cull(others.sphere_set, others.spheres, view, bits, mode);
                     keep();
                     cull::cull(set, crowd.boxes, crowd.layers, views, one.masks, mode);
                     answers.push_back(one);

@@ -4,7 +4,6 @@
 #include <crofton/radiosity/bundle_tracer.hpp>
 #include <crofton/radiosity/form_factors.hpp>
 #include <limits>
-#include <random>
 
 #include "shapes.hpp"
 
@@ -12,21 +11,6 @@ using namespace crofton;
 using namespace crofton::radiosity;
 
 namespace {
-
-TriangleMesh soup(int triangles, float size, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
-    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
-    TriangleMesh mesh;
-    for (int t = 0; t < triangles; ++t) {
-        const glm::vec3 center = vector();
-        for (int k = 0; k < 3; ++k) {
-            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-            mesh.positions.push_back(center + size * vector());
-        }
-    }
-    return mesh;
-}
 
 struct Difference {
     std::size_t crossings = 0, wrong = 0;
@@ -69,7 +53,7 @@ Difference compare(const TriangleMesh& mesh, double cell_area, const std::array<
 TEST_SUITE("radiosity/bundle_tracer") {
     TEST_CASE("invalid and empty meshes are refused") {
         CHECK(BundleTracer::build({}).error().code == ErrorCode::empty);
-        TriangleMesh mesh = soup(3, 1.0f, 1);
+        TriangleMesh mesh = shapes::soup(3, 1.0f, 1);
         mesh.indices[4] = 99;
         CHECK(BundleTracer::build(mesh).error().code == ErrorCode::out_of_range);
     }
@@ -81,7 +65,7 @@ TEST_SUITE("radiosity/bundle_tracer") {
             for (const double cell_area : {0.0004, 0.01, 0.5})
                 for (const std::array<double, 2> u :
                      {std::array{0.3, 0.7}, std::array{0.0, 0.0}, std::array{0.5, 0.25}, std::array{0.9, 0.1}}) {
-                    const Difference d = compare(soup(1500, size, 7), cell_area, u, ++seed);
+                    const Difference d = compare(shapes::soup(1500, size, 7), cell_area, u, ++seed);
                     crossings += d.crossings;
                     CHECK(d.wrong <= 2 + d.crossings / 20'000);
                 }

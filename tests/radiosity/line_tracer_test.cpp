@@ -5,7 +5,6 @@
 #include <crofton/radiosity/line_tracer.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <random>
 
 #include "shapes.hpp"
 
@@ -13,21 +12,6 @@ using namespace crofton;
 using namespace crofton::radiosity;
 
 namespace {
-
-TriangleMesh soup(int triangles, float size, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
-    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
-    TriangleMesh mesh;
-    for (int t = 0; t < triangles; ++t) {
-        const glm::vec3 center = vector();
-        for (int k = 0; k < 3; ++k) {
-            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-            mesh.positions.push_back(center + size * vector());
-        }
-    }
-    return mesh;
-}
 
 // By signed volumes in double: t, or NaN where the line misses.
 double crossing(const TriangleMesh& mesh, std::size_t t, const measure::Line& line) {
@@ -47,10 +31,10 @@ double crossing(const TriangleMesh& mesh, std::size_t t, const measure::Line& li
 TEST_SUITE("radiosity/line_tracer") {
     TEST_CASE("invalid and empty meshes are refused") {
         CHECK(LineTracer::build({}).error().code == ErrorCode::empty);
-        TriangleMesh mesh = soup(3, 1.0f, 1);
+        TriangleMesh mesh = shapes::soup(3, 1.0f, 1);
         mesh.indices[4] = 99;
         CHECK(LineTracer::build(mesh).error().code == ErrorCode::out_of_range);
-        mesh = soup(3, 1.0f, 1);
+        mesh = shapes::soup(3, 1.0f, 1);
         mesh.positions[5].y = std::numeric_limits<float>::quiet_NaN();
         CHECK(LineTracer::build(mesh).error().item == 5);
     }
@@ -88,7 +72,7 @@ TEST_SUITE("radiosity/line_tracer") {
 
     TEST_CASE("all crossings agree with brute force in double on random triangles of several sizes") {
         for (const float size : {0.02f, 0.2f, 1.5f}) {
-            const TriangleMesh mesh = soup(3000, size, 7);
+            const TriangleMesh mesh = shapes::soup(3000, size, 7);
             const auto tracer = LineTracer::build(mesh);
             REQUIRE(tracer.has_value());
             const measure::UnitPoints points(3);
@@ -124,7 +108,7 @@ TEST_SUITE("radiosity/line_tracer") {
     }
 
     TEST_CASE("the first crossing is the least positive one of all, the ray's own triangle left out") {
-        const TriangleMesh mesh = soup(2000, 0.3f, 9);
+        const TriangleMesh mesh = shapes::soup(2000, 0.3f, 9);
         const auto tracer = LineTracer::build(mesh);
         REQUIRE(tracer.has_value());
         const measure::UnitPoints points(5);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <numbers>
+#include <random>
 #include <vector>
 
 namespace shapes {
@@ -62,5 +63,21 @@ struct Shape {
             }
     }
 };
+
+// Triangles of about `size`, their middles in [-1, 1]³.
+inline crofton::TriangleMesh soup(int triangles, float size, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    crofton::TriangleMesh mesh;
+    for (int t = 0; t < triangles; ++t) {
+        const glm::vec3 center = vector();
+        for (int k = 0; k < 3; ++k) {
+            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.positions.push_back(center + size * vector());
+        }
+    }
+    return mesh;
+}
 
 }  // namespace shapes

@@ -5,6 +5,7 @@
 // After foreach_target.h:
 #include <hwy/highway.h>
 
+#include "double_lanes-inl.hpp"
 #include "ray_mesh.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -13,12 +14,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, tree::kMeshWidth>;
 using V = hn::Vec<D>;
-using DD = hn::CappedTag<double, tree::kMeshWidth>;
-using VD = hn::Vec<DD>;
-using MD = hn::Mask<DD>;
-
-// Shewchuk's bound for a 3 × 3 determinant of rounded differences, times the product of the rows' sums of magnitudes.
-constexpr double kDeterminantError = 0x1.d0p-51;
 
 // Slabs of eight boxes, grown by the slop: entry distance of each lane that is met before `limit`.
 HWY_INLINE std::uint32_t box_entries(const tree::MeshNode& node, const RayQuery& q, float limit, float* entry) {
@@ -52,27 +47,6 @@ HWY_INLINE std::uint32_t box_entries(const tree::MeshNode& node, const RayQuery&
         lanes |= static_cast<std::uint32_t>(bits[0]) << l;
     }
     return lanes & ((1u << node.count) - 1u);
-}
-
-HWY_INLINE VD sum_abs(const VD* v) {
-    return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
-}
-
-HWY_INLINE void cross(const VD* u, const VD* v, VD* out) {
-    for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = hn::NegMulAdd(u[k], v[j], hn::Mul(u[j], v[k]));
-    }
-}
-
-HWY_INLINE VD dot(const VD* u, const VD* v) {
-    return hn::MulAdd(u[0], v[0], hn::MulAdd(u[1], v[1], hn::Mul(u[2], v[2])));
-}
-
-HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, mask, bits);
-    return static_cast<std::uint32_t>(bits[0]) << l;
 }
 
 // Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a

@@ -8,22 +8,14 @@
 
 #include <hwy/highway.h>
 
+#include "double_lanes-inl.hpp"
 #include "mesh_pair.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Signs of determinants det(u, v, w) of differences of points are certain beyond kDeterminantError · |u|₁ |v|₁ |w|₁:
-// Shewchuk's bound for orient3d, (7 + 56 u') u' with u' = 2^-53, holds for the sum of all products' magnitudes, which
-// is at most |u|₁ |v|₁ |w|₁ in any of the factorings used here. Fused operations only lower the error. Underflow stays
-// below 1e-280.
-constexpr double kDeterminantError = 0x1.d0p-51;
 constexpr double kUnderflow = 1e-280;
-
-using DD = hn::CappedTag<double, tree::kMeshWidth>;
-using VD = hn::Vec<DD>;
-using MD = hn::Mask<DD>;
 
 // Gathered from wherever candidates are found, so that no lane is idle. Vertices [v][i] as exact arithmetic sees them.
 struct TrianglePairs {
@@ -33,32 +25,12 @@ struct TrianglePairs {
     std::uint32_t count = 0;
 };
 
-HWY_INLINE VD sum_abs(const VD* v) {
-    return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
-}
-
-HWY_INLINE void cross(const VD* u, const VD* v, VD* out) {
-    for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = hn::NegMulAdd(u[k], v[j], hn::Mul(u[j], v[k]));
-    }
-}
-
-HWY_INLINE VD dot(const VD* u, const VD* v) {
-    return hn::MulAdd(u[0], v[0], hn::MulAdd(u[1], v[1], hn::Mul(u[2], v[2])));
-}
-
-HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, mask, bits);
-    return static_cast<std::uint32_t>(bits[0]) << l;
-}
-
 // An upper bound of |w|₁ for the difference w of any two of the six points; the factor covers the rounding of the sums.
 HWY_INLINE VD reach_of(DD d, const VD (&a)[3][3], const VD (&b)[3][3]) {
     VD reach = hn::Zero(d);
     for (int i = 0; i < 3; ++i) {
-        const VD low = hn::Min(hn::Min(a[0][i], hn::Min(a[1][i], a[2][i])), hn::Min(b[0][i], hn::Min(b[1][i], b[2][i])));
+        const VD low =
+            hn::Min(hn::Min(a[0][i], hn::Min(a[1][i], a[2][i])), hn::Min(b[0][i], hn::Min(b[1][i], b[2][i])));
         const VD high =
             hn::Max(hn::Max(a[0][i], hn::Max(a[1][i], a[2][i])), hn::Max(b[0][i], hn::Max(b[1][i], b[2][i])));
         reach = hn::Add(reach, hn::Sub(high, low));

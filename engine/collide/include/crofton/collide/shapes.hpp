@@ -3,14 +3,10 @@
 #include <crofton/collide/triangle_triangle.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/geometry/plane.hpp>
+#include <crofton/geometry/sphere.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton::collide {
-
-struct Sphere {
-    glm::dvec3 center{0.0};
-    double radius = 0.0;
-};
 
 // All points within `radius` of the segment.
 struct Capsule {

@@ -1,0 +1,28 @@
+// Counts what the engine allocates while it lives.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <cstddef>
+#include <cstdlib>
+
+namespace crofton::testing {
+
+class CountingMemory {
+  public:
+    CountingMemory() { set_memory_hooks({allocate, release, this}); }
+    ~CountingMemory() { reset_memory_hooks(); }
+    CountingMemory(const CountingMemory&) = delete;
+    CountingMemory& operator=(const CountingMemory&) = delete;
+
+    [[nodiscard]] std::size_t allocations() const { return allocations_; }
+
+  private:
+    static void* allocate(void* self, std::size_t bytes, std::size_t alignment) {
+        ++static_cast<CountingMemory*>(self)->allocations_;
+        return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    }
+    static void release(void*, void* memory, std::size_t, std::size_t) { std::free(memory); }
+
+    std::size_t allocations_ = 0;
+};
+
+}  // namespace crofton::testing
