@@ -7,72 +7,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "few_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace crofton::fit::kernels::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr float kHuge = 1e30f;
-
-using Tag = hn::CappedTag<float, kLanes>;
-using Lane = hn::Vec<Tag>;
-
-struct Vec3 {
-    Lane x, y, z;
-};
-
-HWY_INLINE Vec3 set(Tag d, const float v[3]) {
-    return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
-}
-HWY_INLINE Lane dot(const Vec3& a, const Vec3& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-HWY_INLINE Vec3 scaled(const Vec3& a, Lane s) {
-    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-HWY_INLINE Vec3 broadcast(Tag d, const FewPoints& points, std::size_t i) {
-    return {hn::Set(d, points.x[i]), hn::Set(d, points.y[i]), hn::Set(d, points.z[i])};
-}
-
-HWY_INLINE Vec3 load(Tag d, const FewPoints& points, std::size_t i) {
-    return {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
-}
-
-struct Range {
-    Lane low, high;
-
-    HWY_INLINE void include(Lane t) {
-        low = hn::Min(low, t);
-        high = hn::Max(high, t);
-    }
-    [[nodiscard]] HWY_INLINE Lane width() const { return hn::Sub(high, low); }
-};
-HWY_INLINE Range nothing(Tag d) {
-    return {hn::Set(d, kHuge), hn::Set(d, -kHuge)};
-}
-
-HWY_INLINE Lane value(Tag d, const FloatWeights& w, Lane a, Lane b, Lane c) {
-    const auto ab = hn::Mul(a, b), a_plus_b = hn::Add(a, b);
-    const auto product = hn::Mul(hn::Set(d, w.product), hn::Mul(ab, c));
-    const auto pairs = hn::Mul(hn::Set(d, w.pairs), hn::Add(ab, hn::Mul(a_plus_b, c)));
-    return hn::Add(hn::Add(product, pairs), hn::Mul(hn::Set(d, w.sum), hn::Add(a_plus_b, c)));
-}
-
-HWY_INLINE Lane value_in_frame(Tag d, const FewPoints& points, const FloatWeights& weights, const Vec3& a,
-                               const Vec3& b, const Vec3& c) {
-    Range along_a = nothing(d), along_b = along_a, along_c = along_a;
-    for (std::size_t i = 0; i < points.count; ++i) {
-        const Vec3 p = broadcast(d, points, i);
-        along_a.include(dot(a, p));
-        along_b.include(dot(b, p));
-        along_c.include(dot(c, p));
-    }
-    return value(d, weights, along_a.width(), along_b.width(), along_c.width());
-}
 
 void extremes_impl(const FewPoints& points, const Directions& directions, float* least, float* greatest) {
     const Tag d;
@@ -241,104 +179,6 @@ void supports_impl(const FewPoints& points, const FloatWeights& weights, FrameLa
     }
 }
 
-// cos and sin of sixteen angles that divide a right angle.
-constexpr float kCosine[kLanes] = {1.0f,        0.99518472f, 0.98078527f, 0.95694035f, 0.92387952f, 0.88192129f,
-                                   0.83146960f, 0.77301043f, 0.70710677f, 0.63439327f, 0.55557024f, 0.47139674f,
-                                   0.38268343f, 0.29028466f, 0.19509032f, 0.09801714f};
-constexpr float kSine[kLanes] = {0.0f,        0.09801714f, 0.19509032f, 0.29028466f, 0.38268343f, 0.47139674f,
-                                 0.55557024f, 0.63439327f, 0.70710677f, 0.77301043f, 0.83146960f, 0.88192129f,
-                                 0.92387952f, 0.95694035f, 0.98078527f, 0.99518472f};
-
-// Values of sixteen rectangles' frames; of each of the four sides the index of its first support point, right, up,
-// left, down in sequence, where `supports` is given.
-template <bool kSupports>
-HWY_INLINE void rectangles(const float* px, const float* py, std::size_t count, float depth,
-                           const FloatWeights& weights, const float* cosines, const float* sines, float* values,
-                           float* supports) {
-    const Tag d;
-    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
-        const auto c = hn::LoadU(d, cosines + lane), s = hn::LoadU(d, sines + lane);
-        Range along = nothing(d), up = along;
-        auto right_most = hn::Zero(d), left_most = right_most, top_most = right_most, bottom_most = right_most;
-        for (std::size_t i = 0; i < count; ++i) {
-            const auto x = hn::Set(d, px[i]), y = hn::Set(d, py[i]);
-            const auto a = hn::Add(hn::Mul(c, x), hn::Mul(s, y)), b = hn::Sub(hn::Mul(c, y), hn::Mul(s, x));
-            if constexpr (kSupports) {
-                const auto index = hn::Set(d, static_cast<float>(i));
-                right_most = hn::IfThenElse(hn::Gt(a, along.high), index, right_most);
-                left_most = hn::IfThenElse(hn::Lt(a, along.low), index, left_most);
-                top_most = hn::IfThenElse(hn::Gt(b, up.high), index, top_most);
-                bottom_most = hn::IfThenElse(hn::Lt(b, up.low), index, bottom_most);
-            }
-            along.include(a);
-            up.include(b);
-        }
-        hn::StoreU(value(d, weights, along.width(), up.width(), hn::Set(d, depth)), d, values + lane);
-        if constexpr (kSupports) {
-            hn::StoreU(right_most, d, supports + lane);
-            hn::StoreU(top_most, d, supports + kLanes + lane);
-            hn::StoreU(left_most, d, supports + 2 * kLanes + lane);
-            hn::StoreU(bottom_most, d, supports + 3 * kLanes + lane);
-        }
-    }
-}
-
-HWY_INLINE std::size_t index_of_least(const float* values) {
-    const Tag d;
-    auto least = hn::LoadU(d, values);
-    for (std::size_t lane = hn::Lanes(d); lane < kLanes; lane += hn::Lanes(d))
-        least = hn::Min(least, hn::LoadU(d, values + lane));
-    least = hn::MinOfLanes(d, least);
-    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
-        const auto at = hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, values + lane), least));
-        if (at >= 0) return lane + static_cast<std::size_t>(at);
-    }
-    return 0;
-}
-
-void turn_impl(const FewPoints& points, const FloatWeights& weights, float* scratch, Turn& turn) {
-    const Tag d;
-    const std::size_t padded = (points.count + kLanes - 1) / kLanes * kLanes;
-    float* const px = scratch;
-    float* const py = scratch + padded;
-    const Vec3 axis = set(d, turn.axis), right = set(d, turn.right), up = set(d, turn.up);
-    Range depths = nothing(d);
-    for (std::size_t i = 0; i < padded; i += hn::Lanes(d)) {
-        const Vec3 p = load(d, points, i);
-        depths.include(dot(axis, p));
-        hn::StoreU(dot(right, p), d, px + i);
-        hn::StoreU(dot(up, p), d, py + i);
-    }
-    const float depth = hn::GetLane(hn::MaxOfLanes(d, depths.high)) - hn::GetLane(hn::MinOfLanes(d, depths.low));
-    float values[kLanes], supports[4 * kLanes];
-    rectangles<true>(px, py, points.count, depth, weights, kCosine, kSine, values, supports);
-    const std::size_t coarse = index_of_least(values);
-    // The chords between the support points two steps before the best angle to two steps after it, of each side.
-    float cosines[kLanes], sines[kLanes];
-    for (std::size_t side = 0; side < 4; ++side)
-        for (std::size_t step = 0; step < 4; ++step) {
-            const std::size_t from = (side * kLanes + coarse + 4 * kLanes - 2 + step) % (4 * kLanes);
-            const int p = static_cast<int>(supports[from]);
-            const int q = static_cast<int>(supports[(from + 1) % (4 * kLanes)]);
-            cosines[4 * side + step] = px[q] - px[p];
-            sines[4 * side + step] = py[q] - py[p];
-        }
-    const auto tiny = hn::Set(d, 1e-12f);
-    const auto coarse_cosine = hn::Set(d, kCosine[coarse]), coarse_sine = hn::Set(d, kSine[coarse]);
-    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
-        const auto c = hn::LoadU(d, cosines + lane), s = hn::LoadU(d, sines + lane);
-        const auto squared = hn::Add(hn::Mul(c, c), hn::Mul(s, s)), length = hn::Sqrt(squared);
-        const auto chord = hn::Gt(squared, tiny);
-        hn::StoreU(hn::IfThenElse(chord, hn::Div(c, length), coarse_cosine), d, cosines + lane);
-        hn::StoreU(hn::IfThenElse(chord, hn::Div(s, length), coarse_sine), d, sines + lane);
-    }
-    rectangles<false>(px, py, points.count, depth, weights, cosines, sines, values, nullptr);
-    const std::size_t best = index_of_least(values);
-    turn.cosine = cosines[best];
-    turn.sine = sines[best];
-    turn.value = values[best];
-}
-
 void slides_impl(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
     const Tag d;
     const Vec3 start = set(d, slides.start), across = set(d, slides.across), edge = set(d, slides.edge);
@@ -402,7 +242,6 @@ HWY_EXPORT(ranks_impl);
 HWY_EXPORT(support_impl);
 HWY_EXPORT(settle_impl);
 HWY_EXPORT(supports_impl);
-HWY_EXPORT(turn_impl);
 HWY_EXPORT(slides_impl);
 HWY_EXPORT(flush_impl);
 
@@ -424,9 +263,6 @@ void supports_of_frame(const FewPoints& points, const float frame[9], float supp
 }
 void ranks(const FewPoints& points, float* ranks) {
     HWY_DYNAMIC_DISPATCH(ranks_impl)(points, ranks);
-}
-void turn(const FewPoints& points, const FloatWeights& weights, float* scratch, Turn& turn) {
-    HWY_DYNAMIC_DISPATCH(turn_impl)(points, weights, scratch, turn);
 }
 void values_of_slides(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
     HWY_DYNAMIC_DISPATCH(slides_impl)(points, weights, slides);
