@@ -1,0 +1,110 @@
+// One view of a list, beside the plainest loop over AABBs. Compare within one run.
+#include <benchmark/benchmark.h>
+
+#include <crofton/cull/bound_set.hpp>
+
+#include "cull_inputs.hpp"
+
+namespace {
+
+using namespace crofton;
+using bench::boxes_of, bench::report;
+
+// Every box against the view; `ids` lists the visible ones besides.
+void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    std::vector<cull::ItemId> list(boxes.size() + 16);
+    std::size_t visible = 0;
+    for (auto _ : state) {
+        cull::cull(set, boxes, view, verdicts, mode);
+        if (ids) visible = cull::list_bits(verdicts.visible, list);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+        benchmark::DoNotOptimize(list.data());
+    }
+    report(state, visible);
+    state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
+}
+BENCHMARK_CAPTURE(flat_cull, conservative, cull::Mode::conservative, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact, cull::Mode::exact, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::Mode::exact, true)->Arg(10000)->Arg(1000000);
+
+// The same for axis-aligned boxes and for balls around the boxes.
+template <class Bound>
+void flat_bounds(benchmark::State& state, const std::vector<Bound>& bounds) {
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::BoundSet<Bound> set;
+    set.assign(bounds);
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::cull(set, bounds, view, verdicts);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+    report(state, 0);
+    state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
+}
+void flat_cull_aabbs(benchmark::State& state) {
+    std::vector<Aabb> bounds;
+    for (const Obb& box : boxes_of(state.range(0))) bounds.push_back(aabb_of(box));
+    flat_bounds(state, bounds);
+}
+void flat_cull_spheres(benchmark::State& state) {
+    std::vector<Sphere> bounds;
+    for (const Obb& box : boxes_of(state.range(0)))
+        bounds.push_back({box.center, glm::length(glm::dvec3(box.half_extents))});
+    flat_bounds(state, bounds);
+}
+BENCHMARK(flat_cull_aabbs)->Arg(10000)->Arg(1000000);
+BENCHMARK(flat_cull_spheres)->Arg(10000)->Arg(1000000);
+
+// Axis-aligned boxes around ours, in float arrays, each against the six planes by its nearest corner: what a compiler
+// makes of the plainest loop. Writes one byte per box.
+void aabb_loop(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    const std::size_t n = boxes.size();
+    std::vector<float> center[3], half[3];
+    for (int j = 0; j < 3; ++j) center[j].resize(n), half[j].resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Aabb box = aabb_of(boxes[i]);
+        for (int j = 0; j < 3; ++j) {
+            center[j][i] = static_cast<float>(box.center()[j] - view.frustum.origin[j]);
+            half[j][i] = static_cast<float>(box.half_extents()[j]);
+        }
+    }
+    std::vector<unsigned char> seen(n);
+    for (auto _ : state) {
+        float p[6][7];
+        for (unsigned k = 0; k < 6; ++k) {
+            const Plane& plane = view.frustum.planes[k];
+            for (int j = 0; j < 3; ++j) {
+                p[k][j] = static_cast<float>(plane.normal[j]);
+                p[k][4 + j] = std::fabs(p[k][j]);
+            }
+            p[k][3] = static_cast<float>(plane.offset);
+        }
+        const float *cx = center[0].data(), *cy = center[1].data(), *cz = center[2].data();
+        const float *hx = half[0].data(), *hy = half[1].data(), *hz = half[2].data();
+        unsigned char* out = seen.data();
+        for (std::size_t i = 0; i < n; ++i) {
+            float least = 1e30f;
+            for (unsigned k = 0; k < 6; ++k) {
+                const float top = p[k][0] * cx[i] + p[k][1] * cy[i] + p[k][2] * cz[i] + p[k][3] + p[k][4] * hx[i] +
+                                  p[k][5] * hy[i] + p[k][6] * hz[i];
+                least = top < least ? top : least;
+            }
+            out[i] = least >= 0.0f;
+        }
+        benchmark::DoNotOptimize(seen.data());
+        benchmark::ClobberMemory();
+    }
+    std::size_t visible = 0;
+    for (const unsigned char s : seen) visible += s;
+    report(state, visible);
+}
+BENCHMARK(aabb_loop)->Arg(10000)->Arg(1000000);
+
+}  // namespace

@@ -1,0 +1,41 @@
+// Two threads beside one.
+#include <benchmark/benchmark.h>
+
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/cull/bound_set.hpp>
+
+#include "cull_inputs.hpp"
+
+namespace {
+
+using namespace crofton;
+using bench::boxes_of, bench::tree_of;
+
+// Two threads beside one, the same query.
+void threads(benchmark::State& state) {
+    ThreadPool pool(static_cast<unsigned>(state.range(1)));
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::cull(set, boxes, view, verdicts, cull::Mode::exact, pool);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+}
+BENCHMARK(threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
+
+void tree_threads(benchmark::State& state) {
+    ThreadPool pool(static_cast<unsigned>(state.range(1)));
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree}, pool);
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+}
+BENCHMARK(tree_threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
+
+}  // namespace

@@ -1,0 +1,82 @@
+// One view of a tree: what a query costs, what its order of ids costs, and building.
+#include <benchmark/benchmark.h>
+
+#include <crofton/cull/cull.hpp>
+
+#include "cull_inputs.hpp"
+
+namespace {
+
+using namespace crofton;
+using bench::boxes_in_tree_order, bench::boxes_of, bench::report, bench::tree_of;
+
+void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, double share) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {mode, order});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+    state.counters["boxes_tested"] = static_cast<double>(visible.statistics().boxes_tested);
+    state.counters["nodes_tested"] = static_cast<double>(visible.statistics().nodes_tested);
+    state.counters["exact_tests"] = static_cast<double>(visible.statistics().exact_tests);
+    state.counters["straddling"] = static_cast<double>(visible.statistics().straddling);
+}
+BENCHMARK_CAPTURE(tree_cull, conservative, cull::Mode::conservative, cull::Order::tree, 0.2)
+    ->RangeMultiplier(10)
+    ->Range(10000, 1000000);
+BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)
+    ->RangeMultiplier(10)
+    ->Range(10000, 1000000);
+BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::Mode::exact, cull::Order::ascending, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tree, 0.01)->Arg(1000000);
+
+void tree_cull_numbered(benchmark::State& state, cull::Order order) {
+    const auto& boxes = boxes_in_tree_order(state.range(0));
+    const tree::BoxTree tree = *tree::BoxTree::build(boxes);
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {cull::Mode::exact, order});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+}
+BENCHMARK_CAPTURE(tree_cull_numbered, in_tree_order, cull::Order::tree)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_numbered, ascending, cull::Order::ascending)->Arg(1000000);
+
+// 300 cameras on a way through the crowd, each seeing about 1 % of it.
+void flight(benchmark::State& state, cull::Mode mode) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const double side = std::cbrt(static_cast<double>(state.range(0)));
+    std::vector<cull::View> views;
+    for (int f = 0; f < 300; ++f) {
+        Camera camera;
+        const double angle = 0.02 * f;
+        camera.position = side * glm::dvec3(0.5 + 0.3 * std::cos(angle), 0.5 + 0.1 * std::sin(3.0 * angle),
+                                            0.5 + 0.3 * std::sin(angle));
+        camera.forward = {-std::sin(angle), 0.1, std::cos(angle)};
+        camera.aspect = 1.0;
+        camera.far = 0.31 * side;
+        views.push_back({*frustum_of(camera)});
+    }
+    cull::VisibleSet visible;
+    std::size_t frame = 0, seen = 0;
+    for (auto _ : state) {
+        cull::cull(tree, views[frame++ % views.size()], visible, {mode, cull::Order::tree});
+        seen += visible.size();
+    }
+    report(state, frame ? seen / frame : 0);
+}
+BENCHMARK_CAPTURE(flight, conservative, cull::Mode::conservative)->Arg(1000000);
+BENCHMARK_CAPTURE(flight, exact, cull::Mode::exact)->Arg(1000000);
+
+void tree_build(benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(tree::BoxTree::build(boxes_of(state.range(0)))->item_count());
+    report(state, 0);
+}
+BENCHMARK(tree_build)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+}  // namespace
