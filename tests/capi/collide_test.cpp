@@ -4,18 +4,6 @@
 
 using namespace crofton::capi_test;
 
-namespace {
-
-Collider make_collider() {
-    const Tetrahedron tetrahedron;
-    const crofton_mesh mesh = tetrahedron.mesh();
-    crofton_collider* collider = nullptr;
-    REQUIRE(crofton_collider_create(&mesh, &collider) == CROFTON_OK);
-    return Collider(collider);
-}
-
-}  // namespace
-
 TEST_SUITE("capi/collide") {
     TEST_CASE("null pointers, bad boxes and bad poses are refused") {
         const crofton_box good = box_at(0, 0, 0);

@@ -72,6 +72,15 @@ struct Tetrahedron {
     }
 };
 
+inline Collider make_collider(float size = 1.0f) {
+    Tetrahedron tetrahedron;
+    for (float& x : tetrahedron.positions) x *= size;
+    const crofton_mesh mesh = tetrahedron.mesh();
+    crofton_collider* collider = nullptr;
+    REQUIRE(crofton_collider_create(&mesh, &collider) == CROFTON_OK);
+    return Collider(collider);
+}
+
 inline crofton_transform translation(double x, double y, double z) {
     return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}};
 }

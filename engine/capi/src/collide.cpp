@@ -1,11 +1,10 @@
 #include <crofton/capi/collide.h>
 
-#include <algorithm>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/collide/obb_obb.hpp>
 
-#include "call.hpp"
+#include "collider.hpp"
 #include "convert.hpp"
 #include "mesh.hpp"
 
@@ -18,22 +17,9 @@ struct crofton_broadphase {
     collide::Broadphase broadphase{};
 };
 
-struct crofton_collider {
-    static constexpr std::uint32_t kKind = 0x43724f05;
-    Header header;
-    tree::MeshTree tree;
-};
-
 static_assert(sizeof(crofton_pair) == sizeof(collide::Pair) && sizeof(crofton_filter) == sizeof(collide::Filter));
 
 namespace {
-
-crofton_status to_pose(const crofton_transform* transform, const char* function, collide::Pose& pose) {
-    CROFTON_CHECK(check_pointer(transform, function));
-    const scene::Transform source = to_transform(*transform);
-    pose = {source.linear, source.translation};
-    return status_of(validate(pose), function);
-}
 
 std::span<const collide::Pair> pairs_of(const collide::Broadphase& broadphase, uint32_t which) {
     switch (which) {
@@ -48,11 +34,14 @@ std::span<const collide::Pair> pairs_of(const collide::Broadphase& broadphase, u
     }
 }
 
-void copy_vector(const glm::dvec3& v, double* result) {
-    if (result) std::copy_n(&v.x, 3, result);
-}
-
 }  // namespace
+
+crofton_status capi::to_pose(const crofton_transform* transform, const char* function, collide::Pose& pose) {
+    CROFTON_CHECK(check_pointer(transform, function));
+    const scene::Transform source = to_transform(*transform);
+    pose = {source.linear, source.translation};
+    return status_of(validate(pose), function);
+}
 
 crofton_status crofton_boxes_meet(const crofton_box* a, const crofton_box* b, int* meet) {
     CROFTON_CHECK(check_pointer(a, __func__));
@@ -124,28 +113,20 @@ crofton_status crofton_collider_destroy(crofton_collider* collider) {
 
 crofton_status crofton_colliders_meet(const crofton_collider* a, const crofton_collider* b,
                                       const crofton_transform* b_to_a, int* meet) {
-    const SharedUse use_a(a, __func__);
-    if (use_a.failed()) return use_a.status();
-    const SharedUse use_b(b, __func__);
-    if (use_b.failed()) return use_b.status();
+    const PosedColliders posed(a, b, b_to_a, __func__);
+    CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_pointer(meet, __func__));
-    collide::Pose pose;
-    CROFTON_CHECK(to_pose(b_to_a, __func__, pose));
-    *meet = collide::intersects(a->tree, b->tree, pose) ? 1 : 0;
+    *meet = collide::intersects(a->tree, b->tree, posed.pose) ? 1 : 0;
     return CROFTON_OK;
 }
 
 crofton_status crofton_colliders_distance(const crofton_collider* a, const crofton_collider* b,
                                           const crofton_transform* b_to_a, double* distance, double* on_a,
                                           double* on_b) {
-    const SharedUse use_a(a, __func__);
-    if (use_a.failed()) return use_a.status();
-    const SharedUse use_b(b, __func__);
-    if (use_b.failed()) return use_b.status();
+    const PosedColliders posed(a, b, b_to_a, __func__);
+    CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_pointer(distance, __func__));
-    collide::Pose pose;
-    CROFTON_CHECK(to_pose(b_to_a, __func__, pose));
-    const collide::MeshDistance found = collide::distance(a->tree, b->tree, pose);
+    const collide::MeshDistance found = collide::distance(a->tree, b->tree, posed.pose);
     *distance = found.distance;
     copy_vector(found.on_a, on_a);
     copy_vector(found.on_b, on_b);
@@ -155,16 +136,12 @@ crofton_status crofton_colliders_distance(const crofton_collider* a, const croft
 crofton_status crofton_colliders_triangle_pairs(const crofton_collider* a, const crofton_collider* b,
                                                 const crofton_transform* b_to_a, crofton_pair* pairs, size_t capacity,
                                                 size_t* count) {
-    const SharedUse use_a(a, __func__);
-    if (use_a.failed()) return use_a.status();
-    const SharedUse use_b(b, __func__);
-    if (use_b.failed()) return use_b.status();
+    const PosedColliders posed(a, b, b_to_a, __func__);
+    CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_array(pairs, capacity, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
-    collide::Pose pose;
-    CROFTON_CHECK(to_pose(b_to_a, __func__, pose));
     Vector<collide::TrianglePair> found;
-    collide::intersecting_triangles(a->tree, b->tree, pose, found);
+    collide::intersecting_triangles(a->tree, b->tree, posed.pose, found);
     for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) pairs[i] = {found[i].first, found[i].second};
     *count = found.size();
     return CROFTON_OK;

@@ -11,10 +11,12 @@
 #define CROFTON_CAPI_CROFTON_H
 #include <crofton/capi/base.h>
 #include <crofton/capi/collide.h>
+#include <crofton/capi/contacts.h>
 #include <crofton/capi/cull.h>
 #include <crofton/capi/fit.h>
 #include <crofton/capi/geometry.h>
 #include <crofton/capi/hooks.h>
+#include <crofton/capi/rays.h>
 #include <crofton/capi/scene.h>
 #include <crofton/capi/triangulate.h>
 #endif

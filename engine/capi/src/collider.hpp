@@ -1,0 +1,43 @@
+// A mesh ready for collisions, as the functions of several headers see it.
+#pragma once
+#include <crofton/capi/collide.h>
+
+#include <algorithm>
+#include <crofton/collide/pose.hpp>
+#include <crofton/tree/mesh_tree.hpp>
+
+#include "call.hpp"
+
+struct crofton_collider {
+    static constexpr std::uint32_t kKind = 0x43724f05;
+    crofton::capi::Header header;
+    crofton::tree::MeshTree tree;
+};
+
+namespace crofton::capi {
+
+[[nodiscard]] crofton_status to_pose(const crofton_transform* transform, const char* function, collide::Pose& pose);
+
+// Where the caller asked for it.
+inline void copy_vector(const glm::dvec3& v, double* result) {
+    if (result) std::copy_n(&v.x, 3, result);
+}
+
+// Two meshes and how they lie, checked, for the length of a call.
+class PosedColliders {
+  public:
+    PosedColliders(const crofton_collider* a, const crofton_collider* b, const crofton_transform* b_to_a,
+                   const char* function)
+        : a_(a, function), b_(b, function) {
+        status_ = a_.failed() ? a_.status() : b_.failed() ? b_.status() : to_pose(b_to_a, function, pose);
+    }
+    [[nodiscard]] crofton_status status() const { return status_; }
+
+    collide::Pose pose;
+
+  private:
+    SharedUse a_, b_;
+    crofton_status status_;
+};
+
+}  // namespace crofton::capi
