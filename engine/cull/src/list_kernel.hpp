@@ -29,16 +29,6 @@ void run_list_kernel(const ListKernelInput<BoxRecord>& input, ListKernelOutput& 
 void run_list_kernel(const ListKernelInput<AabbRecord>& input, ListKernelOutput& output);
 void run_list_kernel(const ListKernelInput<SphereRecord>& input, ListKernelOutput& output);
 
-// What one view sees of a chunk.
-struct ViewBits {
-    std::uint64_t visible[kChunk / 64];
-    std::uint32_t bit, layer_mask;
-};
-
-// masks[i] = the bits of the views that see bound i, of `count`, and, if there are layers, share one with it.
-void mark_views_kernel(const ViewBits* views, std::size_t view_count, std::size_t count, const std::uint32_t* layers,
-                       std::uint32_t* masks);
-
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
 
 }  // namespace crofton::cull
