@@ -1,6 +1,5 @@
 #include <crofton/capi/rays.h>
 
-#include <cmath>
 #include <crofton/collide/ray.hpp>
 #include <limits>
 
@@ -16,13 +15,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item, collide::Ray& result) {
     result = {to_vector(ray.origin), to_vector(ray.direction), ray.max_t};
-    for (int k = 0; k < 3; ++k)
-        if (!std::isfinite(result.origin[k]) || !std::isfinite(result.direction[k]))
-            return report(CROFTON_NON_FINITE, function, "a ray's origin or direction is not finite", item);
-    if (result.direction == glm::dvec3(0.0))
-        return report(CROFTON_DEGENERATE, function, "a ray has no direction", item);
-    if (!(ray.max_t >= 0.0)) return report(CROFTON_INVALID_ARGUMENT, function, "max_t is negative or NaN", item);
-    return CROFTON_OK;
+    return status_of(validate(result, item), function);
 }
 
 }  // namespace

@@ -10,11 +10,6 @@
 namespace crofton::collide {
 namespace {
 
-bool is_usable(const Ray& ray) {
-    const glm::dvec3 sum = ray.origin + ray.direction;
-    return std::isfinite(sum.x + sum.y + sum.z) && ray.max_t >= 0.0 && glm::dot(ray.direction, ray.direction) > 0.0;
-}
-
 // Sign of det(direction, a − origin, b − origin), exactly.
 int side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
     std::array<Expansion<2>, 3> u, v;
@@ -62,8 +57,18 @@ RayAnswer trace(const Ray& ray, const tree::MeshTree& mesh, bool any) {
 
 }  // namespace
 
+Result<void> validate(const Ray& ray, std::uint64_t item) {
+    const glm::dvec3 sum = ray.origin + ray.direction;
+    if (!std::isfinite(sum.x + sum.y + sum.z))
+        return fail(ErrorCode::non_finite, item, "ray: the origin or direction is not finite");
+    if (!(glm::dot(ray.direction, ray.direction) > 0.0))
+        return fail(ErrorCode::degenerate, item, "ray: the direction is zero, or too short for double");
+    if (!(ray.max_t >= 0.0)) return fail(ErrorCode::invalid_argument, item, "ray: max_t is negative or NaN");
+    return {};
+}
+
 std::optional<double> raycast(const Ray& ray, const Obb& box) {
-    if (!is_usable(ray) || !validate(box)) return std::nullopt;
+    if (!validate(ray) || !validate(box)) return std::nullopt;
     const glm::dvec3 offset = ray.origin - box.center;
     double first = 0.0, last = ray.max_t;
     for (int k = 0; k < 3; ++k) {
@@ -83,14 +88,14 @@ std::optional<double> raycast(const Ray& ray, const Obb& box) {
 }
 
 std::optional<RayHit> raycast(const Ray& ray, const tree::MeshTree& mesh) {
-    if (!is_usable(ray)) return std::nullopt;
+    if (!validate(ray)) return std::nullopt;
     const RayAnswer answer = trace(ray, mesh, false);
     if (!answer.hit) return std::nullopt;
     return RayHit{answer.t, answer.triangle};
 }
 
 bool hits_any(const Ray& ray, const tree::MeshTree& mesh) {
-    return is_usable(ray) && trace(ray, mesh, true).hit;
+    return validate(ray).has_value() && trace(ray, mesh, true).hit;
 }
 
 }  // namespace crofton::collide

@@ -1,6 +1,7 @@
 // Rays and segments against boxes and meshes.
 #pragma once
 #include <crofton/collide/triangle_triangle.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/tree/mesh_tree.hpp>
 #include <cstdint>
@@ -10,11 +11,14 @@
 namespace crofton::collide {
 
 // The points origin + t · direction, 0 ≤ t ≤ max_t; a segment from p to q is {p, q − p, 1}. `direction` need not be of
-// unit length. A ray that is not finite (max_t may be infinite), or has no direction, hits nothing.
+// unit length, max_t may be infinite. A ray that fails validate hits nothing.
 struct Ray {
     glm::dvec3 origin{0.0}, direction{0.0, 0.0, 1.0};
     double max_t = std::numeric_limits<double>::infinity();
 };
+
+// Errors: an origin or direction that is not finite; no direction; max_t negative or NaN.
+[[nodiscard]] Result<void> validate(const Ray& ray, std::uint64_t item = kNoItem);
 
 // Where a ray enters a box, or 0 where it starts inside. Rounded: a grazing hit within 1e-14 of the coordinates' size
 // may be told either way.

@@ -1,0 +1,208 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/tree_query.hpp>
+#include <limits>
+#include <vector>
+
+#include "counting_memory.hpp"
+#include "oracle/random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using oracle::NearMisses;
+
+namespace {
+
+oracle::Crowd crowd_of(std::size_t count, double offset, std::uint64_t seed) {
+    oracle::Crowd crowd = oracle::random_crowd(count, offset, seed);
+    for (Obb& box : crowd.boxes) box.half_extents *= 8.0f;
+    return crowd;
+}
+
+tree::BoxTree tree_of(const oracle::Crowd& crowd) {
+    auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
+    REQUIRE(tree.has_value());
+    return std::move(*tree);
+}
+
+// Every box asked, one after the other.
+template <class Meets>
+std::vector<tree::ItemId> by_brute_force(const oracle::Crowd& crowd, std::uint32_t layers, Meets meets) {
+    std::vector<tree::ItemId> items;
+    for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
+        if ((crowd.layers[i] & layers) != 0 && meets(crowd.boxes[i])) items.push_back(static_cast<tree::ItemId>(i));
+    return items;
+}
+
+std::vector<tree::ItemId> list(const Vector<tree::ItemId>& items) {
+    return {items.begin(), items.end()};
+}
+
+std::vector<tree::ItemId> all_along(const Ray& ray, const tree::BoxTree& tree, std::uint32_t layers) {
+    std::vector<tree::ItemId> items;
+    visit_along(
+        ray, tree, [&](tree::ItemId item, double) { return items.push_back(item), ray.max_t; }, layers);
+    std::sort(items.begin(), items.end());
+    return items;
+}
+
+Ray random_ray(NearMisses& random, const glm::dvec3& middle, double spread) {
+    Ray ray;
+    ray.origin = middle + random.number(0.0, spread) * random.direction();
+    ray.direction = std::exp(random.number(-8.0, 8.0)) * random.direction();
+    if (random.index(4) == 0) ray.direction[static_cast<int>(random.index(3))] = 0.0;
+    if (random.index(4) == 0) ray.direction = {0.0, 0.0, random.index(2) ? 1.0 : -1.0};
+    if (random.index(2) == 0) ray.max_t = random.number(0.0, spread) / glm::length(ray.direction);
+    return ray;
+}
+
+}  // namespace
+
+TEST_SUITE("collide/tree_query") {
+    TEST_CASE("bodies and rays that are none meet nothing, and a tree without items answers") {
+        const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+        const oracle::Crowd crowd = crowd_of(300, 0.0, 1);
+        const tree::BoxTree tree = tree_of(crowd);
+        Vector<tree::ItemId> items(3);
+        Obb bad = crowd.boxes[0];
+        bad.center.y = nan;
+        overlapping(tree, bad, items);
+        CHECK(items.empty());
+        for (const double number : {nan, infinity, -infinity}) {
+            overlapping(tree, Sphere{{number, 0.0, 0.0}, 1.0}, items);
+            CHECK(items.empty());
+            overlapping(tree, Sphere{{0.0, 0.0, 0.0}, number}, items);
+            CHECK(items.empty());
+            overlapping(tree, Capsule{{0.0, 0.0, 0.0}, {0.0, number, 0.0}, 1.0}, items);
+            CHECK(items.empty());
+            CHECK_FALSE(raycast(Ray{{number, 0.0, 0.0}}, tree).has_value());
+        }
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, tree).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -90.0}, {0.0, 0.0, 1.0}, -1.0}, tree).has_value());
+        const auto empty = tree::BoxTree::build({});
+        CHECK_FALSE(raycast(Ray{}, *empty).has_value());
+        overlapping(*empty, Sphere{{}, 1e9}, items);
+        CHECK(items.empty());
+    }
+
+    TEST_CASE("boxes, balls and capsules meet what each box alone says, at any offset") {
+        for (const double offset : {0.0, 1e5, 1e7}) {
+            const oracle::Crowd crowd = crowd_of(2000, offset, 2);
+            const tree::BoxTree tree = tree_of(crowd);
+            const glm::dvec3 middle = offset * glm::dvec3(1.0, -0.7, 0.3);
+            NearMisses random(3);
+            Vector<tree::ItemId> items;
+            std::size_t found = 0;
+            for (int trial = 0; trial < 100; ++trial) {
+                const std::uint32_t layers = random.index(3) ? ~0u : 1u << random.index(5);
+                Obb box = oracle::random_box(random, middle, 60.0);
+                box.half_extents *= 20.0f;
+                overlapping(tree, box, items, layers);
+                CHECK(list(items) == by_brute_force(crowd, layers, [&](const Obb& b) { return intersects(b, box); }));
+                found += items.size();
+                const Sphere ball{box.center, random.number(0.0, 30.0)};
+                overlapping(tree, ball, items, layers);
+                CHECK(list(items) == by_brute_force(crowd, layers, [&](const Obb& b) { return intersects(b, ball); }));
+                const Capsule capsule{box.center, box.center + 20.0 * random.direction(), random.number(0.0, 5.0)};
+                overlapping(tree, capsule, items, layers);
+                CHECK(list(items) ==
+                      by_brute_force(crowd, layers, [&](const Obb& b) { return intersects(b, capsule); }));
+                found += items.size();
+            }
+            CHECK(found > 1000);
+        }
+    }
+
+    TEST_CASE("boxes that only touch are found") {
+        oracle::Crowd crowd;
+        for (int i = 0; i < 500; ++i)
+            crowd.boxes.push_back({{2.0 * (i % 25), 2.0 * (i / 25), 0.0}, glm::mat3(1.0f), glm::vec3(1.0f)});
+        crowd.layers.assign(500, 1u);
+        const tree::BoxTree tree = tree_of(crowd);
+        Vector<tree::ItemId> items;
+        for (const int i : {26 * 3, 26 * 5, 26 * 11}) {
+            overlapping(tree, crowd.boxes[static_cast<std::size_t>(i)], items);
+            CHECK(items.size() == 9);
+        }
+        // Along a plane in which boxes of two rows touch each other.
+        CHECK(all_along(Ray{{-5.0, 1.0, 0.0}, {1.0, 0.0, 0.0}}, tree, 1u).size() == 50);
+        CHECK(all_along(Ray{{-5.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, tree, 1u).size() == 50);
+        CHECK(all_along(Ray{{-5.0, 1.0, 1.0000001}, {1.0, 0.0, 0.0}}, tree, 1u).empty());
+    }
+
+    TEST_CASE("rays visit exactly the boxes that each alone is hit, and end at the nearest") {
+        for (const double offset : {0.0, 1e5, 1e7}) {
+            const oracle::Crowd crowd = crowd_of(2000, offset, 4);
+            const tree::BoxTree tree = tree_of(crowd);
+            NearMisses random(5);
+            std::size_t found = 0;
+            for (int trial = 0; trial < 300; ++trial) {
+                const std::uint32_t layers = random.index(3) ? ~0u : 1u << random.index(5);
+                const Ray ray = random_ray(random, offset * glm::dvec3(1.0, -0.7, 0.3), 90.0);
+                const auto expected =
+                    by_brute_force(crowd, layers, [&](const Obb& b) { return raycast(ray, b).has_value(); });
+                CHECK(all_along(ray, tree, layers) == expected);
+                const auto nearest = raycast(ray, tree, layers);
+                REQUIRE(nearest.has_value() == !expected.empty());
+                found += expected.size();
+                if (!nearest) continue;
+                BoxHit best{std::numeric_limits<double>::infinity(), 0};
+                for (const tree::ItemId item : expected)
+                    if (const double t = *raycast(ray, crowd.boxes[item]); t < best.t) best = {t, item};
+                CHECK(nearest->t == best.t);
+                CHECK(nearest->item == best.item);
+            }
+            CHECK(found > 1000);
+        }
+    }
+
+    TEST_CASE("a visitor ends the ray where it likes") {
+        const oracle::Crowd crowd = crowd_of(2000, 0.0, 6);
+        const tree::BoxTree tree = tree_of(crowd);
+        int visits = 0;
+        visit_along(Ray{{-50.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, tree,
+                    [&](tree::ItemId, double) { return ++visits, -1.0; });
+        CHECK(visits == 1);
+    }
+
+    TEST_CASE("a ray allocates nothing, nor does a body once the list has grown") {
+        const oracle::Crowd crowd = crowd_of(2000, 0.0, 6);
+        const tree::BoxTree tree = tree_of(crowd);
+        Vector<tree::ItemId> items;
+        overlapping(tree, Sphere{{}, 1e3}, items);
+        const testing::CountingMemory memory;
+        overlapping(tree, Sphere{{}, 1e3}, items);
+        CHECK(items.size() == 2000);
+        CHECK(raycast(Ray{{-50.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, tree).has_value());
+        CHECK(memory.allocations() == 0);
+    }
+
+    TEST_CASE("after moves, inserts and removals and a refit the answers are those of the boxes now") {
+        oracle::Crowd crowd = crowd_of(1000, 0.0, 7);
+        tree::BoxTree tree = tree_of(crowd);
+        NearMisses random(8);
+        for (int i = 0; i < 300; ++i) {
+            const auto item = random.index(1000);
+            crowd.boxes[item] = oracle::random_box(random, glm::dvec3(0.0), 40.0);
+            REQUIRE(tree.move(static_cast<tree::ItemId>(item), crowd.boxes[item]).has_value());
+        }
+        for (int i = 0; i < 100; ++i) {
+            crowd.boxes.push_back(oracle::random_box(random, glm::dvec3(0.0), 40.0));
+            crowd.layers.push_back(1u);
+            REQUIRE(tree.insert(crowd.boxes.back(), 1u).has_value());
+        }
+        for (tree::ItemId item = 0; item < 1100; item += 7) {
+            REQUIRE(tree.remove(item).has_value());
+            crowd.layers[item] = 0;
+        }
+        tree.refit();
+        for (int trial = 0; trial < 200; ++trial) {
+            const Ray ray = random_ray(random, glm::dvec3(0.0), 90.0);
+            CHECK(all_along(ray, tree, ~0u) ==
+                  by_brute_force(crowd, ~0u, [&](const Obb& b) { return raycast(ray, b).has_value(); }));
+        }
+    }
+}
