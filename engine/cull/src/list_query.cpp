@@ -102,6 +102,9 @@ void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound
 
 namespace {
 
+// Ten megabytes of rows and records: larger lists are asked for ahead.
+constexpr std::size_t kCachedList = 262144;
+
 // The views of one pass, and a chunk at a time what they see of it.
 template <class Bound>
 class ListViews {
@@ -128,6 +131,7 @@ class ListViews {
                                                                      vectors_,
                                                                      count,
                                                                      query_.mode == Mode::exact,
+                                                                     set.size() > kCachedList,
                                                                      layers,
                                                                      Chunk::decide,
                                                                      &chunk};

@@ -1,7 +1,10 @@
 #include "list_views_kernel.hpp"
 
+#include <hwy/cache_control.h>
 #include <algorithm>
 
+// Integer products that are summed in the same step are worth a target of their own.
+#define HWY_WANT_AVX3_DL 1
 // Vectors of unknown size cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -34,32 +37,30 @@ class ChunkViews {
         : in_(input), masks_(masks), words_((input.count + 63) / 64) {}
 
     void run(ListViewCost* costs) {
-        for_each_bit(in_.view_bits, [&](unsigned v) {
-            RowView& asked = asked_[asked_count_];
-            asked.planes = row_planes(in_.views[v], *in_.chunk);
-            if (asked.planes.outside) return;
-            asked.view = v;
-            asked.bit = 1u << v;
-            asked.layer_mask = in_.views[v].layer_mask;
-            if (asked.planes.planes != 0)
-                ++asked_count_;
-            else
-                whole_[whole_count_++] = {asked.bit, asked.layer_mask};
-        });
+        plan();
         for (std::size_t w = 0; w < words_; ++w) {
-            alignas(64) std::uint32_t last[64];
             const std::size_t left = in_.count - 64 * w;
             if (left >= 64) {
-                test_rows(w, masks_ + 64 * w, in_.layers ? in_.layers + 64 * w : nullptr);
+                if (in_.beyond_cache) prefetch(w + 16);
+                if (in_.layers)
+                    test_rows<true>(w, masks_ + 64 * w, in_.layers + 64 * w);
+                else
+                    test_rows<false>(w, masks_ + 64 * w, nullptr);
                 continue;
             }
-            alignas(64) std::uint32_t layers[64] = {};
+            alignas(64) std::uint32_t last[64], layers[64];
+            std::fill_n(layers, 64, ~0u);
             if (in_.layers) std::copy_n(in_.layers + 64 * w, left, layers);
-            test_rows(w, last, in_.layers ? layers : nullptr);
+            test_rows<true>(w, last, layers);
             std::copy_n(last, left, masks_ + 64 * w);
             for (std::size_t n = 0; n < asked_count_; ++n) asked_[n].open[w] &= ~std::uint64_t{0} >> (64 - left);
         }
-        for (std::size_t n = 0; n < asked_count_; ++n) ask_records(asked_[n], costs[asked_[n].view]);
+        // One view's records are on their way while another's are tested.
+        if (asked_count_ > 0) list_open(0);
+        for (std::size_t n = 0; n < asked_count_; ++n) {
+            if (n + 1 < asked_count_) list_open(n + 1);
+            ask_records(asked_[n], indices_[n % 2], open_counts_[n % 2], costs[asked_[n].view]);
+        }
     }
 
   private:
@@ -67,37 +68,66 @@ class ChunkViews {
         std::uint32_t bit, layer_mask;
     };
 
-    static HWY_INLINE VU in_layers(VU layers, std::uint32_t mask, VU bit) {
-        const DU du;
-        return hn::IfThenElseZero(hn::Ne(hn::And(layers, hn::Set(du, mask)), hn::Zero(du)), bit);
+    // Sorts the views: those that see nothing, those that see all that their records do not take back, those whose rows
+    // are asked first.
+    void plan() {
+        std::uint32_t useless = 0;
+        for_each_bit(in_.view_bits, [&](unsigned v) {
+            const RowPlanes planes = row_planes(in_.views[v], *in_.chunk);
+            if (planes.outside) return;
+            if (planes.useless)
+                useless |= 1u << v;
+            else if (planes.planes != 0)
+                ask(v, planes);
+            if (planes.useless || planes.planes == 0) whole_[whole_count_++] = {1u << v, in_.views[v].layer_mask};
+        });
+        rows_count_ = asked_count_;
+        for_each_bit(useless, [&](unsigned v) {
+            ask(v, row_planes(in_.views[v], *in_.chunk));
+            std::fill_n(asked_[asked_count_ - 1].open, words_, ~std::uint64_t{0});
+        });
     }
 
+    void ask(unsigned v, const RowPlanes& planes) {
+        RowView& asked = asked_[asked_count_++];
+        asked.planes = planes;
+        asked.view = v;
+        asked.bit = 1u << v;
+        asked.layer_mask = in_.views[v].layer_mask;
+    }
+
+    // Rows, and masks, which are only written, some words ahead. May lie beyond the end.
+    HWY_INLINE void prefetch(std::size_t w) const {
+        const auto rows = reinterpret_cast<std::uintptr_t>(in_.rows) + 4 * w * sizeof(RowBlock);
+        const auto masks = reinterpret_cast<std::uintptr_t>(masks_) + 64 * w * sizeof(*masks_);
+        for (std::uintptr_t at = 0; at < 512; at += 64) hwy::Prefetch(reinterpret_cast<const char*>(rows + at));
+        for (std::uintptr_t at = 0; at < 256; at += 64) hwy::Prefetch(reinterpret_cast<const char*>(masks + at));
+    }
+
+    template <bool kLayers>
     HWY_INLINE void test_rows(std::size_t w, std::uint32_t* masks, const std::uint32_t* layers) {
         const DU du;
-        for (std::size_t n = 0; n < asked_count_; ++n) asked_[n].open[w] = 0;
         for (std::size_t l = 0; l < 16; l += hn::Lanes(du)) {
             const RowLanes rows(in_.rows + 4 * w, l);
             VU seen[4] = {hn::Zero(du), hn::Zero(du), hn::Zero(du), hn::Zero(du)};
-            const auto add = [&](std::size_t b, VU bits, std::uint32_t layer_mask) HWY_ATTR {
-                if (layers) bits = in_layers(hn::LoadU(du, layers + 16 * b + l), layer_mask, bits);
-                seen[b] = hn::Or(seen[b], bits);
+            const auto bit_of = [&](std::size_t b, VU bit, std::uint32_t layer_mask) HWY_ATTR {
+                if (!kLayers) return bit;
+                const VU common = hn::And(hn::LoadU(du, layers + 16 * b + l), hn::Set(du, layer_mask));
+                return hn::IfThenElseZero(hn::Ne(common, hn::Zero(du)), bit);
             };
             for (std::size_t n = 0; n < whole_count_; ++n)
-                for (std::size_t b = 0; b < 4; ++b) add(b, hn::Set(du, whole_[n].bit), whole_[n].layer_mask);
-            for (std::size_t n = 0; n < asked_count_; ++n) {
+                for (std::size_t b = 0; b < 4; ++b)
+                    seen[b] = hn::Or(seen[b], bit_of(b, hn::Set(du, whole_[n].bit), whole_[n].layer_mask));
+            for (std::size_t n = 0; n < rows_count_; ++n) {
                 RowView& asked = asked_[n];
-                const VU bit = hn::Set(du, asked.bit);
-                if (HWY_UNLIKELY(asked.planes.useless)) {
-                    asked.open[w] = ~std::uint64_t{0};
-                    for (std::size_t b = 0; b < 4; ++b) add(b, bit, asked.layer_mask);
-                    continue;
-                }
                 RowTest test(rows, asked.planes);
                 for (std::size_t b = 0; b < 4; ++b) {
-                    add(b, hn::IfThenZeroElse(hn::RebindMask(du, test.outside[b]), bit), asked.layer_mask);
+                    const VU with = hn::Or(seen[b], bit_of(b, hn::Set(du, asked.bit), asked.layer_mask));
+                    seen[b] = hn::IfThenElse(hn::RebindMask(du, test.outside[b]), seen[b], with);
                     test.inside[b] = hn::Or(test.inside[b], test.outside[b]);
                 }
-                asked.open[w] |= ~bits_of_blocks(test.inside, l) & lanes_from(l);
+                const std::uint64_t open = ~bits_of_blocks(test.inside, l) & lanes_from(l);
+                asked.open[w] = l == 0 ? open : asked.open[w] | open;
             }
             for (std::size_t b = 0; b < 4; ++b) hn::StoreU(seen[b], du, masks + 16 * b + l);
         }
@@ -121,9 +151,15 @@ class ChunkViews {
         }
     };
 
-    void ask_records(const RowView& asked, ListViewCost& cost) {
-        std::uint32_t indices[kChunk + 16], unsettled[kChunk + 16];
-        const std::size_t count = list_sparse_bits(asked.open, words_, indices);
+    HWY_INLINE void list_open(std::size_t n) {
+        std::uint32_t* indices = indices_[n % 2];
+        const std::size_t count = open_counts_[n % 2] = list_sparse_bits(asked_[n].open, words_, indices);
+        if (!in_.beyond_cache) return;
+        for (std::size_t i = 0; i < count; ++i) hwy::Prefetch(in_.records + indices[i]);
+    }
+
+    void ask_records(const RowView& asked, const std::uint32_t* indices, std::size_t count, ListViewCost& cost) {
+        std::uint32_t unsettled[kChunk + 16];
         Sink sink{in_, masks_, asked.view, asked.bit};
         OpenRecords<Record, Sink> records(in_.views[asked.view], *in_.chunk, in_.records, asked.planes.planes,
                                           in_.exact, sink);
@@ -139,7 +175,9 @@ class ChunkViews {
     std::size_t words_;
     RowView asked_[kMaxListViews];
     Whole whole_[kMaxListViews];
-    std::size_t asked_count_ = 0, whole_count_ = 0;
+    std::size_t asked_count_ = 0, rows_count_ = 0, whole_count_ = 0;
+    std::uint32_t indices_[2][kChunk + 16];  // what the rows leave open of two views
+    std::size_t open_counts_[2];
 };
 
 void RunBoxes(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {

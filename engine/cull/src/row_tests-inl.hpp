@@ -21,8 +21,10 @@ HWY_INLINE VI add_products(VI sum, VU a, VU b) {
     const auto low = [&](VU v) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(hn::BitCast(di, v))); };
     const auto high = [&](VU v) { return hn::ShiftRight<16>(hn::BitCast(di, v)); };
     return hn::Add(sum, hn::Add(hn::Mul(low(a), low(b)), hn::Mul(high(a), high(b))));
-#elif HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL
-    return VI{_mm512_dpwssd_epi32(sum.raw, a.raw, b.raw)};
+#elif HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL && !HWY_COMPILER_MSVC
+    // Highway checks for this instruction before it takes the target, but does not let its intrinsic be compiled there.
+    asm("vpdpwssd %2, %1, %0" : "+v"(sum.raw) : "v"(a.raw), "v"(b.raw));
+    return sum;
 #else
     const hn::Repartition<std::int16_t, DI> d16;
     VI rest = hn::Zero(di);
