@@ -61,8 +61,8 @@ struct NodeBox {
     }
     [[nodiscard]] bool meets(const tree::Node& node, unsigned lane) const {
         bool result = true;
-        for (std::size_t k = 0; k < 3; ++k)
-            result = result && node.low[k][lane] <= high[k] && low[k] <= node.high[k][lane];
+        for (unsigned k = 0; k < 3; ++k)
+            result = result && tree::low_of(node, lane, k) <= high[k] && low[k] <= tree::high_of(node, lane, k);
         return result;
     }
 };
@@ -117,11 +117,12 @@ struct RayLine {
         const double slop = 1e-13 * (size + far + static_cast<double>(node.reach)) + 1e-100;
         first.fill(0.0);
         last.fill(limit);
-        for (int k = 0; k < 3; ++k) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const int k = static_cast<int>(axis);
             const double base = node.origin[k] - origin[k], scale = inverse[k];
-            for (std::size_t l = 0; l < kWidth; ++l) {
-                const double a = (base + unit * node.low[k][l] - slop) * scale;
-                const double b = (base + unit * node.high[k][l] + slop) * scale;
+            for (unsigned l = 0; l < kWidth; ++l) {
+                const double a = (base + unit * tree::low_of(node, l, axis) - slop) * scale;
+                const double b = (base + unit * tree::high_of(node, l, axis) + slop) * scale;
                 first[l] = std::max(first[l], std::min(a, b));
                 last[l] = std::min(last[l], std::max(a, b));
             }

@@ -20,10 +20,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = hn::CappedTag<float, tree::kWidth>;
 using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;
-using D16 = hn::Rebind<std::int16_t, DF>;
 using VF = hn::Vec<DF>;
 using VU = hn::Vec<DU>;
 using MF = hn::Mask<DF>;
+
+// The halves of pairs as floats.
+HWY_INLINE VF lower_half(VU pairs) {
+    return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::ShiftLeft<16>(hn::BitCast(DI(), pairs))));
+}
+HWY_INLINE VF upper_half(VU pairs) {
+    return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::BitCast(DI(), pairs)));
+}
 
 // Bit l for lane l. As one load of what was stored: bytes put together one by one cost more than the tests.
 template <class M>
@@ -77,17 +84,13 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
         local[i] = local_plane(view.planes[i], at);
     }
-    const VF half_unit = hn::Set(d, 0.5f * node.unit);
+    const VF unit = hn::Set(d, node.unit);
     for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
-        // Sums of two shorts times half a power of two: exact.
-        VF center[3], half[3];
-        for (unsigned j = 0; j < 3; ++j) {
-            const auto low = hn::PromoteTo(DI(), hn::Load(D16(), node.low[j] + l)),
-                       high = hn::PromoteTo(DI(), hn::Load(D16(), node.high[j] + l));
-            center[j] = hn::Mul(hn::ConvertTo(d, hn::Add(low, high)), half_unit);
-            half[j] = hn::Mul(hn::ConvertTo(d, hn::Sub(high, low)), half_unit);
-        }
-        const VF x = center[0], y = center[1], z = center[2], hx = half[0], hy = half[1], hz = half[2];
+        const VU middle_xy = hn::Load(du, node.middle_xy + l), half_xy = hn::Load(du, node.half_xy + l),
+                 middle_half_z = hn::Load(du, node.middle_half_z + l);
+        const VF x = hn::Mul(lower_half(middle_xy), unit), y = hn::Mul(upper_half(middle_xy), unit),
+                 z = hn::Mul(lower_half(middle_half_z), unit), hx = hn::Mul(lower_half(half_xy), unit),
+                 hy = hn::Mul(upper_half(half_xy), unit), hz = hn::Mul(upper_half(middle_half_z), unit);
         MF alive = present(view, node.layers_every, node.layers_any, node.count, l);
         VU straddled = hn::Set(du, planes);
         for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
@@ -145,14 +148,22 @@ HWY_INLINE BoxLanes lanes_of(const KernelView& view, const tree::Leaf& leaf, std
     const DF d;
     BoxLanes boxes;
     const VF position_unit = hn::Set(d, leaf.position_unit);
-    const auto load = [&](const std::int16_t* row)
-                          HWY_ATTR { return hn::ConvertTo(d, hn::PromoteTo(DI(), hn::Load(D16(), row + l))); };
-    boxes.x = hn::Mul(load(leaf.position[0]), position_unit);
-    boxes.y = hn::Mul(load(leaf.position[1]), position_unit);
-    boxes.z = hn::Mul(load(leaf.position[2]), position_unit);
+    const DU du;
+    const VU xy = hn::Load(du, leaf.xy + l), z = hn::Load(du, leaf.z_edge2_z + l),
+             edge_z = hn::Load(du, leaf.edge01_z + l);
+    boxes.x = hn::Mul(lower_half(xy), position_unit);
+    boxes.y = hn::Mul(upper_half(xy), position_unit);
+    boxes.z = hn::Mul(lower_half(z), position_unit);
     boxes.unit = hn::Set(d, leaf.edge_unit);
     boxes.edge_slack = hn::Set(d, leaf.slack);
-    for (unsigned i = 0; i < 9; ++i) boxes.edge[i] = load(leaf.edge[i]);
+    for (unsigned k = 0; k < 3; ++k) {
+        const VU edge_xy = hn::Load(du, leaf.edge_xy[k] + l);
+        boxes.edge[3 * k] = lower_half(edge_xy);
+        boxes.edge[3 * k + 1] = upper_half(edge_xy);
+    }
+    boxes.edge[2] = lower_half(edge_z);
+    boxes.edge[5] = upper_half(edge_z);
+    boxes.edge[8] = upper_half(z);
     boxes.present = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
     return boxes;
 }

@@ -32,14 +32,6 @@ struct Batch {
     }
 };
 
-HWY_INLINE VF lower_half(VF pairs) {
-    const DI di;
-    return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::ShiftLeft<16>(hn::BitCast(di, pairs))));
-}
-HWY_INLINE VF upper_half(VF pairs) {
-    return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::BitCast(DI(), pairs)));
-}
-
 HWY_INLINE BoxLanes lanes_of(const Batch<BoxRecord>& batch, std::size_t at, std::size_t count) {
     BoxLanes boxes;
     VF first, pairs[4];
@@ -49,10 +41,10 @@ HWY_INLINE BoxLanes lanes_of(const Batch<BoxRecord>& batch, std::size_t at, std:
     boxes.unit = hn::Mul(radius, hn::Set(DF(), 0x1p-15f));
     // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
     boxes.edge_slack = hn::Mul(boxes.unit, hn::Set(DF(), 6.0f));
-    boxes.edge[0] = upper_half(first);
+    boxes.edge[0] = upper_half(hn::BitCast(DU(), first));
     for (unsigned i = 0; i < 4; ++i) {
-        boxes.edge[2 * i + 1] = lower_half(pairs[i]);
-        boxes.edge[2 * i + 2] = upper_half(pairs[i]);
+        boxes.edge[2 * i + 1] = lower_half(hn::BitCast(DU(), pairs[i]));
+        boxes.edge[2 * i + 2] = upper_half(hn::BitCast(DU(), pairs[i]));
     }
     boxes.present = hn::FirstN(DF(), count);
     return boxes;

@@ -34,8 +34,8 @@ bool is_unit(float unit) {
     return std::frexp(unit, &exponent) == 0.5f && exponent - 1 >= kLeastExponent && exponent < 120;
 }
 
-// Rounding moves a box's farthest point along a normal n by at most ½ Σ|n_j| ≤ ½ · 1.001 · √3 units of its position, and
-// by that many units for each of the three edges. The rest of 3 covers the kernels' float sums of the edges: ten
+// Rounding moves a box's farthest point along a normal n by at most ½ Σ|n_j| ≤ ½ · 1.001 · √3 units of its position,
+// and by that many units for each of the three edges. The rest of 3 covers the kernels' float sums of the edges: ten
 // roundings of 2^-24 of at most 3 · √3 · 2^15 units.
 float slack_of(float position_unit, float edge_unit) {
     return float_at_least(double{position_unit} + 3.0 * double{edge_unit});
@@ -56,8 +56,8 @@ void clear(Leaf& leaf) {
 }
 
 void clear_lane(Leaf& leaf, unsigned lane) {
-    for (auto& row : leaf.position) row[lane] = 0;
-    for (auto& row : leaf.edge) row[lane] = 0;
+    leaf.xy[lane] = leaf.z_edge2_z[lane] = leaf.edge01_z[lane] = 0;
+    for (auto& row : leaf.edge_xy) row[lane] = 0;
     leaf.layers[lane] = 0;
 }
 
@@ -79,15 +79,15 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
         leaf.origin[j] = centers.is_empty() ? 0.0 : centers.center()[j];
         if (!centers.is_empty()) farthest = std::max(farthest, centers.half_extents()[j]);
     }
-    leaf.position_unit = unit_for(farthest, 14);  // boxes may stray as far again
     leaf.edge_unit = unit_for(longest * (32768.0 / 32766.0), 15);
+    leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may stray as far again
     leaf.slack = slack_of(leaf.position_unit, leaf.edge_unit);
     leaf.reach = 0.0f;
     leaf.layers_every = ~std::uint32_t{0};
 }
 
 bool is_frame(const Leaf& leaf) {
-    return is_unit(leaf.position_unit) && is_unit(leaf.edge_unit) &&
+    return is_unit(leaf.position_unit) && is_unit(leaf.edge_unit) && leaf.edge_unit <= leaf.position_unit &&
            leaf.slack == slack_of(leaf.position_unit, leaf.edge_unit);
 }
 
@@ -109,8 +109,13 @@ bool write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers)
         }
     }
     if (!fits) return false;
-    for (int j = 0; j < 3; ++j) leaf.position[j][lane] = static_cast<std::int16_t>(static_cast<int>(position[j]));
-    for (int i = 0; i < 9; ++i) leaf.edge[i][lane] = static_cast<std::int16_t>(static_cast<int>(edge[i]));
+    const auto pair = [](double lower, double upper) {
+        return pair_of(static_cast<int>(lower), static_cast<int>(upper));
+    };
+    leaf.xy[lane] = pair(position[0], position[1]);
+    leaf.z_edge2_z[lane] = pair(position[2], edge[8]);
+    leaf.edge01_z[lane] = pair(edge[2], edge[5]);
+    for (int k = 0; k < 3; ++k) leaf.edge_xy[k][lane] = pair(edge[3 * k], edge[3 * k + 1]);
     leaf.layers[lane] = layers;
     leaf.layers_every &= layers;
     leaf.reach = std::max(leaf.reach, static_cast<float>(reach) * leaf.position_unit);  // exact: reach < 2^17
@@ -142,23 +147,24 @@ bool is_frame(const Node& node) {
 }
 
 bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
-    double low[3] = {kMost, kMost, kMost}, high[3] = {-kMost, -kMost, -kMost}, reach = 0.0;
+    int middle[3] = {}, half[3] = {-32767, -32767, -32767}, reach = 0;
     if (!bounds.is_empty()) {
         const double per_unit = 1.0 / double{node.unit};
         for (int j = 0; j < 3; ++j) {
             const double from = (bounds.min[j] - node.origin[j]) * per_unit,
                          to = (bounds.max[j] - node.origin[j]) * per_unit;
             // Half a unit outward, then to the nearest; the 0.01 is for the roundings, 2^-38 units at most.
-            low[j] = nearest(from - 0.51);
-            high[j] = nearest(to + 0.51);
-            if (!(std::fabs(low[j]) <= kMost && std::fabs(high[j]) <= kMost)) return false;
-            reach += std::max(std::fabs(low[j]), std::fabs(high[j]));
+            const double low = nearest(from - 0.51), high = nearest(to + 0.51);
+            if (!(std::fabs(low) < kMost && std::fabs(high) < kMost)) return false;
+            const int first = static_cast<int>(low), last = static_cast<int>(high);
+            middle[j] = (first + last) / 2;
+            half[j] = std::max(last - middle[j], middle[j] - first);
+            reach += std::abs(middle[j]) + half[j];
         }
     }
-    for (int j = 0; j < 3; ++j) {
-        node.low[j][lane] = static_cast<std::int16_t>(static_cast<int>(low[j]));
-        node.high[j][lane] = static_cast<std::int16_t>(static_cast<int>(high[j]));
-    }
+    node.middle_xy[lane] = pair_of(middle[0], middle[1]);
+    node.middle_half_z[lane] = pair_of(middle[2], half[2]);
+    node.half_xy[lane] = pair_of(half[0], half[1]);
     node.reach = std::max(node.reach, static_cast<float>(reach) * node.unit);  // exact: reach < 2^17
     return true;
 }
@@ -179,23 +185,23 @@ Aabb around(const double* origin, const double (&low)[3], const double (&high)[3
 }  // namespace
 
 Aabb bounds_of_lane(const Node& node, unsigned lane) {
-    if (node.low[0][lane] > node.high[0][lane]) return {};
+    if (half_of(node, lane, 0) < 0) return {};
     double low[3], high[3];
-    for (int j = 0; j < 3; ++j) {
-        low[j] = double{node.unit} * node.low[j][lane];
-        high[j] = double{node.unit} * node.high[j][lane];
+    for (unsigned j = 0; j < 3; ++j) {
+        low[j] = double{node.unit} * low_of(node, lane, j);
+        high[j] = double{node.unit} * high_of(node, lane, j);
     }
     return around(node.origin, low, high);
 }
 
 Aabb bounds_of(const Node& node) {
     double low[3], high[3];
-    for (int j = 0; j < 3; ++j) {
+    for (unsigned j = 0; j < 3; ++j) {
         // Empty lanes do not count: theirs are the largest low and the least high.
-        std::int16_t least = 32767, most = -32767;
+        int least = 32767, most = -32767;
         for (unsigned lane = 0; lane < kWidth; ++lane) {
-            least = std::min(least, node.low[j][lane]);
-            most = std::max(most, node.high[j][lane]);
+            least = std::min(least, low_of(node, lane, j));
+            most = std::max(most, high_of(node, lane, j));
         }
         if (least > most) return {};
         low[j] = double{node.unit} * least;

@@ -26,8 +26,8 @@ void clear_lane(Leaf& leaf, unsigned lane);
 void fit_frame(Node& node, const Aabb& whole);
 [[nodiscard]] bool is_frame(const Node& node);
 
-// Puts a child's bound into a lane; the node's frame stays, its reach grows where needed. False, and nothing is written,
-// if it does not fit.
+// Puts a child's bound into a lane; the node's frame stays, its reach grows where needed. False, and nothing is
+// written, if it does not fit.
 [[nodiscard]] bool write_lane(Node& node, unsigned lane, const Aabb& bounds);
 void clear_lane(Node& node, unsigned lane);
 

@@ -234,9 +234,9 @@ NodeId BoxTree::split_node(NodeId n) {
     for (unsigned lane = 0; lane < kWidth; ++lane) {
         const Node& node = now_.nodes[n];
         items[lane] = {};
-        for (int j = 0; j < 3; ++j) {
-            items[lane].extreme[j] = -static_cast<float>(node.low[j][lane]);
-            items[lane].extreme[4 + j] = static_cast<float>(node.high[j][lane]);
+        for (unsigned j = 0; j < 3; ++j) {
+            items[lane].extreme[j] = -static_cast<float>(low_of(node, lane, j));
+            items[lane].extreme[4 + j] = static_cast<float>(high_of(node, lane, j));
         }
         items[lane].set_id(lane);
         children[lane] = node.child[lane];

@@ -18,19 +18,27 @@ namespace hn = hwy::HWY_NAMESPACE;
 void ExtentOf(const Leaf& leaf, LeafExtent& extent) {
     const hn::CappedTag<float, kWidth> d;
     const hn::RebindToSigned<decltype(d)> di;
-    const hn::Rebind<std::int16_t, decltype(d)> d16;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const auto lower = [&](const Pair* row) HWY_ATTR {
+        return hn::ShiftRight<16>(hn::ShiftLeft<16>(hn::BitCast(di, hn::Load(du, row))));
+    };
+    const auto upper = [&](const Pair* row) HWY_ATTR { return hn::ShiftRight<16>(hn::BitCast(di, hn::Load(du, row))); };
     const auto position_unit = hn::Set(d, leaf.position_unit), edge_unit = hn::Set(d, leaf.edge_unit);
     for (unsigned j = 0; j < 3; ++j) {
         auto low = hn::Set(d, 3.4e38f), high = hn::Set(d, -3.4e38f);
         for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
             const auto used = hn::FirstN(d, leaf.count > l ? leaf.count - l : 0);
-            const auto edge = [&](unsigned k)
-                                  HWY_ATTR { return hn::Abs(hn::PromoteTo(di, hn::Load(d16, leaf.edge[3 * k + j] + l))); };
+            const auto edge = [&](unsigned k) HWY_ATTR {
+                if (j < 2) return hn::Abs(j == 0 ? lower(leaf.edge_xy[k] + l) : upper(leaf.edge_xy[k] + l));
+                return hn::Abs(k == 0   ? lower(leaf.edge01_z + l)
+                               : k == 1 ? upper(leaf.edge01_z + l)
+                                        : upper(leaf.z_edge2_z + l));
+            };
             const auto sum = hn::Add(hn::Add(edge(0), edge(1)), edge(2));
+            const auto position = j == 0 ? lower(leaf.xy + l) : j == 1 ? upper(leaf.xy + l) : lower(leaf.z_edge2_z + l);
             // Both products are exact; the sums round once.
             const auto half = hn::Mul(hn::ConvertTo(d, sum), edge_unit);
-            const auto center =
-                hn::Mul(hn::ConvertTo(d, hn::PromoteTo(di, hn::Load(d16, leaf.position[j] + l))), position_unit);
+            const auto center = hn::Mul(hn::ConvertTo(d, position), position_unit);
             low = hn::IfThenElse(used, hn::Min(low, hn::Sub(center, half)), low);
             high = hn::IfThenElse(used, hn::Max(high, hn::Add(center, half)), high);
         }

@@ -14,9 +14,9 @@ tl::unexpected<Error> broken(std::uint64_t item, const char* what) {
 }
 
 bool lanes_agree(const Leaf& a, const Leaf& b, unsigned lane) {
-    bool same = a.layers[lane] == b.layers[lane];
-    for (int j = 0; j < 3; ++j) same = same && a.position[j][lane] == b.position[j][lane];
-    for (int i = 0; i < 9; ++i) same = same && a.edge[i][lane] == b.edge[i][lane];
+    bool same = a.layers[lane] == b.layers[lane] && a.xy[lane] == b.xy[lane] &&
+                a.z_edge2_z[lane] == b.z_edge2_z[lane] && a.edge01_z[lane] == b.edge01_z[lane];
+    for (int k = 0; k < 3; ++k) same = same && a.edge_xy[k][lane] == b.edge_xy[k][lane];
     return same;
 }
 
@@ -24,9 +24,11 @@ bool holds(const Node& node, unsigned lane, const Aabb& child) {
     if (child.is_empty()) return true;
     const Aabb bounds = bounds_of_lane(node, lane);
     double reach = 0.0;
-    for (int j = 0; j < 3; ++j) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const int j = static_cast<int>(axis), far = std::abs(middle_of(node, lane, axis)) + half_of(node, lane, axis);
         if (!(bounds.min[j] <= child.min[j] && bounds.max[j] >= child.max[j])) return false;
-        reach += double{node.unit} * std::max(std::abs(int{node.low[j][lane]}), std::abs(int{node.high[j][lane]}));
+        if (far > 32767) return false;
+        reach += double{node.unit} * far;
     }
     return reach <= double{node.reach};
 }

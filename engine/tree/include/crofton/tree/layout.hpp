@@ -9,11 +9,23 @@ using NodeId = std::uint32_t;
 using LeafId = std::uint32_t;
 inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 inline constexpr unsigned kWidth = 16;  // children of a node, items of a leaf: one AVX-512 register of floats
+// Two 16-bit integers in two's complement side by side, as instructions that sum products of pairs take them.
+using Pair = std::uint32_t;
+[[nodiscard]] constexpr Pair pair_of(int lower, int upper) {
+    return (static_cast<std::uint32_t>(lower) & 0xffffu) | static_cast<std::uint32_t>(upper) << 16;
+}
+[[nodiscard]] constexpr int lower_of(Pair pair) {
+    return static_cast<std::int16_t>(pair & 0xffffu);
+}
+[[nodiscard]] constexpr int upper_of(Pair pair) {
+    return static_cast<std::int16_t>(pair >> 16);
+}
+
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;  // in Node::child: the rest is a LeafId, otherwise a NodeId
 
-// Axis-aligned boxes of up to 16 children: origin + unit · [low, high], rounded outward. `unit` is a power of two, so that
-// products with it are exact. An empty child has low > high. Layers are read only where the view does not share one with
-// everything below.
+// Axis-aligned boxes of up to 16 children: origin + unit · [middle − half, middle + half], rounded outward; both ends
+// fit 16 bits. `unit` is a power of two, so that products with it are exact. An empty child has half = −32767. Layers
+// are read only where the view does not share one with everything below.
 struct alignas(64) Node {
     double origin[3];
     float unit;
@@ -23,16 +35,36 @@ struct alignas(64) Node {
     std::uint32_t lane_in_parent;
     std::uint32_t only_leaves;   // 1 if all children are leaves
     std::uint32_t layers_every;  // the AND of layers_all
-    alignas(64) std::int16_t low[3][kWidth];
-    std::int16_t high[3][kWidth];
+    alignas(64) Pair middle_xy[kWidth];
+    Pair middle_half_z[kWidth];  // middle's z, half's z
+    Pair half_xy[kWidth];
     std::uint32_t child[kWidth];
     std::uint32_t layers_any[kWidth];  // OR and AND of the layer masks below
     std::uint32_t layers_all[kWidth];
 };
 
+// Where a child's box begins and ends along an axis, in the node's units.
+[[nodiscard]] constexpr int middle_of(const Node& node, unsigned lane, unsigned axis) {
+    return axis == 0   ? lower_of(node.middle_xy[lane])
+           : axis == 1 ? upper_of(node.middle_xy[lane])
+                       : lower_of(node.middle_half_z[lane]);
+}
+[[nodiscard]] constexpr int half_of(const Node& node, unsigned lane, unsigned axis) {
+    return axis == 0   ? lower_of(node.half_xy[lane])
+           : axis == 1 ? upper_of(node.half_xy[lane])
+                       : upper_of(node.middle_half_z[lane]);
+}
+[[nodiscard]] constexpr int low_of(const Node& node, unsigned lane, unsigned axis) {
+    return middle_of(node, lane, axis) - half_of(node, lane, axis);
+}
+[[nodiscard]] constexpr int high_of(const Node& node, unsigned lane, unsigned axis) {
+    return middle_of(node, lane, axis) + half_of(node, lane, axis);
+}
+
 // Up to 16 oriented boxes, compressed for filtering. Lane i < count holds an item: its centre within half a
-// position_unit, along each axis, of origin + position_unit · position, and component j of its half edge k within half an
-// edge_unit of edge_unit · edge[3 k + j]. Units are powers of two.
+// position_unit, along each axis, of origin + position_unit · (x, y, z), and each component of its half edges within
+// half an edge_unit of edge_unit times the integer that stands for it. Units are powers of two, edge_unit ≤
+// position_unit.
 struct alignas(64) Leaf {
     double origin[3];
     float position_unit, edge_unit;
@@ -42,8 +74,10 @@ struct alignas(64) Leaf {
     NodeId parent;
     std::uint32_t lane_in_parent;
     std::uint32_t layers_every;  // bits that all lanes' layers have
-    alignas(64) std::int16_t position[3][kWidth];
-    std::int16_t edge[9][kWidth];
+    alignas(64) Pair xy[kWidth];
+    Pair z_edge2_z[kWidth];  // z, edge 2's z
+    Pair edge_xy[3][kWidth];
+    Pair edge01_z[kWidth];  // edge 0's z, edge 1's z
     std::uint32_t layers[kWidth];
 };
 static_assert(sizeof(Node) == 448 && sizeof(Leaf) == 512);
