@@ -32,18 +32,20 @@ Index ConstraintInserter::first_crossed(Index a, Index b, Index& through) const 
     const auto& points = mesh_.points;
     const auto& from = points[a];
     const auto& to = points[b];
-    // Of the two vertices collinear with a and b only the one between them counts; points are in lexicographic order.
-    const auto between = [&](Index v) { return a < b ? a < v && v < b : b < v && v < a; };
+    // Of the two neighbours collinear with a and b only the one towards b counts.
+    const auto ahead = [&](Index v) {
+        return from.x != to.x ? (points[v].x > from.x) == (to.x > from.x) : (points[v].y > from.y) == (to.y > from.y);
+    };
     Index e = mesh_.vertex_edge[a];
     int right = orientation(from, to, points[mesh_.destination(e)]);
-    if (right == 0 && between(mesh_.destination(e))) {
+    if (right == 0 && ahead(mesh_.destination(e))) {
         through = e;
         return kNone;
     }
     while (true) {
         const Index left_vertex = mesh_.apex(e);
         const int left = orientation(from, to, points[left_vertex]);
-        if (left == 0 && between(left_vertex)) {
+        if (left == 0 && ahead(left_vertex)) {
             through = previous(e);
             return kNone;
         }

@@ -13,6 +13,7 @@ namespace {
 // to at most 1, and must not be smaller than this unless 0.
 constexpr double kSmallest = 0x1p-200;
 constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr std::uint8_t kUnreached = 2;
 
 }  // namespace
 
@@ -20,7 +21,7 @@ Result<void> Domain::build(const Polygon& polygon) {
     polygon_ = &polygon;
     if (auto result = check(polygon); !result) return result;
     merge_vertices(polygon);
-    delaunay(mesh_, scratch_);
+    delaunay(mesh_, codes_, scratch_);
     if (mesh_.triangle_count() == 0) return fail_at(ErrorCode::degenerate, 0, "zero area: all points are collinear");
     if (auto result = insert_rings(); !result) return result;
     return find_inside();
@@ -66,37 +67,80 @@ Result<void> Domain::check(const Polygon& polygon) {
 }
 
 void Domain::merge_vertices(const Polygon& polygon) {
-    const auto count = static_cast<Index>(polygon.points.size());
-    keys_.resize(count);
-    for (Index i = 0; i < count; ++i) {
-        // + 0.0 turns −0 into 0, so that equal positions have equal bits.
-        keys_[i] = {polygon.points[i] / scale_ + 0.0, i};
+    std::span<const glm::dvec2> positions = polygon.points;
+    if (scale_ != 1.0) {
+        scaled_.assign(positions.begin(), positions.end());
+        for (auto& p : scaled_) p /= scale_;
+        positions = scaled_;
     }
-    std::sort(keys_.begin(), keys_.end(), [](const Keyed& a, const Keyed& b) {
-        if (a.position.x != b.position.x) return a.position.x < b.position.x;
-        if (a.position.y != b.position.y) return a.position.y < b.position.y;
-        return a.input < b.input;
-    });
     points_.clear();
+    codes_.clear();
     input_of_.clear();
-    vertex_of_.resize(count);
-    for (const auto& key : keys_) {
-        if (points_.empty() || points_.back() != key.position) {
-            points_.push_back(key.position);
-            input_of_.push_back(key.input);
+    vertex_of_.resize(positions.size());
+    for (const auto& entry : order_.sort(positions)) {
+        if (points_.empty() || points_.back() != positions[entry.index]) {
+            points_.push_back(positions[entry.index]);
+            codes_.push_back(entry.code);
+            input_of_.push_back(entry.index);
         }
-        vertex_of_[key.input] = static_cast<Index>(points_.size() - 1);
+        vertex_of_[entry.index] = static_cast<Index>(points_.size() - 1);
     }
     mesh_.points = points_;
 }
 
+// A ring of two points is one edge, not one edge there and back.
+Index Domain::edge_count(Index begin, Index end) const {
+    return end - begin == 2 ? 1 : end - begin;
+}
+
+void Domain::find_next_vertices() {
+    next_vertex_.assign(points_.size(), kNone);
+    Index begin = 0;
+    for (const Index end : polygon_->ring_ends) {
+        for (Index i = begin; i < begin + edge_count(begin, end); ++i) {
+            const Index v = vertex_of_[i];
+            if (input_of_[v] == i) next_vertex_[v] = vertex_of_[i + 1 == end ? begin : i + 1];
+        }
+        begin = end;
+    }
+    for (Index v = 0; v < next_vertex_.size(); ++v) {
+        const Index w = next_vertex_[v];
+        if (w != kNone && next_vertex_[w] == v) next_vertex_[v] = next_vertex_[w] = kNone;
+    }
+}
+
+// In one pass over the mesh, without a branch that depends on it: most edges of most rings are Delaunay.
+void Domain::mark_present_edges() {
+    find_next_vertices();
+    present_.assign(points_.size(), 0);
+    mesh_.mark.resize(mesh_.origin.size());
+    mesh_.vertex_edge.resize(points_.size());
+    stack_.clear();
+    for (Index e = 0; e < mesh_.origin.size(); e += 4) {
+        for (Index k = e; k < e + 3; ++k) {
+            const Index u = mesh_.origin[k], w = mesh_.destination(k);
+            const bool forth = next_vertex_[u] == w, back = next_vertex_[w] == u;
+            present_[u] |= static_cast<std::uint8_t>(forth);
+            mesh_.mark[k] = (forth ? input_of_[u] + 1 : 0) | (back ? input_of_[w] + 1 : 0);
+            mesh_.vertex_edge[u] = k;
+            if (mesh_.twin[k] == kNone) {
+                present_[w] |= static_cast<std::uint8_t>(back);
+                stack_.push_back(k);
+            }
+        }
+        mesh_.mark[e + 3] = 0;
+    }
+    for (const Index e : stack_) mesh_.vertex_edge[mesh_.origin[e]] = e;
+}
+
 Result<void> Domain::insert_rings() {
+    mark_present_edges();
     records_.clear();
     Index begin = 0;
     for (const Index end : polygon_->ring_ends) {
-        // A ring of two points is one edge, not one edge there and back.
-        const Index edges = end - begin == 2 ? 1 : end - begin;
-        for (Index i = begin; i < begin + edges; ++i) {
+        for (Index i = begin; i < begin + edge_count(begin, end); ++i) {
+            const Index v = vertex_of_[i];
+            if (present_[v] != 0 && input_of_[v] == i) continue;
             if (auto result = insert_edge(i, i + 1 == end ? begin : i + 1); !result) return result;
         }
         begin = end;
@@ -188,59 +232,92 @@ tl::unexpected<Error> Domain::overlap(Index mark, Index a, Index b) const {
 }
 
 Result<void> Domain::find_inside() {
-    const auto count = static_cast<Index>(mesh_.triangle_count());
-    inside_.assign(count, 2);  // 2 = not reached yet
-    states_.resize(count);
+    const std::size_t count = mesh_.triangle_count();
+    inside_.assign(count, kUnreached);
     inside_count_ = 0;
-    scratch_.stack.clear();
-    const auto enter = [&](Index triangle, State state, Index mark) -> Result<void> {
-        if (mark != 0) {
-            const auto crossed = cross(state, mark);
-            if (!crossed) return tl::unexpected<Error>(crossed.error());
-            state = *crossed;
-            if (state.outer == 0 && state.hole != 0) {
-                return fail_at(ErrorCode::degenerate, record(mark - 1).input,
-                               "hole " + std::to_string(state.hole) + " reaches outside the outer ring");
-            }
-        }
-        states_[triangle] = state;
-        inside_[triangle] = state.outer != 0 && state.hole == 0;
-        inside_count_ += inside_[triangle];
-        scratch_.stack.push_back(triangle);
-        return {};
-    };
+    regions_.clear();
+    border_count_ = 0;
+    if (stack_.size() < count + 1) stack_.resize(count + 1);
+    if (borders_.size() < 3 * count + 1) borders_.resize(3 * count + 1);
     // The convex hull is connected: one triangle on it reaches all others.
     Index start = 0;
     while (mesh_.twin[start] != kNone) start = (start & 3u) == 2u ? start + 2 : start + 1;
-    if (auto result = enter(start / 4, State{}, mesh_.mark[start]); !result) return result;
-    while (!scratch_.stack.empty()) {
-        const Index triangle = scratch_.stack.back();
-        scratch_.stack.pop_back();
-        for (Index e = 4 * triangle; e < 4 * triangle + 3; ++e) {
-            const Index twin = mesh_.twin[e];
-            if (twin == kNone || inside_[twin / 4] != 2) continue;
-            if (auto result = enter(twin / 4, states_[triangle], mesh_.mark[e]); !result) return result;
-        }
+    if (auto result = enter(start, State{}); !result) return result;
+    while (border_count_ > 0) {
+        const Border border = borders_[--border_count_];
+        if (inside_[border.half_edge / 4] != kUnreached) continue;
+        if (auto result = enter(border.half_edge, regions_[border.region]); !result) return result;
     }
     if (inside_count_ == 0) return fail_at(ErrorCode::degenerate, 0, "zero area: nothing lies inside");
     return check_holes();
 }
 
-// A hole of which no vertex touches the inside lies outside, within another hole, or is a spike there.
-Result<void> Domain::check_holes() {
-    if (polygon_->ring_count() == 1) return {};
-    used_.assign(points_.size(), 0);
-    for (Index e = 0; e < mesh_.origin.size(); ++e) {
-        if ((e & 3u) != 3u && inside(e / 4)) used_[mesh_.origin[e]] = 1;
+// Enters a region from one of this state.
+Result<void> Domain::enter(Index half_edge, State state) {
+    const Index mark = mesh_.mark[half_edge];
+    if (mark != 0) {
+        const auto crossed = cross(state, mark);
+        if (!crossed) return tl::unexpected<Error>(crossed.error());
+        state = *crossed;
+        if (state.outer == 0 && state.hole != 0) {
+            return fail_at(ErrorCode::degenerate, record(mark - 1).input,
+                           "hole " + std::to_string(state.hole) + " reaches outside the outer ring");
+        }
     }
+    regions_.push_back(state);
+    flood(half_edge / 4);
+    return {};
+}
+
+// Gives the triangle's whole region the last state. Which neighbours are new and which edges are marked is hard to
+// predict: all are written, and few are kept.
+void Domain::flood(Index triangle) {
+    const auto region = static_cast<Index>(regions_.size() - 1);
+    const std::uint8_t value = regions_[region].outer != 0 && regions_[region].hole == 0;
+    const Index *const twin = mesh_.twin.data(), *const mark = mesh_.mark.data();
+    Index* const stack = stack_.data();
+    Border* const borders = borders_.data();
+    std::uint8_t* const inside = inside_.data();
+    std::size_t waiting = 1, borders_end = border_count_, reached = 0;
+    inside[triangle] = value;
+    stack[0] = 4 * triangle;
+    while (waiting > 0) {
+        const Index first = stack[--waiting];
+        ++reached;
+        for (Index e = first; e < first + 3; ++e) {
+            const Index f = twin[e] == kNone ? e : twin[e];
+            const bool fresh = inside[f / 4] == kUnreached, open = mark[e] == 0;
+            inside[f / 4] = fresh && open ? value : inside[f / 4];
+            stack[waiting] = f & ~3u;
+            waiting += fresh & open;
+            borders[borders_end] = {f, region};
+            borders_end += fresh & !open;
+        }
+    }
+    border_count_ = borders_end;
+    inside_count_ += value * reached;
+}
+
+// A hole of which no vertex touches the inside lies outside, within another hole, or is a spike there.
+Result<void> Domain::check_holes() const {
     for (std::size_t r = 1; r < polygon_->ring_count(); ++r) {
         const Index begin = polygon_->ring_ends[r - 1], end = polygon_->ring_ends[r];
         bool touches = begin == end;
-        for (Index i = begin; i < end && !touches; ++i) touches = used_[vertex_of_[i]] != 0;
+        for (Index i = begin; i < end && !touches; ++i) touches = touches_inside(vertex_of_[i]);
         if (!touches)
             return fail_at(ErrorCode::degenerate, begin, "hole " + std::to_string(r) + " lies outside the polygon");
     }
     return {};
+}
+
+bool Domain::touches_inside(Index vertex) const {
+    const Index start = mesh_.vertex_edge[vertex];
+    Index e = start;
+    do {
+        if (inside(e / 4)) return true;
+        e = mesh_.rotate(e);
+    } while (e != start && e != kNone);
+    return false;
 }
 
 // Turning clockwise from the corner, the first constraint bounds its sector; the ring that made it has its point there.

@@ -5,6 +5,7 @@
 
 #include "half_edge_mesh.hpp"
 #include "root_sums.hpp"
+#include "spatial_order.hpp"
 
 namespace crofton::triangulate {
 
@@ -43,23 +44,30 @@ class Domain {
     struct Record {
         Index input, next;
     };
-    struct Keyed {
-        glm::dvec2 position;
-        Index input;
-    };
+    // Of a region that no constraint divides.
     struct State {
         Index outer = 0;  // parity of the outer ring
-        Index hole = 0;   // the hole that contains this triangle, or 0
+        Index hole = 0;   // the hole that contains it, or 0
+    };
+    // A marked half-edge of a region not yet entered, and the state of the region before it.
+    struct Border {
+        Index half_edge, region;
     };
 
     [[nodiscard]] Result<void> check(const Polygon& polygon);
     void merge_vertices(const Polygon& polygon);
+    void find_next_vertices();
+    void mark_present_edges();
     [[nodiscard]] Result<void> insert_rings();
     [[nodiscard]] Result<void> insert_edge(Index input, Index successor);
     [[nodiscard]] Result<void> find_inside();
+    [[nodiscard]] Result<void> enter(Index half_edge, State state);
+    void flood(Index triangle);
     [[nodiscard]] Result<State> cross(State state, Index mark);
     [[nodiscard]] tl::unexpected<Error> overlap(Index mark, Index a, Index b) const;
-    [[nodiscard]] Result<void> check_holes();
+    [[nodiscard]] Result<void> check_holes() const;
+    [[nodiscard]] bool touches_inside(Index vertex) const;
+    [[nodiscard]] Index edge_count(Index begin, Index end) const;
     void claim(Index half_edge, Index input);
     [[nodiscard]] Record record(Index id) const;
     [[nodiscard]] Index ring_of(Index input) const;
@@ -71,14 +79,20 @@ class Domain {
     double scale_ = 1.0;
     HalfEdgeMesh mesh_;
     DelaunayScratch scratch_;
-    Vector<Keyed> keys_;
+    SpatialOrder order_;
+    Vector<glm::dvec2> scaled_;
     Vector<glm::dvec2> points_;
+    Vector<std::uint32_t> codes_;
     Vector<Index> vertex_of_;  // input point → vertex
     Vector<Index> input_of_;   // vertex → its first input point
-    Vector<Record> records_;   // the explicit ones
+    Vector<Index> next_vertex_;     // vertex → the one after its first input point, where the other way is no edge
+    Vector<std::uint8_t> present_;  // vertices whose edge to the next one is in the Delaunay triangulation
+    Vector<Record> records_;        // the explicit ones
     Vector<std::uint8_t> inside_;
-    Vector<State> states_;
-    Vector<std::uint8_t> used_;
+    Vector<State> regions_;
+    Vector<Index> stack_;
+    Vector<Border> borders_;
+    std::size_t border_count_ = 0;
     Vector<Index> crossed_rings_;
     std::size_t inside_count_ = 0;
 };

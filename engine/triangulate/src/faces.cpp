@@ -76,8 +76,14 @@ void find_faces(const CandidateGraph& graph, std::uint8_t certain_mask, Faces& f
 }
 
 bool is_outer(std::span<const glm::dvec2> points, const CandidateGraph& graph, std::span<const Index> walk) {
-    Index lowest = kNone;
-    for (const Index h : walk) lowest = std::min(lowest, graph.destination[h]);
+    const auto precedes = [&](Index a, Index b) {
+        const auto &p = points[a], &q = points[b];
+        return p.x < q.x || (p.x == q.x && p.y < q.y);
+    };
+    Index lowest = graph.destination[walk[0]];
+    for (const Index h : walk) {
+        if (precedes(graph.destination[h], lowest)) lowest = graph.destination[h];
+    }
     for (std::size_t i = 0; i < walk.size(); ++i) {
         if (graph.destination[walk[i]] != lowest) continue;
         const Index before = graph.destination[graph.twin[walk[i]]];

@@ -20,7 +20,7 @@ inline constexpr Index kNone = ~Index{0};
 }
 
 struct HalfEdgeMesh {
-    std::span<const glm::dvec2> points;  // distinct, in lexicographic order
+    std::span<const glm::dvec2> points;  // distinct
     Vector<Index> origin;
     Vector<Index> twin;
     Vector<Index> mark;         // 0, or what constrains this edge (the same on both half-edges)
@@ -36,9 +36,6 @@ struct HalfEdgeMesh {
         twin[e] = f;
         if (f != kNone) twin[f] = e;
     }
-    [[nodiscard]] Index add_triangle(Index a, Index b, Index c);
-    // Replaces the diagonal e of a convex quadrilateral by the other one.
-    void flip(Index e);
 };
 
 // Where inserting a constraint met another one.
@@ -64,15 +61,14 @@ struct DelaunayScratch {
     struct Base {
         Index low, high, half_edge;
     };
-    Vector<Index> hull_next, hull_previous, stack;
     CavityChain upper, lower;
     Vector<Index> cavity;  // triangles to reuse
     Vector<Base> bases;
 };
 
-// The Delaunay triangulation of mesh.points: no triangles if they are all collinear. O(n log n) in practice: points
-// enter from left to right, each seen by the hull's right side, and flips restore the empty-circle property (Lawson).
-void delaunay(HalfEdgeMesh& mesh, DelaunayScratch& scratch);
+// Origins and twins of the Delaunay triangulation of mesh.points, whose codes and order are SpatialOrder's: no triangles
+// if all are collinear. O(n log n).
+void delaunay(HalfEdgeMesh& mesh, std::span<const std::uint32_t> codes, DelaunayScratch& scratch);
 
 // Makes segments unions of edges, one step at a time: the triangles that a segment crosses are replaced by constrained
 // Delaunay ones (Anglada, "An improved incremental algorithm for constructing restricted Delaunay triangulations",

@@ -35,10 +35,11 @@ void write(const Domain& domain, Triangulation& result) {
     for (Index t = 0; t < mesh.triangle_count(); ++t) {
         if (!domain.inside(t)) continue;
         for (Index e = 4 * t; e < 4 * t + 3; ++e) {
-            const Index twin = mesh.twin[e];
-            if (twin == kNone || twin < e || !domain.inside(twin / 4)) continue;
+            // Each diagonal once; no branches, which would be hard to predict.
+            const Index twin = mesh.twin[e] == kNone ? e : mesh.twin[e];
+            const bool counts = (twin > e) & domain.inside(twin / 4);
             const glm::dvec2 d = mesh.points[mesh.origin[e]] - mesh.points[mesh.destination(e)];
-            weight += std::sqrt(d.x * d.x + d.y * d.y);
+            weight += counts ? std::sqrt(d.x * d.x + d.y * d.y) : 0.0;
         }
         result.triangles.push_back(
             {domain.input_index(4 * t), domain.input_index(4 * t + 1), domain.input_index(4 * t + 2)});
