@@ -145,6 +145,24 @@ TEST_SUITE("geometry/predicates") {
         CHECK(zeros > 100);
     }
 
+    TEST_CASE("agrees with rational arithmetic on integers, from small ones to those whose products need rounding") {
+        std::mt19937_64 random(14);
+        int zeros = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const auto span = std::int64_t{2} << (trial % 4 == 0 ? 1 : random() % 20);
+            const auto number = [&] { return static_cast<double>(static_cast<std::int64_t>(random() % 8) * span); };
+            glm::dvec2 p[4];
+            for (auto& q : p) q = glm::dvec2(number(), number()) + (trial % 3 == 0 ? glm::dvec2(0.5) : glm::dvec2(0.0));
+            p[3] = trial % 2 ? p[0] + p[2] - p[1] : p[3];  // a parallelogram, at times a rectangle
+            if (trial % 5 == 0) p[2].x += 1.0;
+            const int circle = in_circle_reference(p[0], p[1], p[2], p[3]);
+            zeros += circle == 0;
+            REQUIRE(in_circle(p[0], p[1], p[2], p[3]) == circle);
+            REQUIRE(orientation(p[0], p[1], p[3]) == orientation_reference(p[0], p[1], p[3]));
+        }
+        CHECK(zeros > 50);
+    }
+
     TEST_CASE("agrees with rational arithmetic on nearly coplanar points") {
         std::mt19937_64 random(17);
         std::uniform_real_distribution<double> number(-1.0, 1.0);

@@ -90,6 +90,30 @@ inline std::string check_triangulation(const Polygon& polygon, const auto& trian
     return "";
 }
 
+// Whether every diagonal is locally Delaunay: no apex beyond it lies inside the circle of the triangle before it. For
+// polygons without slits that makes the triangulation constrained Delaunay (Lee and Lin 1986).
+inline bool is_constrained_delaunay(const Polygon& polygon, const auto& triangles) {
+    std::map<std::pair<Point, Point>, Point> apex;
+    for (const auto& t : triangles) {
+        for (std::size_t k = 0; k < 3; ++k)
+            apex[{at(polygon, t[k]), at(polygon, t[(k + 1) % 3])}] = at(polygon, t[(k + 2) % 3]);
+    }
+    for (const auto& [side, c] : apex) {
+        const auto beyond = apex.find({side.second, side.first});
+        if (beyond == apex.end() || side.second < side.first) continue;
+        const Point d = beyond->second;
+        const auto row = [&](Point p) {
+            const mpq_class x = mpq_class(p.first) - mpq_class(d.first), y = mpq_class(p.second) - mpq_class(d.second);
+            return std::array<mpq_class, 3>{x, y, x * x + y * y};
+        };
+        const auto p = row(side.first), q = row(side.second), r = row(c);
+        const mpq_class determinant = p[0] * (q[1] * r[2] - r[1] * q[2]) - p[1] * (q[0] * r[2] - r[0] * q[2]) +
+                                      p[2] * (q[0] * r[1] - r[0] * q[1]);
+        if (determinant > 0) return false;
+    }
+    return true;
+}
+
 // The total length of the sides that occur in both directions.
 inline double diagonal_length(const Polygon& polygon, const auto& triangles) {
     std::set<std::pair<Point, Point>> sides;

@@ -1,6 +1,8 @@
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <cstdint>
+#include <initializer_list>
+#include <optional>
 
 namespace crofton {
 namespace {
@@ -13,12 +15,20 @@ auto cross(const Expansion<N>& ax, const Expansion<N>& ay, const Expansion<N>& b
     return ax * by - ay * bx;
 }
 
-// Where every difference is one double the expansions are eight times shorter, which grids and small integers profit
-// from.
-bool representable(double a, double b, Expansion<1>& difference) {
-    const auto [high, low] = detail::two_sum(a, -b);
-    difference = exact(high);
-    return low == 0.0;
+// Whether a − b is exact.
+bool representable(const glm::dvec2& a, const glm::dvec2& b) {
+    return detail::two_sum(a.x, -b.x).low == 0.0 && detail::two_sum(a.y, -b.y).low == 0.0;
+}
+
+// Small integers: where the absolute products add up to less than this, all sums of them are exact in double. Half of
+// 2^53, as the sum itself may be rounded.
+constexpr double kExactIntegers = 0x1p52;
+
+bool integral(std::initializer_list<double> values) {
+    for (const double v : values) {
+        if (v != std::trunc(v)) return false;
+    }
+    return true;
 }
 
 template <std::size_t N>
@@ -33,19 +43,37 @@ int in_circle_sign(const Expansion<N>& ax, const Expansion<N>& ay, const Expansi
     return (a_part + b_part + c_part).sign();
 }
 
+// Nothing if the arguments are not small integers.
+std::optional<int> small_in_circle_sign(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    const double bc = b.x * c.y, cb = c.x * b.y, ca = c.x * a.y, ac = a.x * c.y, ab = a.x * b.y, ba = b.x * a.y;
+    const double a_lift = a.x * a.x + a.y * a.y, b_lift = b.x * b.x + b.y * b.y, c_lift = c.x * c.x + c.y * c.y;
+    const double absolute = (std::fabs(bc) + std::fabs(cb)) * a_lift + (std::fabs(ca) + std::fabs(ac)) * b_lift +
+                            (std::fabs(ab) + std::fabs(ba)) * c_lift;
+    if (!(absolute < kExactIntegers) || !integral({a.x, a.y, b.x, b.y, c.x, c.y})) return std::nullopt;
+    return detail::sign_of(a_lift * (bc - cb) + b_lift * (ca - ac) + c_lift * (ab - ba));
+}
+
 }  // namespace
 
+// Where every difference is one double the expansions are eight times shorter, which grids profit from.
 int detail::orientation_exact(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    if (representable(a, c) && representable(b, c)) {
+        const glm::dvec2 ac = a - c, bc = b - c;
+        const double left = ac.x * bc.y, right = ac.y * bc.x;
+        if (std::fabs(left) + std::fabs(right) < kExactIntegers && integral({ac.x, ac.y, bc.x, bc.y}))
+            return sign_of(left - right);
+        return cross(exact(ac.x), exact(ac.y), exact(bc.x), exact(bc.y)).sign();
+    }
     return cross(exact_difference(a.x, c.x), exact_difference(a.y, c.y), exact_difference(b.x, c.x),
                  exact_difference(b.y, c.y))
         .sign();
 }
 
 int detail::in_circle_exact(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {
-    Expansion<1> ax, ay, bx, by, cx, cy;
-    if (representable(a.x, d.x, ax) && representable(a.y, d.y, ay) && representable(b.x, d.x, bx) &&
-        representable(b.y, d.y, by) && representable(c.x, d.x, cx) && representable(c.y, d.y, cy)) {
-        return in_circle_sign(ax, ay, bx, by, cx, cy);
+    if (representable(a, d) && representable(b, d) && representable(c, d)) {
+        const glm::dvec2 ad = a - d, bd = b - d, cd = c - d;
+        if (const auto sign = small_in_circle_sign(ad, bd, cd)) return *sign;
+        return in_circle_sign(exact(ad.x), exact(ad.y), exact(bd.x), exact(bd.y), exact(cd.x), exact(cd.y));
     }
     return in_circle_sign(exact_difference(a.x, d.x), exact_difference(a.y, d.y), exact_difference(b.x, d.x),
                           exact_difference(b.y, d.y), exact_difference(c.x, d.x), exact_difference(c.y, d.y));

@@ -54,8 +54,14 @@ class DivideAndConquer {
             return {v, v, v, v};
         }
         if (end - begin == 2) return join_two(begin);
+        if (end - begin == 3) {
+            const int side = orientation(at(begin), at(begin + 1), at(begin + 2));
+            if (side != 0)
+                return side > 0 ? join_three(begin, begin + 1, begin + 2) : join_three(begin, begin + 2, begin + 1);
+        }
         const std::uint32_t differing = codes_[begin] ^ codes_[end - 1];
-        const Index cut = differing == 0 ? begin + (end - begin) / 2 : first_beyond(begin, end, std::bit_floor(differing));
+        const Index cut =
+            differing == 0 ? begin + (end - begin) / 2 : first_beyond(begin, end, std::bit_floor(differing));
         Hull low = triangulate(begin, cut), high = triangulate(cut, end);
         const bool across = differing == 0 || (std::bit_width(differing) & 1) == 0;
         return across ? merge_in_x(low, high, cut) : merge_in_y(low, high, cut);
@@ -92,8 +98,32 @@ class DivideAndConquer {
         return {in_x ? at_a : at_b, in_x ? at_b : at_a, in_y ? at_a : at_b, in_y ? at_b : at_a};
     }
 
+    // Counter-clockwise; a is the first of the three.
+    Hull join_three(Index a, Index b, Index c) {
+        const Index e = 8 * a, ab = e + 4, bc = e + 8, ca = e + 12;
+        set_triangle(e, a, b, c);
+        set_triangle(ab, b, a, kNone);
+        set_triangle(bc, c, b, kNone);
+        set_triangle(ca, a, c, kNone);
+        mesh_.link(e, ab);
+        mesh_.link(e + 1, bc);
+        mesh_.link(e + 2, ca);
+        mesh_.link(next(ab), previous(ca));
+        mesh_.link(next(bc), previous(ab));
+        mesh_.link(next(ca), previous(bc));
+        Hull hull{{a, ab}, {a, ab}, {a, ab}, {a, ab}};
+        for (const HullVertex v : {HullVertex{b, bc}, HullVertex{c, ca}}) {
+            hull.low_x = before_in_x(v.vertex, hull.low_x.vertex) ? v : hull.low_x;
+            hull.high_x = before_in_x(v.vertex, hull.high_x.vertex) ? hull.high_x : v;
+            hull.low_y = before_in_y(v.vertex, hull.low_y.vertex) ? v : hull.low_y;
+            hull.high_y = before_in_y(v.vertex, hull.high_y.vertex) ? hull.high_y : v;
+        }
+        return hull;
+    }
+
     Hull merge_in_x(const Hull& left, const Hull& right, Index cut) {
-        Hull hull{left.low_x, right.high_x, before_in_y(left.low_y.vertex, right.low_y.vertex) ? left.low_y : right.low_y,
+        Hull hull{left.low_x, right.high_x,
+                  before_in_y(left.low_y.vertex, right.low_y.vertex) ? left.low_y : right.low_y,
                   before_in_y(left.high_y.vertex, right.high_y.vertex) ? right.high_y : left.high_y};
         update(hull, merge(left.high_x, right.low_x, cut));
         return hull;
@@ -102,7 +132,8 @@ class DivideAndConquer {
     // As seen with the head on the right shoulder.
     Hull merge_in_y(const Hull& low, const Hull& high, Index cut) {
         Hull hull{before_in_x(low.low_x.vertex, high.low_x.vertex) ? low.low_x : high.low_x,
-                  before_in_x(low.high_x.vertex, high.high_x.vertex) ? high.high_x : low.high_x, low.low_y, high.high_y};
+                  before_in_x(low.high_x.vertex, high.high_x.vertex) ? high.high_x : low.high_x, low.low_y,
+                  high.high_y};
         update(hull, merge(low.high_y, high.low_y, cut));
         return hull;
     }
@@ -168,8 +199,9 @@ class DivideAndConquer {
     // vertex; sides of the old hulls that hide it are flipped away with infinity.
     Index raise(Index base, Index& l, Index& r, Index& u, Index& v) {
         while (true) {
-            const bool left = orientation(at(u), at(v), at(mesh_.origin[l])) > 0;
-            const bool right = orientation(at(u), at(v), at(mesh_.destination(r))) > 0;
+            // With u last, its differences are shared.
+            const bool left = orientation(at(v), at(mesh_.origin[l]), at(u)) > 0;
+            const bool right = orientation(at(v), at(mesh_.destination(r)), at(u)) > 0;
             if (!left && !right) return base;
             if (left) open_left(l, u, v);
             if (right) open_right(r, u, v);
@@ -193,8 +225,8 @@ class DivideAndConquer {
         }
     }
 
-    // While the circle through u, v and the end of l's side holds the apex behind that side, the side goes: its triangle
-    // becomes a ghost, and l lies on the side from u to the apex.
+    // While the circle through u, v and the end of l's side holds the apex behind that side, the side goes: its
+    // triangle becomes a ghost, and l lies on the side from u to the apex.
     void open_left(Index l, Index u, Index v) {
         while (true) {
             const Index t = mesh_.twin[l], x = mesh_.apex(t);

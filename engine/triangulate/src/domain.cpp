@@ -13,7 +13,6 @@ namespace {
 // to at most 1, and must not be smaller than this unless 0.
 constexpr double kSmallest = 0x1p-200;
 constexpr double kLargest = std::numeric_limits<double>::max();
-constexpr std::uint8_t kUnreached = 2;
 
 }  // namespace
 
@@ -45,21 +44,28 @@ Result<void> Domain::check(const Polygon& polygon) {
         return fail(ErrorCode::empty, 0, "ring 0 has fewer than three points");
     }
     double largest = 0.0, smallest = kLargest;
-    Index smallest_at = 0;
-    for (Index i = 0; i < polygon.points.size(); ++i) {
-        for (const double c : {polygon.points[i].x, polygon.points[i].y}) {
-            const double magnitude = std::fabs(c);
-            if (!(magnitude <= kLargest)) return fail_at(ErrorCode::non_finite, i, "not a finite position");
+    bool finite = true;
+    for (const auto& p : polygon.points) {
+        for (const double magnitude : {std::fabs(p.x), std::fabs(p.y)}) {
+            finite &= magnitude <= kLargest;
             largest = std::max(largest, magnitude);
-            if (magnitude < smallest && magnitude != 0.0) smallest = magnitude, smallest_at = i;
+            smallest = std::min(smallest, magnitude == 0.0 ? kLargest : magnitude);
         }
     }
+    const auto find = [&](auto condition) {
+        const auto& points = polygon.points;
+        const auto holds = [&](const glm::dvec2& p) { return condition(std::fabs(p.x)) || condition(std::fabs(p.y)); };
+        return static_cast<Index>(std::find_if(points.begin(), points.end(), holds) - points.begin());
+    };
+    if (!finite)
+        return fail_at(ErrorCode::non_finite, find([](double m) { return !(m <= kLargest); }), "not a finite position");
     scale_ = 1.0;
     if (largest > 1e60 || (largest < 1e-20 && largest > 0.0) || smallest < kSmallest) {
         int exponent = 0;
         std::frexp(largest, &exponent);
         if (std::ldexp(smallest, -exponent) < kSmallest) {
-            return fail_at(ErrorCode::out_of_range, smallest_at, "coordinates differ by more than 2^200 in size");
+            return fail_at(ErrorCode::out_of_range, find([&](double m) { return m == smallest; }),
+                           "coordinates differ by more than 2^200 in size");
         }
         scale_ = std::ldexp(1.0, exponent);
     }
@@ -95,12 +101,14 @@ Index Domain::edge_count(Index begin, Index end) const {
 
 void Domain::find_next_vertices() {
     next_vertex_.assign(points_.size(), kNone);
+    left_inside_.resize(points_.size());
     Index begin = 0;
     for (const Index end : polygon_->ring_ends) {
         for (Index i = begin; i < begin + edge_count(begin, end); ++i) {
             const Index v = vertex_of_[i];
             if (input_of_[v] == i) next_vertex_[v] = vertex_of_[i + 1 == end ? begin : i + 1];
         }
+        find_side(begin, end);
         begin = end;
     }
     for (Index v = 0; v < next_vertex_.size(); ++v) {
@@ -109,28 +117,34 @@ void Domain::find_next_vertices() {
     }
 }
 
-// In one pass over the mesh, without a branch that depends on it: most edges of most rings are Delaunay.
+// In one pass over the mesh, without a branch that is hard to predict: most edges of most rings are Delaunay.
 void Domain::mark_present_edges() {
     find_next_vertices();
     present_.assign(points_.size(), 0);
     mesh_.mark.resize(mesh_.origin.size());
     mesh_.vertex_edge.resize(points_.size());
-    stack_.clear();
+    queue_.clear();
+    inside_.resize(mesh_.triangle_count());
     for (Index e = 0; e < mesh_.origin.size(); e += 4) {
-        for (Index k = e; k < e + 3; ++k) {
-            const Index u = mesh_.origin[k], w = mesh_.destination(k);
-            const bool forth = next_vertex_[u] == w, back = next_vertex_[w] == u;
-            present_[u] |= static_cast<std::uint8_t>(forth);
-            mesh_.mark[k] = (forth ? input_of_[u] + 1 : 0) | (back ? input_of_[w] + 1 : 0);
-            mesh_.vertex_edge[u] = k;
-            if (mesh_.twin[k] == kNone) {
-                present_[w] |= static_cast<std::uint8_t>(back);
-                stack_.push_back(k);
-            }
+        const Index corners[] = {mesh_.origin[e], mesh_.origin[e + 1], mesh_.origin[e + 2]};
+        const Index after[] = {next_vertex_[corners[0]], next_vertex_[corners[1]], next_vertex_[corners[2]]};
+        Index marks[3];
+        std::uint8_t label = kUnreached;
+        for (Index k = 0; k < 3; ++k) {
+            const Index m = k == 2 ? 0 : k + 1, u = corners[k], w = corners[m];
+            const bool forth = after[k] == w, back = after[m] == u;
+            const Index from = forth ? u : w;
+            marks[k] = forth || back ? input_of_[from] + 1 : 0;
+            label = forth || back ? left_inside_[from] ^ static_cast<std::uint8_t>(back) : label;
+            present_[from] |= static_cast<std::uint8_t>(forth || back);
+            mesh_.vertex_edge[u] = e + k;
+            if (mesh_.twin[e + k] == kNone) queue_.push_back(e + k);
         }
+        for (Index k = 0; k < 3; ++k) mesh_.mark[e + k] = marks[k];
         mesh_.mark[e + 3] = 0;
+        inside_[e / 4] = label;
     }
-    for (const Index e : stack_) mesh_.vertex_edge[mesh_.origin[e]] = e;
+    for (const Index e : queue_) mesh_.vertex_edge[mesh_.origin[e]] = e;
 }
 
 Result<void> Domain::insert_rings() {
@@ -153,12 +167,14 @@ Result<void> Domain::insert_edge(Index input, Index successor) {
     const Index end = vertex_of_[successor];
     for (Index at = vertex_of_[input]; at != end;) {
         Crossing crossing;
+        scratch_.cavity.clear();
         const Index e = inserter.advance(at, end, crossing);
         if (crossing.found) {
             return fail_at(ErrorCode::degenerate, input,
                            "the edge from here crosses the one from " + describe(record(crossing.mark - 1).input));
         }
         claim(e, input);
+        for (const Index triangle : scratch_.cavity) inside_[triangle / 4] = kUnreached;
         at = mesh_.origin[e] == at ? mesh_.destination(e) : mesh_.origin[e];
     }
     return {};
@@ -197,127 +213,6 @@ Index Domain::successor(Index input) const {
     const Index r = ring_of(input);
     if (input + 1 != polygon_->ring_ends[r]) return input + 1;
     return r == 0 ? 0 : polygon_->ring_ends[r - 1];
-}
-
-Result<Domain::State> Domain::cross(State state, Index mark) {
-    crossed_rings_.clear();
-    for (Index id = mark - 1; id != kNone; id = record(id).next) crossed_rings_.push_back(ring_of(record(id).input));
-    std::sort(crossed_rings_.begin(), crossed_rings_.end());
-    Index entered = 0;
-    for (std::size_t i = 0; i < crossed_rings_.size(); ++i) {
-        const Index ring = crossed_rings_[i];
-        if (i + 1 < crossed_rings_.size() && crossed_rings_[i + 1] == ring) {
-            ++i;  // there and back: no boundary
-        } else if (ring == 0) {
-            state.outer ^= 1u;
-        } else if (ring == state.hole) {
-            state.hole = 0;
-        } else if (entered != 0) {
-            return overlap(mark, entered, ring);
-        } else {
-            entered = ring;
-        }
-    }
-    if (entered != 0) {
-        if (state.hole != 0) return overlap(mark, entered, state.hole);
-        state.hole = entered;
-    }
-    return state;
-}
-
-tl::unexpected<Error> Domain::overlap(Index mark, Index a, Index b) const {
-    return fail_at(ErrorCode::degenerate, record(mark - 1).input,
-                   "holes " + std::to_string(std::min(a, b)) + " and " + std::to_string(std::max(a, b)) +
-                       " overlap or lie inside one another");
-}
-
-Result<void> Domain::find_inside() {
-    const std::size_t count = mesh_.triangle_count();
-    inside_.assign(count, kUnreached);
-    inside_count_ = 0;
-    regions_.clear();
-    border_count_ = 0;
-    if (stack_.size() < count + 1) stack_.resize(count + 1);
-    if (borders_.size() < 3 * count + 1) borders_.resize(3 * count + 1);
-    // The convex hull is connected: one triangle on it reaches all others.
-    Index start = 0;
-    while (mesh_.twin[start] != kNone) start = (start & 3u) == 2u ? start + 2 : start + 1;
-    if (auto result = enter(start, State{}); !result) return result;
-    while (border_count_ > 0) {
-        const Border border = borders_[--border_count_];
-        if (inside_[border.half_edge / 4] != kUnreached) continue;
-        if (auto result = enter(border.half_edge, regions_[border.region]); !result) return result;
-    }
-    if (inside_count_ == 0) return fail_at(ErrorCode::degenerate, 0, "zero area: nothing lies inside");
-    return check_holes();
-}
-
-// Enters a region from one of this state.
-Result<void> Domain::enter(Index half_edge, State state) {
-    const Index mark = mesh_.mark[half_edge];
-    if (mark != 0) {
-        const auto crossed = cross(state, mark);
-        if (!crossed) return tl::unexpected<Error>(crossed.error());
-        state = *crossed;
-        if (state.outer == 0 && state.hole != 0) {
-            return fail_at(ErrorCode::degenerate, record(mark - 1).input,
-                           "hole " + std::to_string(state.hole) + " reaches outside the outer ring");
-        }
-    }
-    regions_.push_back(state);
-    flood(half_edge / 4);
-    return {};
-}
-
-// Gives the triangle's whole region the last state. Which neighbours are new and which edges are marked is hard to
-// predict: all are written, and few are kept.
-void Domain::flood(Index triangle) {
-    const auto region = static_cast<Index>(regions_.size() - 1);
-    const std::uint8_t value = regions_[region].outer != 0 && regions_[region].hole == 0;
-    const Index *const twin = mesh_.twin.data(), *const mark = mesh_.mark.data();
-    Index* const stack = stack_.data();
-    Border* const borders = borders_.data();
-    std::uint8_t* const inside = inside_.data();
-    std::size_t waiting = 1, borders_end = border_count_, reached = 0;
-    inside[triangle] = value;
-    stack[0] = 4 * triangle;
-    while (waiting > 0) {
-        const Index first = stack[--waiting];
-        ++reached;
-        for (Index e = first; e < first + 3; ++e) {
-            const Index f = twin[e] == kNone ? e : twin[e];
-            const bool fresh = inside[f / 4] == kUnreached, open = mark[e] == 0;
-            inside[f / 4] = fresh && open ? value : inside[f / 4];
-            stack[waiting] = f & ~3u;
-            waiting += fresh & open;
-            borders[borders_end] = {f, region};
-            borders_end += fresh & !open;
-        }
-    }
-    border_count_ = borders_end;
-    inside_count_ += value * reached;
-}
-
-// A hole of which no vertex touches the inside lies outside, within another hole, or is a spike there.
-Result<void> Domain::check_holes() const {
-    for (std::size_t r = 1; r < polygon_->ring_count(); ++r) {
-        const Index begin = polygon_->ring_ends[r - 1], end = polygon_->ring_ends[r];
-        bool touches = begin == end;
-        for (Index i = begin; i < end && !touches; ++i) touches = touches_inside(vertex_of_[i]);
-        if (!touches)
-            return fail_at(ErrorCode::degenerate, begin, "hole " + std::to_string(r) + " lies outside the polygon");
-    }
-    return {};
-}
-
-bool Domain::touches_inside(Index vertex) const {
-    const Index start = mesh_.vertex_edge[vertex];
-    Index e = start;
-    do {
-        if (inside(e / 4)) return true;
-        e = mesh_.rotate(e);
-    } while (e != start && e != kNone);
-    return false;
 }
 
 // Turning clockwise from the corner, the first constraint bounds its sector; the ring that made it has its point there.

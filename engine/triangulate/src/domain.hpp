@@ -39,6 +39,8 @@ class Domain {
     [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
 
   private:
+    static constexpr std::uint8_t kUnreached = 2;
+
     // A ring's edge from input point `input`; several may share one edge of the mesh. Records below the number of input
     // points are implicit: record i is {i, kNone}. An edge's mark is its first record + 1.
     struct Record {
@@ -61,6 +63,9 @@ class Domain {
     [[nodiscard]] Result<void> insert_rings();
     [[nodiscard]] Result<void> insert_edge(Index input, Index successor);
     [[nodiscard]] Result<void> find_inside();
+    void find_side(Index begin, Index end);
+    [[nodiscard]] bool label_triangles();
+    [[nodiscard]] bool labels_fit();
     [[nodiscard]] Result<void> enter(Index half_edge, State state);
     void flood(Index triangle);
     [[nodiscard]] Result<State> cross(State state, Index mark);
@@ -83,14 +88,15 @@ class Domain {
     Vector<glm::dvec2> scaled_;
     Vector<glm::dvec2> points_;
     Vector<std::uint32_t> codes_;
-    Vector<Index> vertex_of_;  // input point → vertex
-    Vector<Index> input_of_;   // vertex → its first input point
+    Vector<Index> vertex_of_;       // input point → vertex
+    Vector<Index> input_of_;        // vertex → its first input point
     Vector<Index> next_vertex_;     // vertex → the one after its first input point, where the other way is no edge
     Vector<std::uint8_t> present_;  // vertices whose edge to the next one is in the Delaunay triangulation
     Vector<Record> records_;        // the explicit ones
-    Vector<std::uint8_t> inside_;
+    Vector<std::uint8_t> left_inside_;  // vertices of rings with the inside on their left
+    Vector<std::uint8_t> inside_;       // of every triangle: 0, 1 or kUnreached
     Vector<State> regions_;
-    Vector<Index> stack_;
+    Vector<Index> queue_;
     Vector<Border> borders_;
     std::size_t border_count_ = 0;
     Vector<Index> crossed_rings_;

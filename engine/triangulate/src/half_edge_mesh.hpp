@@ -66,8 +66,8 @@ struct DelaunayScratch {
     Vector<Base> bases;
 };
 
-// Origins and twins of the Delaunay triangulation of mesh.points, whose codes and order are SpatialOrder's: no triangles
-// if all are collinear. O(n log n).
+// Origins and twins of the Delaunay triangulation of mesh.points, whose codes and order are SpatialOrder's: no
+// triangles if all are collinear. O(n log n).
 void delaunay(HalfEdgeMesh& mesh, std::span<const std::uint32_t> codes, DelaunayScratch& scratch);
 
 // Makes segments unions of edges, one step at a time: the triangles that a segment crosses are replaced by constrained

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace crofton::triangulate {
 namespace {
 
-constexpr std::uint32_t kDigitBits = 11, kDigits = 1u << kDigitBits;
+constexpr std::uint32_t kMostDigitBits = 11;
 constexpr double kLastCell = 65535.0;
 constexpr double kCellsPerPoint = 16.0;
 // So few are sorted lexicographically at once.
@@ -65,16 +66,21 @@ void SpatialOrder::encode(std::span<const glm::dvec2> points) {
     }
 }
 
-// Least digit first; the order of equal codes does not matter.
+// Least digit first, with about as many digits as points; the order of equal codes does not matter.
 void SpatialOrder::sort_by_code() {
-    std::uint32_t largest = 0;
-    for (const Entry& e : entries_) largest |= e.code;
+    std::uint32_t used = 0;
+    for (const Entry& e : entries_) used |= e.code;
+    if (used == 0) return;
     buffer_.resize(entries_.size());
-    for (std::uint32_t shift = 0; shift < 32 && largest >> shift != 0; shift += kDigitBits) {
-        std::array<std::uint32_t, kDigits + 1> begin{};
-        for (const Entry& e : entries_) ++begin[(e.code >> shift & (kDigits - 1)) + 1];
-        for (std::size_t d = 0; d < kDigits; ++d) begin[d + 1] += begin[d];
-        for (const Entry& e : entries_) buffer_[begin[e.code >> shift & (kDigits - 1)]++] = e;
+    const auto digit_bits =
+        static_cast<std::uint32_t>(std::min<std::size_t>(kMostDigitBits, std::bit_width(entries_.size())));
+    const std::uint32_t digits = 1u << digit_bits;
+    std::array<std::uint32_t, (1u << kMostDigitBits) + 1> begin;
+    for (std::uint32_t shift = 0; shift < 32 && used >> shift != 0; shift += digit_bits) {
+        std::fill_n(begin.begin(), digits + 1, 0u);
+        for (const Entry& e : entries_) ++begin[(e.code >> shift & (digits - 1)) + 1];
+        for (std::size_t d = 0; d < digits; ++d) begin[d + 1] += begin[d];
+        for (const Entry& e : entries_) buffer_[begin[e.code >> shift & (digits - 1)]++] = e;
         std::swap(entries_, buffer_);
     }
 }

@@ -31,6 +31,7 @@ namespace {
 void write(const Domain& domain, Triangulation& result) {
     const auto& mesh = domain.mesh();
     result.triangles.reserve(domain.inside_count());
+    const bool shared = domain.has_shared_positions();
     double weight = 0.0;
     for (Index t = 0; t < mesh.triangle_count(); ++t) {
         if (!domain.inside(t)) continue;
@@ -41,8 +42,13 @@ void write(const Domain& domain, Triangulation& result) {
             const glm::dvec2 d = mesh.points[mesh.origin[e]] - mesh.points[mesh.destination(e)];
             weight += counts ? std::sqrt(d.x * d.x + d.y * d.y) : 0.0;
         }
-        result.triangles.push_back(
-            {domain.input_index(4 * t), domain.input_index(4 * t + 1), domain.input_index(4 * t + 2)});
+        const Index* const corners = mesh.origin.data() + 4 * t;
+        if (shared)
+            result.triangles.push_back(
+                {domain.input_index(4 * t), domain.input_index(4 * t + 1), domain.input_index(4 * t + 2)});
+        else
+            result.triangles.push_back(
+                {domain.input_of(corners[0]), domain.input_of(corners[1]), domain.input_of(corners[2])});
     }
     result.weight = weight * domain.scale();
 }
