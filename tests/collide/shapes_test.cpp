@@ -105,6 +105,24 @@ TEST_SUITE("collide/shapes") {
         CHECK(hits < 3500);
     }
 
+    TEST_CASE("balls that nearly touch a box: as the distance between the bodies says") {
+        std::mt19937_64 random(12);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        for (int trial = 0; trial < 20000; ++trial) {
+            Obb box = random_box(random, trial % 2 ? 1.0 : 1e6);
+            if (trial % 3 == 0) box.half_extents[trial % 9 / 3] = 0.0f;
+            if (trial % 5 == 0) box.axes[1] *= 1.0f + 3e-5f;  // nearly as far from orthonormal as validate lets pass
+            Sphere ball{box.center + 3.0 * random_vector(random), 0.0};
+            const double away = contains(box, ball.center) ? 0.0 : distance(convex(box), convex(ball)).distance;
+            const double gap = std::pow(10.0, -12.0 * unit(random)) * (1.0 + away);
+            if (gap < 1e-9 * glm::length(box.center)) continue;
+            ball.radius = away + gap;
+            CHECK(intersects(box, ball));
+            ball.radius = away - gap;
+            if (ball.radius >= 0.0) CHECK_FALSE(intersects(box, ball));
+        }
+    }
+
     TEST_CASE("spheres and capsules against a cube, by hand") {
         const Obb box = cube({});
         CHECK(intersects(box, Sphere{{2.0, 0.0, 0.0}, 1.0}));

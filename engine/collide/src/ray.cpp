@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "posed_mesh.hpp"
+#include "ray_box.hpp"
 #include "ray_mesh.hpp"
 
 namespace crofton::collide {
@@ -67,8 +68,7 @@ Result<void> validate(const Ray& ray, std::uint64_t item) {
     return {};
 }
 
-std::optional<double> raycast(const Ray& ray, const Obb& box) {
-    if (!validate(ray) || !validate(box)) return std::nullopt;
+std::optional<double> entry_of(const Ray& ray, const Obb& box) {
     const glm::dvec3 offset = ray.origin - box.center;
     double first = 0.0, last = ray.max_t;
     for (int k = 0; k < 3; ++k) {
@@ -85,6 +85,11 @@ std::optional<double> raycast(const Ray& ray, const Obb& box) {
     }
     if (!(first <= last)) return std::nullopt;
     return first;
+}
+
+std::optional<double> raycast(const Ray& ray, const Obb& box) {
+    if (!validate(ray) || !validate(box)) return std::nullopt;
+    return entry_of(ray, box);
 }
 
 std::optional<RayHit> raycast(const Ray& ray, const tree::MeshTree& mesh) {

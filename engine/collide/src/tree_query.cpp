@@ -1,15 +1,22 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/collide/tree_query.hpp>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
+
+#include "ray_box.hpp"
+#include "tree_lanes.hpp"
 
 namespace crofton::collide {
 namespace {
 
 using tree::kWidth;
+
+constexpr float kFar = std::numeric_limits<float>::max();
 
 // What waits to be visited: room enough for the heights that builds give, and memory beyond for those that they do not.
 template <class Step>
@@ -24,10 +31,9 @@ class Stack {
     }
     [[nodiscard]] bool is_empty() const { return size_ == 0; }
     [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] Step& operator[](std::size_t i) { return steps_[i]; }
     void push(const Step& step) { steps_[size_++] = step; }
     Step pop() { return steps_[--size_]; }
-    Step* begin() { return steps_; }
-    Step* end() { return steps_ + size_; }
 
   private:
     std::array<Step, 16 * kWidth> few_;
@@ -37,35 +43,36 @@ class Stack {
 };
 
 template <class Visit>
-void for_each_item(const tree::BoxTree& tree, tree::LeafId leaf, std::uint32_t layers, Visit visit) {
-    const tree::ItemId* items = tree.slot_items().data() + std::size_t{leaf} * kWidth;
-    for (unsigned lane = 0; lane < tree.leaf_counts()[leaf]; ++lane)
-        if (tree.layer_masks()[items[lane]] & layers) visit(items[lane]);
+void for_each_lane(std::uint32_t lanes, Visit visit) {
+    for (; lanes != 0; lanes &= lanes - 1) visit(static_cast<unsigned>(std::countr_zero(lanes)));
 }
 
-// `box` in the units of a node's children, rounded outward by at least one: nothing that touches is lost to the
-// rounding of the differences, which is below 2^-52 of them. Numbers beyond what children can have are cut off.
-struct NodeBox {
-    std::array<std::int32_t, 3> low, high;
+// The items of some of a leaf's lanes.
+template <class Visit>
+void for_each_item(const tree::BoxTree& tree, tree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
+                   Visit visit) {
+    for_each_lane(lanes, [&](unsigned lane) {
+        if (tree.leaves()[leaf].layers[lane] & layers) visit(tree.slot_items()[std::size_t{leaf} * kWidth + lane]);
+    });
+}
 
-    NodeBox(const tree::Node& node, const Aabb& box) {
-        constexpr double kBeyond = 65536.0;
-        for (int k = 0; k < 3; ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            const double unit = static_cast<double>(node.unit);
-            const double from = std::floor((box.min[k] - node.origin[k]) / unit) - 1.0;
-            const double to = std::ceil((box.max[k] - node.origin[k]) / unit) + 1.0;
-            low[i] = static_cast<std::int32_t>(std::clamp(from, -kBeyond, kBeyond));
-            high[i] = static_cast<std::int32_t>(std::clamp(to, -kBeyond, kBeyond));
-        }
+float round_down(double x) {
+    return std::nextafter(static_cast<float>(std::clamp(x, -1e38, 1e38)), -kFar);
+}
+float round_up(double x) {
+    return std::nextafter(static_cast<float>(std::clamp(x, -1e38, 1e38)), kFar);
+}
+
+// The differences round by 2^-53 of themselves, which going to the next float covers.
+template <class Block>
+LaneBox box_for(const Block& block, const Aabb& bounds) {
+    LaneBox box;
+    for (int k = 0; k < 3; ++k) {
+        box.low[k] = round_down(bounds.min[k] - block.origin[k]);
+        box.high[k] = round_up(bounds.max[k] - block.origin[k]);
     }
-    [[nodiscard]] bool meets(const tree::Node& node, unsigned lane) const {
-        bool result = true;
-        for (unsigned k = 0; k < 3; ++k)
-            result = result && tree::low_of(node, lane, k) <= high[k] && low[k] <= tree::high_of(node, lane, k);
-        return result;
-    }
-};
+    return box;
+}
 
 template <class Meets>
 void collect(const tree::BoxTree& tree, const Aabb& bounds, std::uint32_t layers, Vector<tree::ItemId>& items,
@@ -77,15 +84,17 @@ void collect(const tree::BoxTree& tree, const Aabb& bounds, std::uint32_t layers
     while (!stack.is_empty()) {
         const std::uint32_t child = stack.pop();
         if (child & tree::kLeafBit) {
-            for_each_item(tree, child & ~tree::kLeafBit, layers, [&](tree::ItemId item) {
+            const tree::LeafId id = child & ~tree::kLeafBit;
+            const tree::Leaf& leaf = tree.leaves()[id];
+            for_each_item(tree, id, lanes_within(leaf, box_for(leaf, bounds)), layers, [&](tree::ItemId item) {
                 if (meets(tree.boxes()[item])) items.push_back(item);
             });
             continue;
         }
         const tree::Node& node = tree.nodes()[child];
-        const NodeBox box(node, bounds);
-        for (unsigned lane = 0; lane < node.count; ++lane)
-            if (node.layers_any[lane] & layers && box.meets(node, lane)) stack.push(node.child[lane]);
+        for_each_lane(lanes_within(node, box_for(node, bounds)), [&](unsigned lane) {
+            if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
+        });
     }
     std::sort(items.begin(), items.end());
 }
@@ -96,42 +105,39 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& reach) {
     return {center - reach - slack, center + reach + slack};
 }
 
-// Boxes are visited where the ray meets their bounds grown by `slop`: 1e-13 of the coordinates' size, far above the
-// roundings here and in raycast(ray, box), each a few 2^-53 of it. 1e-100 gives rays that run within a face room too.
-struct RayLine {
-    glm::dvec3 origin, inverse;
-    double size;
-
-    explicit RayLine(const Ray& ray) : origin(ray.origin) {
-        for (int k = 0; k < 3; ++k)
-            inverse[k] =
-                std::abs(ray.direction[k]) < 1e-300 ? std::copysign(1e300, ray.direction[k]) : 1.0 / ray.direction[k];
-        size = std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z);
-    }
-
-    // Where the ray enters each child's bounds; `last` is where it leaves them, or `limit`.
-    void enter(const tree::Node& node, double limit, std::array<double, kWidth>& first,
-               std::array<double, kWidth>& last) const {
-        const double unit = static_cast<double>(node.unit);
-        const double far = std::abs(node.origin[0]) + std::abs(node.origin[1]) + std::abs(node.origin[2]);
-        const double slop = 1e-13 * (size + far + static_cast<double>(node.reach)) + 1e-100;
-        first.fill(0.0);
-        last.fill(limit);
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            const int k = static_cast<int>(axis);
-            const double base = node.origin[k] - origin[k], scale = inverse[k];
-            for (unsigned l = 0; l < kWidth; ++l) {
-                const double a = (base + unit * tree::low_of(node, l, axis) - slop) * scale;
-                const double b = (base + unit * tree::high_of(node, l, axis) + slop) * scale;
-                first[l] = std::max(first[l], std::min(a, b));
-                last[l] = std::min(last[l], std::max(a, b));
-            }
+// A ray, seen from nodes and leaves. Where it runs nearly within a slab, it counts as hardly moving across: what it
+// moves across before it leaves the filter's range is below the filter's slop.
+class Traveller {
+  public:
+    explicit Traveller(const Ray& ray) : origin_(ray.origin), length_(glm::length(ray.direction)) {
+        for (int k = 0; k < 3; ++k) {
+            const double speed = ray.direction[k] / length_;
+            inverse_[k] = static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
         }
     }
+    // In the filter's distances, rounded up.
+    [[nodiscard]] float distance(double t) const {
+        return static_cast<float>(std::min(t * length_ * (1.0 + 1e-6), static_cast<double>(kFar)));
+    }
+    template <class Block>
+    [[nodiscard]] LaneRay seen_from(const Block& block, float limit) const {
+        LaneRay ray;
+        for (int k = 0; k < 3; ++k) {
+            ray.origin[k] = static_cast<float>(origin_[k] - block.origin[k]);
+            ray.inverse[k] = inverse_[k];
+        }
+        ray.limit = limit;
+        return ray;
+    }
+
+  private:
+    glm::dvec3 origin_;
+    double length_;
+    std::array<float, 3> inverse_;
 };
 
 struct RayStep {
-    double entry;
+    float entry;
     std::uint32_t child;
 };
 
@@ -158,29 +164,35 @@ void overlapping(const tree::BoxTree& tree, const Capsule& body, Vector<tree::It
 
 void visit_along(const Ray& ray, const tree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
     if (!validate(ray)) return;
-    const RayLine line(ray);
+    const Traveller traveller(ray);
     Ray rest = ray;
+    float limit = traveller.distance(rest.max_t);
     Stack<RayStep> stack(tree);
-    stack.push({0.0, 0});
-    while (!stack.is_empty() && rest.max_t >= 0.0) {
+    stack.push({0.0f, 0});
+    while (!stack.is_empty()) {
         const RayStep step = stack.pop();
-        if (step.entry > rest.max_t) continue;
+        if (step.entry > limit) continue;
+        std::array<float, kWidth> entry;
         if (step.child & tree::kLeafBit) {
-            for_each_item(tree, step.child & ~tree::kLeafBit, layers, [&](tree::ItemId item) {
-                if (const auto t = raycast(rest, tree.boxes()[item])) rest.max_t = visit(item, *t);
+            const tree::LeafId id = step.child & ~tree::kLeafBit;
+            const tree::Leaf& leaf = tree.leaves()[id];
+            const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
+            for_each_item(tree, id, lanes, layers, [&](tree::ItemId item) {
+                if (const auto t = entry_of(rest, tree.boxes()[item])) rest.max_t = visit(item, *t);
             });
+            if (!(rest.max_t >= 0.0)) return;
+            limit = traveller.distance(rest.max_t);
             continue;
         }
         const tree::Node& node = tree.nodes()[step.child];
-        std::array<double, kWidth> first, last;
-        line.enter(node, rest.max_t, first, last);
         const std::size_t base = stack.size();
-        for (unsigned lane = 0; lane < node.count; ++lane)
-            if (first[lane] <= last[lane] && (node.layers_any[lane] & layers) != 0)
-                stack.push({first[lane], node.child[lane]});
-        // The nearest child goes on top.
-        std::sort(stack.begin() + base, stack.end(), [](const RayStep& a, const RayStep& b) {
-            return a.entry != b.entry ? a.entry > b.entry : a.child < b.child;
+        for_each_lane(lanes_along(node, traveller.seen_from(node, limit), entry.data()), [&](unsigned lane) {
+            if ((node.layers_any[lane] & layers) == 0) return;
+            // The nearest child goes on top.
+            stack.push({});
+            std::size_t place = stack.size() - 1;
+            for (; place > base && stack[place - 1].entry < entry[lane]; --place) stack[place] = stack[place - 1];
+            stack[place] = {entry[lane], node.child[lane]};
         });
     }
 }

@@ -1,0 +1,30 @@
+// Bodies and rays against the sixteen children of a node, or the sixteen boxes of a leaf, of a BoxTree: filters that
+// lose nothing.
+#pragma once
+#include <crofton/tree/layout.hpp>
+#include <cstdint>
+
+namespace crofton::collide {
+
+// A ray relative to a node's or leaf's origin; parameters are distances.
+struct LaneRay {
+    float origin[3];
+    float inverse[3];  // of the unit direction's components; finite
+    float limit;
+};
+
+// An axis-aligned box relative to a node's or leaf's origin.
+struct LaneBox {
+    float low[3], high[3];
+};
+
+// A bit for every lane whose axis-aligned bounds the ray may meet within its limit, and where it enters those at the
+// earliest.
+[[nodiscard]] std::uint32_t lanes_along(const tree::Node& node, const LaneRay& ray, float* entry);
+[[nodiscard]] std::uint32_t lanes_along(const tree::Leaf& leaf, const LaneRay& ray, float* entry);
+
+// A bit for every lane whose axis-aligned bounds may meet the box.
+[[nodiscard]] std::uint32_t lanes_within(const tree::Node& node, const LaneBox& box);
+[[nodiscard]] std::uint32_t lanes_within(const tree::Leaf& leaf, const LaneBox& box);
+
+}  // namespace crofton::collide
