@@ -56,14 +56,17 @@ void for_each_item(const tree::BoxTree& tree, tree::LeafId leaf, std::uint32_t l
     });
 }
 
+// Down and up by more than the conversion rounds; 1e-37 is for what float counts as zero.
 float round_down(double x) {
-    return std::nextafter(static_cast<float>(std::clamp(x, -1e38, 1e38)), -kFar);
+    const float near = static_cast<float>(std::clamp(x, -1e38, 1e38));
+    return near - std::abs(near) * 0x1p-22f - 1e-37f;
 }
 float round_up(double x) {
-    return std::nextafter(static_cast<float>(std::clamp(x, -1e38, 1e38)), kFar);
+    const float near = static_cast<float>(std::clamp(x, -1e38, 1e38));
+    return near + std::abs(near) * 0x1p-22f + 1e-37f;
 }
 
-// The differences round by 2^-53 of themselves, which going to the next float covers.
+// The differences round by 2^-53 of themselves, which is covered as well.
 template <class Block>
 LaneBox box_for(const Block& block, const Aabb& bounds) {
     LaneBox box;
