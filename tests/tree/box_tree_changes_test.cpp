@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <algorithm>
 #include <crofton/tree/box_tree.hpp>
 #include <oracle/random_boxes.hpp>
+#include <limits>
 #include <oracle/tree_contents.hpp>
 #include <vector>
 
@@ -110,6 +112,79 @@ TEST_SUITE("tree/box_tree changes") {
         const BoxTree fresh = *BoxTree::build(crowd.boxes);
         CHECK(tree.leaves().size() == fresh.leaves().size());
         CHECK(std::ranges::equal(tree.leaf_counts(), fresh.leaf_counts()));
+    }
+
+    TEST_CASE("many boxes moved at once are found where they went, some of them far, the same on every instruction set") {
+        const oracle::Crowd crowd = oracle::random_crowd(3000, 1e5, 11);
+        const BoxTree built = *BoxTree::build(crowd.boxes, crowd.layers);
+        const Vector<std::byte> bytes = built.serialise();
+        Vector<std::byte> first;
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            BoxTree tree = *BoxTree::deserialise(bytes);
+            oracle::NearMisses random(12);
+            for (int frame = 0; frame < 6; ++frame) {
+                std::vector<ItemId> items;
+                std::vector<Obb> boxes;
+                for (ItemId i = 0; i < 3000; ++i) {
+                    if (random.index(4) == 0) continue;
+                    const double far = random.index(500) == 0 ? 1e4 : 1.0;
+                    Obb box = tree.boxes()[i];
+                    box.center += far * random.direction();
+                    if (random.index(10) == 0) box.half_extents *= static_cast<float>(far);
+                    items.push_back(i);
+                    boxes.push_back(box);
+                }
+                REQUIRE(tree.move(items, boxes).has_value());
+                tree.refit();
+                const auto valid = tree.validate();
+                INFO((valid ? std::string() : valid.error().message));
+                REQUIRE(valid.has_value());
+                REQUIRE(holds_all(tree));
+            }
+            if (first.empty()) first = tree.serialise();
+            CHECK(tree.serialise() == first);
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+
+    TEST_CASE("among many boxes to move, one that is barely good passes and one that is not is named, and nothing moves") {
+        const oracle::Crowd crowd = oracle::random_crowd(100, 0.0, 13);
+        BoxTree tree = *BoxTree::build(crowd.boxes);
+        const Vector<std::byte> before = tree.serialise();
+        const float infinity = std::numeric_limits<float>::infinity();
+        std::vector<ItemId> items(100);
+        for (ItemId i = 0; i < 100; ++i) items[i] = 99 - i;
+        const auto with = [&](std::size_t at, auto&& change) {
+            std::vector<Obb> boxes(100);
+            change(boxes[at]);
+            return boxes;
+        };
+        for (std::size_t at = 0; at < 100; at += 11) {
+            const std::vector<std::vector<Obb>> bad{
+                with(at, [](Obb& b) { b.center.y = std::nan(""); }),
+                with(at, [](Obb& b) { b.center.z = -1.0000001e30; }),
+                with(at, [&](Obb& b) { b.half_extents.x = infinity; }),
+                with(at, [](Obb& b) { b.half_extents.y = -1e-20f; }),
+                with(at, [](Obb& b) { b.half_extents.z = 1.0000001e30f; }),
+                with(at, [](Obb& b) { b.axes[1][1] = std::nanf(""); }),
+                with(at, [&](Obb& b) { b.axes[2][0] = infinity; }),
+                with(at, [](Obb& b) { b.axes[0][2] = 1.01e-4f; }),
+            };
+            for (const std::vector<Obb>& boxes : bad) {
+                CHECK(!validate(boxes[at]).has_value());
+                CHECK(tree.move(items, boxes).error().item == 99 - at);
+            }
+        }
+        tree.refit();
+        CHECK(tree.serialise() == before);
+        const auto barely = with(50, [](Obb& b) {
+            b.axes[0][2] = 0.9999e-4f;
+            b.half_extents = glm::vec3(0.0f, 1e-44f, 0.99999e30f);
+        });
+        CHECK(tree.move(items, barely).has_value());
+        tree.refit();
+        CHECK(tree.validate().has_value());
     }
 
     TEST_CASE("stored bytes give an equal tree back; damaged ones are refused") {

@@ -83,7 +83,6 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
     leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may stray as far again
     leaf.slack = slack_of(leaf.position_unit, leaf.edge_unit);
     leaf.reach = 0.0f;
-    leaf.layers_every = ~std::uint32_t{0};
 }
 
 bool is_frame(const Leaf& leaf) {
@@ -91,7 +90,7 @@ bool is_frame(const Leaf& leaf) {
            leaf.slack == slack_of(leaf.position_unit, leaf.edge_unit);
 }
 
-bool write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers) {
+bool write_lane(Leaf& leaf, unsigned lane, const Obb& box) {
     // Scaling by a power of two is exact, and so is a product of two floats in double.
     const double per_position = 1.0 / double{leaf.position_unit}, per_edge = 1.0 / double{leaf.edge_unit};
     double position[3], edge[9], reach = 0.0;
@@ -116,10 +115,14 @@ bool write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers)
     leaf.z_edge2_z[lane] = pair(position[2], edge[8]);
     leaf.edge01_z[lane] = pair(edge[2], edge[5]);
     for (int k = 0; k < 3; ++k) leaf.edge_xy[k][lane] = pair(edge[3 * k], edge[3 * k + 1]);
-    leaf.layers[lane] = layers;
-    leaf.layers_every &= layers;
     leaf.reach = std::max(leaf.reach, static_cast<float>(reach) * leaf.position_unit);  // exact: reach < 2^17
     return true;
+}
+
+void write_layers(Leaf& leaf, unsigned lane, std::uint32_t layers) {
+    leaf.layers[lane] = layers;
+    leaf.layers_every = ~std::uint32_t{0};
+    for (unsigned i = 0; i < leaf.count; ++i) leaf.layers_every &= leaf.layers[i];
 }
 
 void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count) {

@@ -19,7 +19,8 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest_edge);
 
 // Puts a box into a lane; the leaf's frame stays, its reach grows where needed. False, and nothing is written, if the
 // box does not fit into the frame.
-[[nodiscard]] bool write_lane(Leaf& leaf, unsigned lane, const Obb& box, std::uint32_t layers);
+[[nodiscard]] bool write_lane(Leaf& leaf, unsigned lane, const Obb& box);
+void write_layers(Leaf& leaf, unsigned lane, std::uint32_t layers);
 void clear_lane(Leaf& leaf, unsigned lane);
 
 // A node's origin and unit for children that lie in `whole`, with room to move; all lanes must be written anew.

@@ -2,9 +2,11 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <bit>
 #include <crofton/core/assert.hpp>
 
 #include "bounds.hpp"
+#include "leaf_writer.hpp"
 #include "rebuild.hpp"
 
 namespace crofton::tree {
@@ -49,7 +51,6 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
         for (std::size_t l = begin; l < end; ++l) tree.fill_leaf(tree.now_, static_cast<LeafId>(l), builder.result());
     });
     tree.finish_nodes(tree.now_);
-    tree.dirty_leaves_.assign((tree.now_.leaves.size() + 63) / 64, 0);
     return tree;
 }
 
@@ -60,6 +61,7 @@ void BoxTree::adopt(Structure& structure, const Topology& topology) const {
     structure.ranges.resize(topology.nodes.size());
     structure.leaves.resize(topology.leaves.size());
     structure.leaf_counts.assign(topology.leaves.size(), 0);
+    structure.dirty_lanes.assign(topology.leaves.size(), 0);
     structure.slot_items.assign(topology.leaves.size() * kWidth, kNone);
     structure.item_slots.assign(boxes_.size(), kNone);
     for (NodeId n = 0; n < topology.nodes.size(); ++n) {
@@ -84,9 +86,7 @@ void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology
     if (l + 2 < topology.leaves.size()) {
         const Topology::LeafRecord& ahead = topology.leaves[l + 2];
         for (std::uint32_t i = 0; i < ahead.count; ++i) {
-            const Obb* box = &boxes_[topology.order[ahead.first + i]];
-            hwy::Prefetch(box);
-            hwy::Prefetch(&box->half_extents);
+            prefetch_item(topology.order[ahead.first + i]);
             hwy::Prefetch(&layer_masks_[topology.order[ahead.first + i]]);
             hwy::Prefetch(&structure.item_slots[topology.order[ahead.first + i]]);
         }
@@ -103,10 +103,25 @@ void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology
         structure.item_slots[item] = slot;
     }
     structure.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
+    write_leaf_layers(structure, l);
     rewrite_leaf(structure, l);
 }
 
-// Writes all lanes anew in a fitting frame.
+void BoxTree::write_leaf_layers(Structure& structure, LeafId l) const {
+    Leaf& leaf = structure.leaves[l];
+    leaf.layers_every = ~std::uint32_t{0};
+    for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
+        leaf.layers[lane] = layer_masks_[structure.slot_items[l * kWidth + lane]];
+        leaf.layers_every &= leaf.layers[lane];
+    }
+}
+
+void BoxTree::prefetch_item(ItemId item) const {
+    hwy::Prefetch(&boxes_[item]);
+    hwy::Prefetch(&boxes_[item].half_extents);
+}
+
+// Writes all boxes anew in a fitting frame.
 void BoxTree::rewrite_leaf(Structure& structure, LeafId l) const {
     Leaf& leaf = structure.leaves[l];
     Aabb centers;
@@ -117,18 +132,32 @@ void BoxTree::rewrite_leaf(Structure& structure, LeafId l) const {
         longest = std::max(longest, longest_edge(box));
     }
     fit_frame(leaf, centers, longest);
-    for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
-        const ItemId item = structure.slot_items[l * kWidth + lane];
-        [[maybe_unused]] const bool fits = write_lane(leaf, lane, boxes_[item], layer_masks_[item]);
-        CROFTON_ASSERT(fits, "a frame around boxes must take them");
-    }
+    [[maybe_unused]] const std::size_t written = write_lanes(
+        structure.leaves.data(), std::span(&l, 1), structure.slot_items.data(), boxes_.data());
+    CROFTON_ASSERT(written == 1, "a frame around boxes must take them");
 }
 
-// An item's box into its slot, all lanes anew if the leaf's frame does not take it.
+// An item's box and layers into its slot, all boxes anew if the leaf's frame does not take it.
 void BoxTree::write_item(Structure& structure, ItemId item) const {
     const std::uint32_t slot = structure.item_slots[item];
-    if (!write_lane(structure.leaves[slot / kWidth], slot % kWidth, boxes_[item], layer_masks_[item]))
+    write_layers(structure.leaves[slot / kWidth], slot % kWidth, layer_masks_[item]);
+    if (!write_lane(structure.leaves[slot / kWidth], slot % kWidth, boxes_[item]))
         rewrite_leaf(structure, slot / kWidth);
+}
+
+// Boxes that have changed into the lanes of leaves where move() has not written them: where they are many.
+void BoxTree::write_dirty_leaves(Structure& structure, std::span<const LeafId> leaves) const {
+    LeafId many[kRefitBatch];
+    std::size_t many_count = 0;
+    CROFTON_ASSERT(leaves.size() <= kRefitBatch, "too many leaves at once");
+    for (const LeafId l : leaves)
+        if (std::popcount(std::exchange(structure.dirty_lanes[l], std::uint16_t{0})) > kFewLanes)
+            many[many_count++] = l;
+    for (std::span<const LeafId> rest(many, many_count); !rest.empty(); rest = rest.subspan(1)) {
+        rest = rest.subspan(write_lanes(structure.leaves.data(), rest, structure.slot_items.data(), boxes_.data()));
+        if (rest.empty()) break;
+        rewrite_leaf(structure, rest.front());
+    }
 }
 
 void BoxTree::finish_nodes(Structure& structure) const {

@@ -6,6 +6,7 @@
 #include <crofton/tree/box_tree.hpp>
 
 #include "bounds.hpp"
+#include "leaf_writer.hpp"
 #include "rebuild.hpp"
 
 namespace crofton::tree {
@@ -13,6 +14,8 @@ namespace crofton::tree {
 namespace {
 
 constexpr std::size_t kMaxItems = std::size_t{1} << 30;
+// Scattered items wait for memory: slots and boxes are asked for so many items ahead of their use, then leaves.
+constexpr std::size_t kAhead = 32, kNear = 12;
 
 template <class T>
 void prefetch_all(const T& value) {
@@ -28,40 +31,64 @@ Result<void> BoxTree::move(ItemId item, const Obb& box) {
 Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> boxes) {
     if (items.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "box tree: as many boxes as items are needed");
-    // Scattered items wait for memory: ask for slots and boxes, then for leaves, ahead of their use.
-    constexpr std::size_t kFar = 32, kNear = 12;
+    if (auto valid = find_moved(items, boxes); !valid) return valid;
+    mark_moved();
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i + kFar < items.size() && items[i + kFar] < boxes_.size())
-            hwy::Prefetch(&now_.item_slots[items[i + kFar]]);
-        if (!is_present(items[i])) return check_item(items[i]);
-        if (auto valid = crofton::validate(boxes[i], items[i]); !valid) return valid;
+        if (i + kAhead < items.size()) prefetch_all(boxes_[items[i + kAhead]]);
+        if (i + kNear < items.size() && has_few_changes(moved_slots_[i + kNear] / kWidth))
+            prefetch_all(now_.leaves[moved_slots_[i + kNear] / kWidth]);
+        boxes_[items[i]] = boxes[i];
+        if (has_few_changes(moved_slots_[i] / kWidth)) write_item(now_, items[i]);
     }
+    if (rebuild_)
+        for (const ItemId item : items) note_change(item);
+    return {};
+}
+
+bool BoxTree::has_few_changes(LeafId leaf) const {
+    return std::popcount(now_.dirty_lanes[leaf]) <= kFewLanes;
+}
+
+// The items' slots, if all is well.
+Result<void> BoxTree::find_moved(std::span<const ItemId> items, std::span<const Obb> boxes) {
+    const std::uint32_t* slots = now_.item_slots.data();
+    moved_slots_.resize(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i + kFar < items.size()) {
-            hwy::Prefetch(&now_.item_slots[items[i + kFar]]);
-            hwy::Prefetch(&layer_masks_[items[i + kFar]]);
-            prefetch_all(boxes_[items[i + kFar]]);
-        }
-        if (i + kNear < items.size()) prefetch_all(now_.leaves[now_.item_slots[items[i + kNear]] / kWidth]);
-        const ItemId item = items[i];
-        boxes_[item] = boxes[i];
-        write_item(now_, item);
-        mark(now_.item_slots[item] / kWidth);
-        note_change(item);
+        if (i + kAhead < items.size() && items[i + kAhead] < boxes_.size()) hwy::Prefetch(slots + items[i + kAhead]);
+        if (!is_present(items[i])) return check_item(items[i]);
+        moved_slots_[i] = slots[items[i]];
+    }
+    for (std::size_t i = 0; i < boxes.size();) {
+        i += count_certainly_valid(&boxes[i], boxes.size() - i);
+        for (const std::size_t end = std::min(boxes.size(), i + kWidth); i < end; ++i)
+            if (auto valid = crofton::validate(boxes[i], items[i]); !valid) return valid;
     }
     return {};
+}
+
+// Neighbours often share a leaf: theirs are put down at once.
+void BoxTree::mark_moved() {
+    std::uint16_t* dirty = now_.dirty_lanes.data();
+    LeafId leaf = 0;
+    std::uint32_t lanes = 0;
+    for (const std::uint32_t slot : moved_slots_) {
+        if (slot / kWidth != leaf) {
+            dirty[leaf] = static_cast<std::uint16_t>(dirty[leaf] | lanes);
+            leaf = slot / kWidth;
+            lanes = 0;
+        }
+        lanes |= 1u << slot % kWidth;
+    }
+    if (lanes) dirty[leaf] = static_cast<std::uint16_t>(dirty[leaf] | lanes);
 }
 
 Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
     if (auto known = check_item(item); !known) return known;
     layer_masks_[item] = layer_mask;
     const std::uint32_t slot = now_.item_slots[item];
-    Leaf& leaf = now_.leaves[slot / kWidth];
-    leaf.layers[slot % kWidth] = layer_mask;
-    leaf.layers_every = ~std::uint32_t{0};
-    for (unsigned lane = 0; lane < leaf.count; ++lane) leaf.layers_every &= leaf.layers[lane];
+    write_layers(now_.leaves[slot / kWidth], slot % kWidth, layer_mask);
     layers_changed_ = true;
-    mark(slot / kWidth);
+    mark(slot);
     note_change(item);
     return {};
 }
@@ -92,7 +119,7 @@ void BoxTree::vacate(ItemId item) {
     now_.item_slots[item] = kNone;
     forget_run(leaf.parent);
     layers_changed_ = true;
-    mark(l);
+    mark(slot);
 }
 
 Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
@@ -137,7 +164,7 @@ LeafId BoxTree::add_leaf() {
     clear(now_.leaves[fresh]);
     now_.leaf_counts.push_back(0);
     now_.slot_items.resize(now_.slot_items.size() + kWidth, kNone);
-    dirty_leaves_.resize((now_.leaves.size() + 63) / 64, 0);
+    now_.dirty_lanes.push_back(0);
     return fresh;
 }
 
@@ -198,6 +225,7 @@ void BoxTree::split_leaf(LeafId l) {
             now_.item_slots[items[i].id()] = slot;
         }
         now_.leaf_counts[both[side]] = static_cast<std::uint8_t>(leaf.count);
+        write_leaf_layers(now_, both[side]);
         rewrite_leaf(now_, both[side]);
     }
     add_child(parent, fresh | kLeafBit);

@@ -10,8 +10,10 @@
 
 namespace crofton::tree {
 
-void BoxTree::mark(LeafId leaf) {
-    dirty_leaves_[leaf / 64] |= std::uint64_t{1} << (leaf % 64);
+// Refit is to look at this slot and at its leaf.
+void BoxTree::mark(std::uint32_t slot) {
+    std::uint16_t& lanes = now_.dirty_lanes[slot / kWidth];
+    lanes = static_cast<std::uint16_t>(lanes | 1u << slot % kWidth);
 }
 
 void BoxTree::note_change(ItemId item) {
@@ -34,16 +36,27 @@ void BoxTree::refit() {
     layers_changed_ = false;
 }
 
+void BoxTree::list_dirty_leaves() {
+    constexpr std::size_t kAtOnce = 16;
+    const Vector<std::uint16_t>& dirty = now_.dirty_lanes;
+    dirty_list_.clear();
+    for (std::size_t first = 0; first < dirty.size(); first += kAtOnce) {
+        const std::size_t last = std::min(first + kAtOnce, dirty.size());
+        std::uint32_t any = 0;
+        for (std::size_t l = first; l < last; ++l) any |= dirty[l];
+        if (any == 0) continue;
+        for (std::size_t l = first; l < last; ++l)
+            if (dirty[l]) dirty_list_.push_back(static_cast<LeafId>(l));
+    }
+}
+
 // The bounds of leaves that have changed, into their parents' lanes.
 void BoxTree::refit_leaves() {
-    dirty_list_.clear();
-    for (std::size_t w = 0; w < dirty_leaves_.size(); ++w)
-        for (std::uint64_t word = std::exchange(dirty_leaves_[w], 0); word; word &= word - 1)
-            dirty_list_.push_back(static_cast<LeafId>(64 * w + static_cast<unsigned>(std::countr_zero(word))));
-    constexpr std::size_t kBatch = 64;
-    LeafExtent extents[kBatch];
-    for (std::size_t first = 0; first < dirty_list_.size(); first += kBatch) {
-        const std::size_t count = std::min(kBatch, dirty_list_.size() - first);
+    list_dirty_leaves();
+    LeafExtent extents[kRefitBatch];
+    for (std::size_t first = 0; first < dirty_list_.size(); first += kRefitBatch) {
+        const std::size_t count = std::min(kRefitBatch, dirty_list_.size() - first);
+        write_dirty_leaves(now_, std::span(dirty_list_).subspan(first, count));
         leaf_extents(now_.leaves.data(), std::span(dirty_list_).subspan(first, count), extents);
         for (std::size_t i = 0; i < count; ++i) {
             const LeafId l = dirty_list_[first + i];
@@ -124,7 +137,6 @@ void BoxTree::take_over() {
     fresh.item_slots.resize(boxes_.size(), kNone);
     const Vector<std::uint32_t> old_slots = std::move(now_.item_slots);
     now_ = std::move(fresh);
-    dirty_leaves_.assign((now_.leaves.size() + 63) / 64, 0);
     Vector<ItemId> homeless;
     for (std::size_t w = 0; w < work->changed.size(); ++w)
         for (std::uint64_t word = work->changed[w]; word; word &= word - 1) {
@@ -137,7 +149,7 @@ void BoxTree::take_over() {
             if (!present && slot != kNone) vacate(item);
         }
     finish_nodes(now_);
-    std::fill(dirty_leaves_.begin(), dirty_leaves_.end(), 0);
+    std::fill(now_.dirty_lanes.begin(), now_.dirty_lanes.end(), std::uint16_t{0});
     for (const ItemId item : homeless) place(item);
 }
 

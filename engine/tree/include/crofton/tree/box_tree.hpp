@@ -88,15 +88,23 @@ class BoxTree {
         Vector<std::uint8_t> leaf_counts;
         Vector<ItemId> slot_items;
         Vector<std::uint32_t> item_slots;
+        Vector<std::uint16_t> dirty_lanes;  // by leaf, one bit a lane: what has changed since the last refit
         unsigned height = 1;
     };
     struct Rebuild;
+    // Where no more of a leaf's boxes have changed, move() writes each into its lane; where more have, refit() writes them
+    // all.
+    static constexpr int kFewLanes = 3;
+    static constexpr std::size_t kRefitBatch = 256;  // leaves that stay in the cache from their boxes to their bounds
 
     BoxTree();
     void adopt(Structure& structure, const Topology& topology) const;
     void fill_leaf(Structure& structure, LeafId leaf, const Topology& topology) const;
     void rewrite_leaf(Structure& structure, LeafId leaf) const;
+    void write_leaf_layers(Structure& structure, LeafId leaf) const;
     void write_item(Structure& structure, ItemId item) const;
+    void prefetch_item(ItemId item) const;
+    void write_dirty_leaves(Structure& structure, std::span<const LeafId> leaves) const;
     void refresh_node(Structure& structure, NodeId node) const;
     void finish_nodes(Structure& structure) const;
     [[nodiscard]] static std::uint32_t items_without_gaps(const Structure& structure, LeafRange range);
@@ -104,9 +112,12 @@ class BoxTree {
     void refresh_layers(Structure& structure, NodeId node, unsigned lane) const;
     void refresh_path(NodeId node);
     void refit_leaves();
+    void list_dirty_leaves();
     void refit_node(NodeId node);
     void set_child(NodeId node, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty);
-    void mark(LeafId leaf);
+    void mark(std::uint32_t slot);
+    void mark_moved();
+    [[nodiscard]] bool has_few_changes(LeafId leaf) const;
     void note_change(ItemId item);
     void place(ItemId item);
     void vacate(ItemId item);
@@ -123,13 +134,14 @@ class BoxTree {
         return item < boxes_.size() && now_.item_slots[item] != kNone;
     }
     [[nodiscard]] Result<void> check_item(ItemId item) const;
+    [[nodiscard]] Result<void> find_moved(std::span<const ItemId> items, std::span<const Obb> boxes);
 
     measure::Criterion criterion_;
     Vector<Obb> boxes_;
     Vector<std::uint32_t> layer_masks_;
     Vector<ItemId> free_items_;
     Structure now_;
-    Vector<std::uint64_t> dirty_leaves_;  // one bit a leaf
+    Vector<std::uint32_t> moved_slots_;
     Vector<LeafId> dirty_list_;
     Vector<NodeId> dirty_nodes_, dirty_parents_;
     Vector<std::uint64_t> dirty_node_bits_;
