@@ -1,5 +1,7 @@
+#include <bit>
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/many_views.hpp>
+#include <cstring>
 
 #include "box_constraints.hpp"
 #include "many_views_kernel.hpp"
@@ -13,14 +15,16 @@ class ManyViewsQuery {
         : tree_(tree), views_(views), mode_(mode) {}
 
     void run(ManyVisible& visible) {
-        constexpr std::size_t kEntryWords = (sizeof(ManyViewsEntry) + 7) / 8;
-        const std::size_t items = tree_.boxes().size() + tree::kWidth;
-        if (visible.ids_.size() < items) {
-            visible.ids_.resize(items);
-            visible.masks_.resize(items);
-        }
-        const std::size_t words = (tree_.height() + 1) * tree::kWidth * kEntryWords;
-        if (visible.stack_.size() < words) visible.stack_.resize(words);
+        const std::size_t leaves = tree_.leaves().size() + tree::kWidth;
+        grow(visible.ids_, tree_.boxes().size() + tree::kWidth);
+        visible.mask_bytes_ = views_.size() > 16 ? 4 : views_.size() > 8 ? 2 : 1;
+        grow(visible.masks_, visible.ids_.size() * visible.mask_bytes_);
+        grow(visible.whole_, leaves);
+        grow(visible.open_, leaves);
+        grow(visible.listed_, leaves);
+        grow(visible.touched_, leaves / 1024 + 1);
+        grow(visible.planes_, leaves * views_.size());
+        grow(visible.stack_, std::size_t{tree_.height() + 1} * tree::kWidth);
         visible.size_ = 0;
         if (views_.empty()) return;
         bool vectors = true;
@@ -40,18 +44,35 @@ class ManyViewsQuery {
                                    tree_.leaf_ranges().data(),
                                    tree_.leaf_counts().data(),
                                    tree_.slot_items().data(),
+                                   static_cast<std::uint32_t>(tree_.leaves().size()),
                                    kernel_views,
                                    static_cast<std::uint32_t>(views_.size()),
                                    mode_ == Mode::exact,
                                    decide,
                                    this};
-        ManyViewsOutput output{visible.ids_.data(), visible.masks_.data(),
-                               reinterpret_cast<ManyViewsEntry*>(visible.stack_.data()), 0};
+        ManyViewsOutput output{};
+        output.ids = visible.ids_.data();
+        output.masks = visible.masks_.data();
+        output.mask_bytes = visible.mask_bytes_;
+        output.whole = visible.whole_.data();
+        output.open = visible.open_.data();
+        output.listed = visible.listed_.data();
+        output.touched = visible.touched_.data();
+        output.planes = visible.planes_.data();
+        output.stack = visible.stack_.data();
         run_many_views_kernel(input, output);
         visible.size_ = output.count;
     }
 
   private:
+    template <class T>
+    static void grow(Vector<T>& buffer, std::size_t size) {
+        if (buffer.size() < size) buffer.resize(size);
+    }
+
+    // A mask's lower bytes come first.
+    static_assert(std::endian::native == std::endian::little);
+
     // A view that the kernel cannot take is among them.
     void run_one_by_one(ManyVisible& visible) const {
         for (const ItemId item : tree_.slot_items()) {
@@ -63,7 +84,7 @@ class ManyViewsQuery {
                     mask |= 1u << v;
             if (mask == 0) continue;
             visible.ids_[visible.size_] = item;
-            visible.masks_[visible.size_++] = mask;
+            std::memcpy(visible.masks_.data() + visible.size_++ * visible.mask_bytes_, &mask, visible.mask_bytes_);
         }
     }
 

@@ -1,6 +1,9 @@
 #include "many_views_kernel.hpp"
 
 #include <hwy/cache_control.h>
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
 
 // Vectors of unknown size cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -17,11 +20,19 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 namespace {
 
+// In a stack entry's planes: everything below is inside, and in a layer that the view sees.
+constexpr std::uint32_t kWhole = 1u << 31;
+
+using DP = hn::Rebind<std::uint16_t, DU>;
+
 template <class Visit>
 HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
     for (; bits; bits &= bits - 1) visit(static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
 }
 
+// First each view goes through the nodes alone, and notes by leaf what it sees whole and what it must look into. Then
+// one way through the leaves that were noted answers for all views: a leaf is fetched once, and written once.
+template <class Mask>  // wide enough for the views
 class ManyWalk {
   public:
     HWY_INLINE ManyWalk(const ManyViewsInput& input, const ManyViewsOutput& output) : in_(input), out_(output) {}
@@ -30,134 +41,251 @@ class ManyWalk {
     [[nodiscard]] HWY_INLINE ManyViewsOutput result() const { return out_; }
 
     HWY_INLINE void run() {
-        ManyViewsEntry& root = out_.stack[0];
-        root = {};
-        for (std::uint32_t v = 0; v < in_.view_count; ++v) {
-            root.straddling |= 1u << v;
-            root.planes[v] = static_cast<std::uint16_t>((1u << in_.views[v].plane_count) - 1);
-        }
-        size_ = 1;
-        while (size_ > 0) {
-            // Read in place: what is pushed over it is pushed when it has been used.
-            const ManyViewsEntry& entry = out_.stack[--size_];
-            if (entry.straddling == 0 && accept_whole(entry.child, entry.whole)) continue;
-            if (entry.child & tree::kLeafBit)
-                visit_leaf(entry);
-            else
-                visit_node(entry);
+        for (std::uint32_t v = 0; v < in_.view_count; ++v) walk_nodes(v);
+        const std::size_t listed = write_whole();
+        constexpr std::size_t kAhead = 4;
+        for (std::size_t i = 0; i < std::min(kAhead, listed); ++i) prefetch_leaf(out_.listed[i]);
+        for (std::size_t i = 0; i < listed; ++i) {
+            if (i + kAhead < listed) prefetch_leaf(out_.listed[i + kAhead]);
+            look_into(out_.listed[i]);
         }
     }
 
   private:
-    // By lanes of a node: the views that see all, and those with planes left to test.
-    struct Below {
-        alignas(64) std::uint32_t whole[tree::kWidth];
-        alignas(64) std::uint32_t straddling[tree::kWidth];
-        alignas(64) std::uint32_t planes[32][tree::kWidth];
-
-        void write(ManyViewsEntry& entry, const tree::Node& node, unsigned lane) const {
-            entry.child = node.child[lane];
-            entry.whole = whole[lane];
-            entry.straddling = straddling[lane];
-            for_each_bit(entry.straddling,
-                         [&](unsigned v) { entry.planes[v] = static_cast<std::uint16_t>(planes[v][lane]); });
+    HWY_INLINE void walk_nodes(std::uint32_t v) {
+        const KernelView& view = in_.views[v];
+        std::size_t size = 1;
+        out_.stack[0] = (1u << view.plane_count) - 1;
+        while (size > 0) {
+            const std::uint64_t entry = out_.stack[--size];
+            const auto child = static_cast<std::uint32_t>(entry >> 32);
+            const auto planes = static_cast<std::uint32_t>(entry);
+            if (planes & kWhole && note_whole(child, 1u << v)) continue;
+            if (child & tree::kLeafBit)
+                note_open(child & ~tree::kLeafBit, planes & ~kWhole, v);
+            else
+                size = visit_node(v, child, planes & ~kWhole, size);
         }
-    };
-
-    // Returns the lanes that some view may see something of.
-    HWY_INLINE std::uint32_t test_below(const tree::Node& node, const ManyViewsEntry& entry, Below& below) const {
-        const DU du;
-        const std::uint32_t used = (1u << node.count) - 1;
-        for (unsigned lane = 0; lane < tree::kWidth; ++lane) {
-            below.whole[lane] = entry.whole;
-            below.straddling[lane] = 0;
-        }
-        std::uint32_t alive = entry.whole ? used : 0;
-        for_each_bit(entry.straddling, [&](unsigned v) HWY_ATTR {
-            const KernelView& view = in_.views[v];
-            const NodeTest test = test_node(view, node, entry.planes[v]);
-            alive |= test.alive;
-            const bool every = (node.layers_every & view.layer_mask) != 0;
-            const VU bit = hn::Set(du, 1u << v), zero = hn::Zero(du);
-            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-                const VU planes = hn::Load(du, test.planes + l);
-                const auto living = mask_of(test.alive >> l);
-                auto whole = hn::Eq(planes, zero);
-                if (!every)
-                    whole = hn::And(
-                        whole, hn::Ne(hn::And(hn::Load(du, node.layers_all + l), hn::Set(du, view.layer_mask)), zero));
-                const auto add = [&](std::uint32_t* views, const auto& mask) HWY_ATTR {
-                    hn::Store(hn::Or(hn::Load(du, views + l), hn::IfThenElseZero(mask, bit)), du, views + l);
-                };
-                add(below.whole, hn::And(living, whole));
-                add(below.straddling, hn::AndNot(whole, living));
-                hn::Store(planes, du, below.planes[v] + l);
-            }
-        });
-        return alive & used;
     }
 
-    HWY_INLINE void visit_node(const ManyViewsEntry& entry) {
-        const tree::Node& node = in_.nodes[entry.child];
-        Below below;
-        std::uint32_t alive = test_below(node, entry, below);
-        if (!node.only_leaves) {
-            while (alive) {
-                const unsigned lane = 31u - static_cast<unsigned>(hwy::Num0BitsAboveMS1Bit_Nonzero32(alive));
-                alive ^= 1u << lane;
-                below.write(out_.stack[size_++], node, lane);
-            }
-            return;
+    HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size) {
+        const tree::Node& node = in_.nodes[id];
+        const NodeTest test = test_node(in_.views[v], node, planes);
+        const std::uint32_t whole = seen(node, in_.views[v], test.alive & test.settled);
+        if (node.only_leaves) {
+            note_leaves(node, test, whole, v);
+            return size;
         }
-        for_each_bit(alive, [&](unsigned lane) {
-            if (below.straddling[lane] == 0) return;
-            const auto* leaf = reinterpret_cast<const char*>(&in_.leaves[node.child[lane] & ~tree::kLeafBit]);
-            for (unsigned line = 0; line < sizeof(tree::Leaf) / 64; ++line) hwy::Prefetch(leaf + 64 * line);
+        for_each_bit(test.alive, [&](unsigned lane) {
+            const bool is_whole = whole >> lane & 1;
+            if (!is_whole && !(node.child[lane] & tree::kLeafBit)) prefetch_node(node.child[lane]);
+            out_.stack[size++] = std::uint64_t{node.child[lane]} << 32 | (is_whole ? kWhole : test.planes[lane]);
         });
-        for_each_bit(alive, [&](unsigned lane) {
-            if (below.straddling[lane] == 0) {
-                accept_whole(node.child[lane], below.whole[lane]);
-                return;
-            }
-            ManyViewsEntry leaf;
-            below.write(leaf, node, lane);
-            visit_leaf(leaf);
-        });
+        return size;
     }
 
-    HWY_INLINE void copy_items(std::size_t first_slot, std::size_t count, std::uint32_t views) {
-        const DU du;
-        for (std::size_t i = 0; i < count; i += hn::Lanes(du)) {
-            hn::StoreU(hn::LoadU(du, in_.slot_items + first_slot + i), du, out_.ids + out_.count + i);
-            hn::StoreU(hn::Set(du, views), du, out_.masks + out_.count + i);
-        }
-        out_.count += count;
+    // Lanes of `lanes` below which everything is in a layer that the view sees.
+    static HWY_INLINE std::uint32_t seen(const tree::Node& node, const KernelView& view, std::uint32_t lanes) {
+        if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
+        std::uint32_t result = 0;
+        for_each_bit(lanes, [&](unsigned lane) {
+            if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
+        });
+        return result;
     }
 
     // False for a node whose leaves are not consecutive.
-    HWY_INLINE bool accept_whole(std::uint32_t child, std::uint32_t views) {
-        tree::LeafRange range{child & ~tree::kLeafBit, 1};
-        if (!(child & tree::kLeafBit)) range = in_.ranges[child];
-        if (range.items > 0) {
-            copy_items(std::size_t{range.first} * tree::kWidth, range.items, views);
+    HWY_INLINE bool note_whole(std::uint32_t child, std::uint32_t view) {
+        if (child & tree::kLeafBit) {
+            const std::uint32_t leaf = child & ~tree::kLeafBit;
+            out_.whole[leaf] |= view;
+            touch(leaf, leaf);
             return true;
         }
-        for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf)
-            copy_items(std::size_t{leaf} * tree::kWidth, in_.leaf_counts[leaf], views);
-        return range.count > 0;
+        const tree::LeafRange range = in_.ranges[child];
+        if (range.count == 0) return false;
+        const std::uint32_t end = range.first + range.count;
+        const DU du;
+        const VU bit = hn::Set(du, view);
+        std::uint32_t leaf = range.first;
+        for (; leaf + hn::Lanes(du) <= end; leaf += static_cast<std::uint32_t>(hn::Lanes(du)))
+            hn::StoreU(hn::Or(hn::LoadU(du, out_.whole + leaf), bit), du, out_.whole + leaf);
+        for (; leaf < end; ++leaf) out_.whole[leaf] |= view;
+        touch(range.first, end - 1);
+        return true;
+    }
+
+    HWY_INLINE void touch(std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t block = first / 16; block <= last / 16; ++block)
+            out_.touched[block / 64] |= std::uint64_t{1} << (block % 64);
+    }
+
+    HWY_INLINE void note_open(std::uint32_t leaf, std::uint32_t planes, std::uint32_t v) {
+        out_.open[leaf] |= 1u << v;
+        planes_of(v)[leaf] = static_cast<std::uint16_t>(planes);
+        touch(leaf, leaf);
+    }
+
+    // Leaf by leaf only where they are not consecutive.
+    HWY_INLINE void note_leaves(const tree::Node& node, const NodeTest& test, std::uint32_t whole, std::uint32_t v) {
+        if (test.alive == 0) return;
+        const std::uint32_t first = node.child[0] & ~tree::kLeafBit, open = test.alive & ~whole;
+        if (HWY_UNLIKELY(!are_consecutive(node))) {
+            for_each_bit(whole, [&](unsigned lane) { note_whole(node.child[lane], 1u << v); });
+            for_each_bit(open,
+                         [&](unsigned lane) { note_open(node.child[lane] & ~tree::kLeafBit, test.planes[lane], v); });
+            return;
+        }
+        const DU du;
+        const DP dp;
+        const VU bit = hn::Set(du, 1u << v);
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+            const auto add = [&](std::uint32_t* views, std::uint32_t lanes) HWY_ATTR {
+                const VU more = hn::IfThenElseZero(mask_of(lanes >> l), bit);
+                hn::StoreU(hn::Or(hn::LoadU(du, views + first + l), more), du, views + first + l);
+            };
+            add(out_.whole, whole);
+            add(out_.open, open);
+            // Lanes beyond the last are other nodes' leaves.
+            std::uint16_t* planes = planes_of(v) + first + l;
+            const VU before = hn::PromoteTo(du, hn::LoadU(dp, planes));
+            const VU after = hn::IfThenElse(mask_of(open >> l), hn::Load(du, test.planes + l), before);
+            hn::StoreU(hn::DemoteTo(dp, hn::BitCast(DI(), after)), dp, planes);
+        }
+        touch(first, first + node.count - 1);
+    }
+
+    static HWY_INLINE bool are_consecutive(const tree::Node& node) {
+        const DU du;
+        const VU lanes = hn::Iota(du, 0);
+        for (std::size_t l = 0; l < tree::kWidth && l < node.count; l += hn::Lanes(du)) {
+            const VU next = hn::Add(lanes, hn::Set(du, node.child[0] + static_cast<std::uint32_t>(l)));
+            const auto differs = hn::Ne(hn::Load(du, node.child + l), next);
+            if (!hn::AllFalse(du, hn::And(differs, hn::FirstN(du, node.count - l)))) return false;
+        }
+        return true;
+    }
+
+    HWY_INLINE std::uint16_t* planes_of(std::uint32_t v) const {
+        return out_.planes + v * (std::size_t{in_.leaf_count} + tree::kWidth);
+    }
+
+    // Writes the leaves that are seen whole or not at all, and lists the others.
+    HWY_INLINE std::size_t write_whole() {
+        const std::uint32_t words = (in_.leaf_count + 1023) / 1024;
+        std::size_t listed = 0;
+        for (std::uint32_t w = 0; w < words; ++w) {
+            for (std::uint64_t rest = out_.touched[w]; rest; rest &= rest - 1)
+                listed = write_block(
+                    1024 * w + 16 * static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(rest)), listed);
+            out_.touched[w] = 0;
+        }
+        return listed;
+    }
+
+    HWY_INLINE std::size_t write_block(std::uint32_t first, std::size_t listed) {
+        const DU du;
+        const VU lanes = hn::Iota(du, 0), zero = hn::Zero(du), same = hn::Set(du, out_.whole[first]);
+        alignas(64) std::uint32_t views[16];
+        std::uint32_t whole = 0;
+        bool uniform = true;
+        for (std::uint32_t l = 0; l < 16; l += static_cast<std::uint32_t>(hn::Lanes(du))) {
+            const VU seen = hn::Load(du, out_.whole + first + l);
+            const auto open = hn::Ne(hn::Load(du, out_.open + first + l), zero);
+            const auto only = hn::AndNot(open, hn::Ne(seen, zero));
+            uniform = uniform && hn::AllTrue(du, hn::And(only, hn::Eq(seen, same)));
+            whole |= bits_of(hn::RebindMask(DF(), only)) << l;
+            hn::Store(seen, du, views + l);
+            hn::Store(hn::IfThenElseZero(open, seen), du, out_.whole + first + l);
+            hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, first + l)), open), du, out_.listed + listed);
+            listed += hn::CountTrue(du, open);
+        }
+        if (uniform && is_full(first)) {
+            for (std::uint32_t leaf = 0; leaf < 16; ++leaf) copy_leaf(first + leaf, same, std::size_t{16} * leaf);
+            out_.count += 256;
+        } else {
+            for_each_bit(whole, [&](unsigned lane) HWY_ATTR {
+                copy_leaf(first + lane, hn::Set(du, views[lane]), 0);
+                out_.count += in_.leaf_counts[first + lane];
+            });
+        }
+        return listed;
+    }
+
+    // Have these sixteen leaves sixteen items each?
+    HWY_INLINE bool is_full(std::uint32_t first) const {
+        if (first + 16 > in_.leaf_count) return false;
+        std::uint64_t counts[2];
+        std::memcpy(counts, in_.leaf_counts + first, 16);
+        return counts[0] == 0x1010101010101010u && counts[1] == 0x1010101010101010u;
+    }
+
+    HWY_INLINE void copy_leaf(std::uint32_t leaf, VU views, std::size_t at) {
+        const DU du;
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+            const VU items = hn::Load(du, in_.slot_items + std::size_t{leaf} * tree::kWidth + l);
+            hn::StoreU(items, du, out_.ids + out_.count + at + l);
+            store_masks(views, out_.count + at + l);
+        }
+    }
+
+    HWY_INLINE void prefetch_leaf(std::uint32_t leaf) const {
+        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * tree::kWidth);
+        for (std::size_t at = 0; at < offsetof(tree::Leaf, layers); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
+    }
+
+    HWY_INLINE void prefetch_node(std::uint32_t node) const {
+        for (std::size_t at = 0; at < offsetof(tree::Node, layers_any); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
+    }
+
+    HWY_INLINE void store_masks(VU masks, std::size_t at) {
+        Mask* to = static_cast<Mask*>(out_.masks) + at;
+        if constexpr (sizeof(Mask) == 4) {
+            hn::StoreU(masks, DU(), to);
+        } else {
+            const hn::Rebind<Mask, DU> narrow;
+            hn::StoreU(hn::DemoteTo(narrow, hn::BitCast(DI(), masks)), narrow, to);
+        }
+    }
+
+    HWY_INLINE void look_into(std::uint32_t id) {
+        const std::uint32_t whole = out_.whole[id], open = out_.open[id];
+        out_.whole[id] = out_.open[id] = 0;
+        const DU du;
+        const std::size_t count = in_.leaf_counts[id];
+        for (std::size_t l = 0; l < tree::kWidth && l < count; l += hn::Lanes(du)) {
+            VU mask = hn::Set(du, whole);
+            BoxLanes boxes = lanes_of(in_.views[0], in_.leaves[id], l);
+            for_each_bit(open, [&](unsigned v) HWY_ATTR {
+                const MF sees = test_view(v, boxes, id, l, planes_of(v)[id]);
+                mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(du, sees), hn::Set(du, 1u << v)));
+            });
+            const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, count - l));
+            hn::StoreU(hn::Compress(hn::Load(du, in_.slot_items + std::size_t{id} * tree::kWidth + l), seen), du,
+                       out_.ids + out_.count);
+            store_masks(hn::Compress(mask, seen), out_.count);
+            out_.count += hn::CountTrue(du, seen);
+        }
     }
 
     // The boxes of a leaf that view v sees, lanes l on.
-    HWY_INLINE MF test_view(unsigned v, std::uint32_t id, std::size_t l, std::uint32_t planes,
-                            const LocalPlane* local) const {
+    HWY_INLINE MF test_view(std::uint32_t v, BoxLanes& boxes, std::uint32_t id, std::size_t l,
+                            std::uint32_t planes) const {
         const tree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = in_.views[v];
+        const LocalOrigin at = local_origin(view, leaf.origin, leaf.reach);
+        boxes.present = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
         BoxTest test;
         if (HWY_LIKELY(planes && !(planes & (planes - 1)))) {
-            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
-            test = test_boxes(lanes_of(view, leaf, l), view.planes[i], local[i]);
+            const KernelPlane& plane = view.planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(planes)];
+            test = test_boxes(boxes, plane, local_plane(plane, at));
         } else {
-            test = test_leaf(view, leaf, l, planes, local, in_.exact);
+            LocalPlane local[KernelView::kMaxPlanes];
+            for_each_bit(planes, [&](unsigned i) { local[i] = local_plane(view.planes[i], at); });
+            test = test_boxes(view, boxes, planes, local, in_.exact);
+            if (!hn::AllFalse(DF(), test.unsettled)) settle(view, boxes, planes, local, test);
         }
         const MF seen = hn::Or(test.inside, test.straddling);
         if (HWY_LIKELY(hn::AllFalse(DF(), test.undecided))) return seen;
@@ -170,36 +298,21 @@ class ManyWalk {
         return hn::Or(seen, hn::RebindMask(DF(), hn::Ne(hn::Load(du, decided), hn::Zero(du))));
     }
 
-    HWY_INLINE void visit_leaf(const ManyViewsEntry& entry) {
-        const std::uint32_t id = entry.child & ~tree::kLeafBit;
-        const tree::Leaf& leaf = in_.leaves[id];
-        const DU du;
-        for (std::size_t l = 0; l < tree::kWidth && l < leaf.count; l += hn::Lanes(du)) {
-            VU mask = hn::Set(du, entry.whole);
-            for_each_bit(entry.straddling, [&](unsigned v) HWY_ATTR {
-                const LocalOrigin at = local_origin(in_.views[v], leaf.origin, leaf.reach);
-                LocalPlane local[KernelView::kMaxPlanes];
-                for_each_bit(entry.planes[v], [&](unsigned i) { local[i] = local_plane(in_.views[v].planes[i], at); });
-                const auto seen = hn::RebindMask(du, test_view(v, id, l, entry.planes[v], local));
-                mask = hn::Or(mask, hn::IfThenElseZero(seen, hn::Set(du, 1u << v)));
-            });
-            const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, leaf.count - l));
-            hn::StoreU(hn::Compress(hn::Load(du, in_.slot_items + id * tree::kWidth + l), seen), du,
-                       out_.ids + out_.count);
-            hn::StoreU(hn::Compress(mask, seen), du, out_.masks + out_.count);
-            out_.count += hn::CountTrue(du, seen);
-        }
-    }
-
     const ManyViewsInput& in_;
     ManyViewsOutput out_;
-    std::size_t size_ = 0;
 };
 
-void RunManyViews(const ManyViewsInput& input, ManyViewsOutput& output) {
-    ManyWalk walk(input, output);
+template <class Mask>
+void walk(const ManyViewsInput& input, ManyViewsOutput& output) {
+    ManyWalk<Mask> walk(input, output);
     walk.run();
     output = walk.result();
+}
+
+void RunManyViews(const ManyViewsInput& input, ManyViewsOutput& output) {
+    if (output.mask_bytes == 1) return walk<std::uint8_t>(input, output);
+    if (output.mask_bytes == 2) return walk<std::uint16_t>(input, output);
+    walk<std::uint32_t>(input, output);
 }
 
 }  // namespace

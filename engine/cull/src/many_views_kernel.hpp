@@ -6,20 +6,13 @@
 
 namespace crofton::cull {
 
-// A subtree, and what is still to be asked of it for each view: 10 words of 64 bits.
-struct ManyViewsEntry {
-    std::uint32_t child;
-    std::uint32_t straddling;  // views with planes left to test
-    std::uint32_t whole;       // views that see everything below
-    std::uint16_t planes[32];
-};
-
 struct ManyViewsInput {
     const tree::Node* nodes;
     const tree::Leaf* leaves;
     const tree::LeafRange* ranges;
     const std::uint8_t* leaf_counts;
     const tree::ItemId* slot_items;
+    std::uint32_t leaf_count;
     const KernelView* views;
     std::uint32_t view_count;
     bool exact;
@@ -29,10 +22,18 @@ struct ManyViewsInput {
 };
 
 struct ManyViewsOutput {
-    tree::ItemId* ids;
-    std::uint32_t* masks;
-    ManyViewsEntry* stack;
+    tree::ItemId* ids;       // room for all items and 16 more, as in masks
+    void* masks;             // integers of mask_bytes
+    std::size_t mask_bytes;  // 1, 2 or 4, with a bit for each view
     std::size_t count;
+    // For its own use. By leaf, with room for 16 more: the views that see it whole, and those that must look into it,
+    // all 0 and left so; for each view the planes that the leaf straddles.
+    std::uint32_t* whole;
+    std::uint32_t* open;
+    std::uint16_t* planes;
+    std::uint64_t* touched;  // a bit for every 16 leaves, 0 and left so
+    std::uint32_t* listed;   // room for all leaves and 16 more
+    std::uint64_t* stack;    // 16 entries a level
 };
 
 void run_many_views_kernel(const ManyViewsInput& input, ManyViewsOutput& output);
