@@ -45,6 +45,12 @@ TEST_SUITE("collide/ray") {
         CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, -1.0}, *mesh).has_value());
         CHECK(raycast(Ray{{1.0, 0.0, -5.0}}, *mesh).has_value());
         CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, nan, 1.0}}, Obb{}).has_value());
+        const Triangle triangle{glm::dvec3(-1, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 1, 0)};
+        CHECK(raycast(Ray{{0.0, 0.0, -5.0}}, triangle) == 5.0);
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, nan, 1.0}}, triangle).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}}, Triangle{glm::dvec3(nan), triangle[1], triangle[2]}).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, 4.5}, triangle).has_value());
+        CHECK_FALSE(raycast(Ray{{-5.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, triangle).has_value());  // in its plane
     }
 
     TEST_CASE("a box is entered where it should be") {
@@ -87,6 +93,12 @@ TEST_SUITE("collide/ray") {
             const auto hit = raycast(ray, *tree);
             CHECK(hit.has_value() == truth.has_value());
             CHECK(hits_any(ray, *tree) == truth.has_value());
+            std::optional<double> nearest;
+            for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+                if (const auto at = raycast(ray, Triangle{vertex(mesh, i, 0), vertex(mesh, i, 1), vertex(mesh, i, 2)}))
+                    nearest = nearest ? std::min(*nearest, *at) : at;
+            CHECK(nearest.has_value() == truth.has_value());
+            if (nearest && truth) CHECK(*nearest == doctest::Approx(*truth).epsilon(1e-9));
             if (hit && truth) CHECK(hit->t == doctest::Approx(*truth).epsilon(1e-9));
             hits += truth.has_value();
         }
@@ -101,8 +113,7 @@ TEST_SUITE("collide/ray") {
 
     TriangleMesh cube_mesh() {
         TriangleMesh mesh;
-        for (int i = 0; i < 8; ++i)
-            mesh.positions.push_back(glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+        for (int i = 0; i < 8; ++i) mesh.positions.push_back(glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
         mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                         2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
         return mesh;

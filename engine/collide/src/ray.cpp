@@ -7,6 +7,7 @@
 #include "posed_mesh.hpp"
 #include "ray_box.hpp"
 #include "ray_mesh.hpp"
+#include "sign_filter.hpp"
 
 namespace crofton::collide {
 namespace {
@@ -22,14 +23,38 @@ int side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
     return (term(1, 2, ray.direction.x) + term(2, 0, ray.direction.y) + term(0, 1, ray.direction.z)).sign();
 }
 
+// The same through a filter first: the differences and products are those of PlaneFilter, one difference fewer.
+int filtered_side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
+    const PlaneFilter plane(ray.origin, a, b);
+    const double determinant = glm::dot(plane.normal, ray.direction);
+    const double error = kOrientationError * glm::dot(plane.magnitude, glm::abs(ray.direction)) + 1e-280;
+    if (std::abs(determinant) > error) return determinant > 0.0 ? 1 : -1;
+    return side_of_edge(ray, a, b);
+}
+
 bool line_meets(const Ray& ray, const Triangle& t) {
     int low = 1, high = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const int side = side_of_edge(ray, t[k], t[(k + 1) % 3]);
+    for (std::size_t k = 0; k < 3 && !(low < 0 && high > 0); ++k) {
+        const int side = filtered_side_of_edge(ray, t[k], t[(k + 1) % 3]);
         low = std::min(low, side);
         high = std::max(high, side);
     }
     return (low >= 0 && high > 0) || (high <= 0 && low < 0);  // all zero: in the plane
+}
+
+// Where the line meets the plane, kept between the nearest and the farthest vertex along it, as the traversal does.
+double parameter(const Ray& ray, const Triangle& t) {
+    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double by_plane = glm::dot(n, t[0] - ray.origin) / glm::dot(n, ray.direction);
+    const double squared = glm::dot(ray.direction, ray.direction);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const glm::dvec3& vertex : t) {
+        const double at = glm::dot(vertex - ray.origin, ray.direction) / squared;
+        low = std::min(low, at);
+        high = std::max(high, at);
+    }
+    const double margin = 1e-12 * std::max(std::abs(low), std::abs(high));
+    return by_plane >= low - margin ? std::min(by_plane, high + margin) : low - margin;
 }
 
 RayAnswer trace(const Ray& ray, const tree::MeshTree& mesh, bool any) {
@@ -90,6 +115,16 @@ std::optional<double> entry_of(const Ray& ray, const Obb& box) {
 std::optional<double> raycast(const Ray& ray, const Obb& box) {
     if (!validate(ray) || !validate(box)) return std::nullopt;
     return entry_of(ray, box);
+}
+
+std::optional<double> raycast(const Ray& ray, const Triangle& triangle) {
+    if (!validate(ray)) return std::nullopt;
+    for (const glm::dvec3& vertex : triangle)
+        if (!std::isfinite(vertex.x + vertex.y + vertex.z)) return std::nullopt;
+    if (!line_meets(ray, triangle)) return std::nullopt;
+    const double t = parameter(ray, triangle);
+    if (!(t >= 0.0 && t <= ray.max_t)) return std::nullopt;
+    return t;
 }
 
 std::optional<RayHit> raycast(const Ray& ray, const tree::MeshTree& mesh) {

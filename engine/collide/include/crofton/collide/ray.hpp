@@ -1,4 +1,4 @@
-// Rays and segments against boxes and meshes.
+// Rays and segments against boxes, triangles and meshes.
 #pragma once
 #include <crofton/collide/triangle_triangle.hpp>
 #include <crofton/core/error.hpp>
@@ -24,13 +24,16 @@ struct Ray {
 // may be told either way.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Obb& box);
 
+// Whether the ray's line passes through a triangle, edges and corners included, is decided exactly, so nothing slips
+// through between triangles that share an edge; t is rounded. A ray within the plane of a triangle does not hit that
+// triangle.
+[[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
+
 struct RayHit {
     double t = 0.0;
     std::uint32_t triangle = 0;
 };
-// Whether the ray's line passes through a triangle, edges and corners included, is decided exactly, so nothing slips
-// through between triangles that share an edge; t is rounded. A ray within the plane of a triangle does not hit that
-// triangle. Of hits with equal t the triangle of the lowest index counts.
+// The nearest triangle, decided likewise; of hits with equal t that of the lowest index.
 [[nodiscard]] std::optional<RayHit> raycast(const Ray& ray, const tree::MeshTree& mesh);
 [[nodiscard]] bool hits_any(const Ray& ray, const tree::MeshTree& mesh);
 
