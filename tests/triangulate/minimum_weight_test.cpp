@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <chrono>
 #include <crofton/triangulate/triangulate.hpp>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -157,6 +158,7 @@ TEST_SUITE("triangulate/minimum_weight") {
             CHECK(result->triangles == delaunay->triangles);
             CHECK_FALSE(result->optimal);
             CHECK(result->weight <= minimum->weight * (1.0 + result->gap));
+            CHECK(std::isfinite(result->gap));
         }
     }
 
@@ -182,6 +184,23 @@ TEST_SUITE("triangulate/minimum_weight") {
             CHECK(result->optimal == (result->gap == 0.0));
         }
         CHECK(limited > 0);
+    }
+
+    TEST_CASE("a limit of 0.05 s is kept where the exact solution takes minutes, and the gap is finite") {
+        std::mt19937_64 random(32);
+        Polygon rough, round;
+        add_star(rough, random, {0, 0}, 9.0, 10.0, 30'000, 0.0);
+        add_star(round, random, {0, 0}, 10.0, 10.0, 30'000, 0.0);
+        for (const Polygon& p : {rough, round}) {
+            const auto start = std::chrono::steady_clock::now();
+            const auto result = triangulate::triangulate(p, {.seconds = 0.05});
+            const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+            REQUIRE(result.has_value());
+            CHECK_FALSE(result->optimal);
+            CHECK(result->gap > 0.0);
+            CHECK(result->gap < 50.0);
+            CHECK(taken.count() < 1.0);  // 0.06 s on an idle core
+        }
     }
 
     TEST_CASE("the progress callback sees growing shares and can cancel") {

@@ -16,6 +16,7 @@ constexpr double kCotangent = 1.0 / kTangent;
 constexpr double kRoundingUp = 1.0 + 1e-12;
 // How many neighbours in angular order are tried as witnesses on each side: pruning less is never wrong.
 constexpr std::size_t kNeighbours = 16;
+constexpr std::size_t kStepsPerEdge = 8;
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -54,7 +55,8 @@ bool CandidateFinder::find(const Domain& domain, std::size_t limit, Watch& watch
     for (Index p = 0; p < count; ++p) {
         seen_.clear();
         look_from(p);
-        if (graph.destination.size() + seen_.size() > limit || watch.stopped(0.5 * p / count)) return false;
+        if (graph.destination.size() + seen_.size() > limit) return false;
+        if (watch.stopped(0.5 * p / count, kStepsPerEdge * (seen_.size() + 1))) return false;
         if (p == count / 16) reserve(graph, 18 * graph.destination.size());
         for (const auto& seen : seen_) {
             graph.destination.push_back(seen.vertex);

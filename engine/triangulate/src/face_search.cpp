@@ -151,7 +151,8 @@ void FaceSearch::choose(Level& level) {
 
 FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, Watch& watch) {
     Level& level = levels_[depth];
-    if (!support_.build(level.points, level.graph, kNoLimit, unhurried_, level.lists)) return Outcome::infeasible;
+    if (!support_.build(level.points, level.graph, kNoLimit, watch, level.lists)) return Outcome::infeasible;
+    if (watch.stopped_now(kSearching)) return Outcome::gave_up;
     find_faces(level.graph, kFixed, level.faces);
     choose(level);
     level.witness.assign(level.graph.half_edge_count(), kNone);
@@ -159,10 +160,9 @@ FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, Watch& watch) {
     bool found = false, proven = true;
     double best = 0.0;
     for (std::size_t i = 0; i < level.choices.size(); ++i) {
-        if (found && watch.stopped_now(kSearching)) return Outcome::unproven;
         level.graph.flags = level.flags;
         const Outcome outcome = solve_choice(depth, level.choices[i], watch);
-        if (outcome == Outcome::gave_up) return outcome;
+        if (outcome == Outcome::gave_up) return found ? Outcome::unproven : outcome;
         if (outcome == Outcome::unproven) proven = false;
         if (outcome == Outcome::solved || outcome == Outcome::unproven) {
             const double weight = total_length(level.points, level.diagonals);
@@ -206,8 +206,8 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Wa
     fix(choice);
     fix(g.twin[choice]);
     level.working_lists = level.lists;
-    if (!support_.update(dead_, level.points, g, unhurried_, level.working_lists)) return Outcome::infeasible;
-    mark_certain(level);
+    if (!support_.update(dead_, level.points, g, watch, level.working_lists)) return Outcome::infeasible;
+    if (!mark_certain(level, watch)) return Outcome::gave_up;
     level.triangles.clear();
     level.diagonals.clear();
     for (Index h = 0; h < g.half_edge_count(); ++h) {
@@ -217,13 +217,16 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Wa
     return solve_rest(depth, watch);
 }
 
-void FaceSearch::mark_certain(Level& level) const {
+bool FaceSearch::mark_certain(Level& level, Watch& watch) const {
     CandidateGraph& g = level.graph;
+    if (watch.stopped_now(kSearching)) return false;
     for (Index h = 0; h < g.half_edge_count(); ++h) {
+        if (watch.stopped(kSearching, level.witness[h] == kNone ? g.half_edge_count() : 1)) return false;
         if (h > g.twin[h] || (g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0 || has_crossing(level, h)) continue;
         g.flags[h] |= CandidateGraph::kCertain;
         g.flags[g.twin[h]] |= CandidateGraph::kCertain;
     }
+    return true;
 }
 
 // An edge that leaves a living triangle's apex through h, if there is one.
@@ -279,9 +282,8 @@ FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, Watch& watch) {
         if (w >= level.faces.walk_count()) return Outcome::infeasible;
         const auto walk = level.faces.walk(w);
         if (walk.size() < 3 || !is_outer(level.points, level.graph, walk)) return Outcome::infeasible;
-        // Without a watch: a branch is tried to its end, so that there is always one triangulation.
-        if (!(program_.solve(walk, unhurried_, kSearching) < std::numeric_limits<double>::infinity()))
-            return Outcome::infeasible;
+        if (!(program_.solve(walk, watch, kSearching) < std::numeric_limits<double>::infinity()))
+            return watch.stopped_now(kSearching) ? Outcome::gave_up : Outcome::infeasible;
         program_.append(level.triangles, level.diagonals);
     }
     for (Index w = 0; w < pieces; ++w) {

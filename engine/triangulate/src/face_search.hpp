@@ -1,7 +1,5 @@
 // Faces whose boundary the certain edges leave in pieces: holes and isolated vertices that hang in the air.
 #pragma once
-#include <limits>
-
 #include "faces.hpp"
 #include "interval_program.hpp"
 #include "root_sums.hpp"
@@ -17,7 +15,8 @@ namespace crofton::triangulate {
 // depth.
 class FaceSearch {
   public:
-    // `unproven`: time ran out after a triangulation was found; `gave_up`: more pieces than the depth allowed.
+    // `unproven`: time ran out after a triangulation was found; `gave_up`: it ran out before, or there are more pieces
+    // than the depth allows.
     enum class Outcome : std::uint8_t { solved, unproven, infeasible, gave_up };
     static constexpr std::size_t kMostPieces = 48;
 
@@ -48,7 +47,8 @@ class FaceSearch {
     void extract(std::span<const glm::dvec2> points, const CandidateGraph& graph, const Faces& faces, Index name,
                  Level& level);
     void choose(Level& level);
-    void mark_certain(Level& level) const;
+    // Returns false if the watch stops.
+    [[nodiscard]] bool mark_certain(Level& level, Watch& watch) const;
     [[nodiscard]] bool has_crossing(Level& level, Index h) const;
     [[nodiscard]] Index crossing_from_apex(const Level& level, Index h) const;
     void raise(const Level& level, Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;
@@ -56,8 +56,6 @@ class FaceSearch {
     Vector<Level> levels_;
     TriangleSupport support_;
     IntervalProgram program_;
-    Options no_limits_{.seconds = std::numeric_limits<double>::infinity()};
-    Watch unhurried_{no_limits_};
     RootSums sums_;
     Vector<Index> members_, option_, dead_;
 };

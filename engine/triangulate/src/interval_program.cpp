@@ -71,10 +71,11 @@ double IntervalProgram::solve(std::span<const Index> walk, Watch& watch, double 
     tolerance_ = (count + 8.0) * 0x1p-52;
     for (Index low = count - 1; low-- > 0;) {
         const bool root = low == 0;
-        if (watch.stopped(fraction)) return kInfinity;
+        if (watch.stopped(fraction, 1)) return kInfinity;
         for (Index s = first_[low] + 1; s + 1 < first_[low + 1]; ++s) {
             Slot& slot = slots_[s];
             if (slot.target < low) break;  // targets ascend from low + 1 and then wrap
+            if (watch.stopped(fraction, s - first_[low] + first_[slot.target + 1] - slot.twin)) return kInfinity;
             const Best best = combine(low, slot.target, s, slot.twin + 1);
             slot.middle = slots_[slot.twin].middle = best.middle;
             slot.value = slots_[slot.twin].value = best.value + slot.length;

@@ -18,7 +18,8 @@ class IntervalProgram {
     void start(std::span<const glm::dvec2> points, const CandidateGraph& graph);
 
     // `walk` holds each corner's outgoing half-edge, in order. Returns the weight of the edges inside, or infinity if
-    // the candidates triangulate no such face; the walk must have at least three corners and must outlive append().
+    // the candidates triangulate no such face or the watch stops; the walk must have at least three corners and must
+    // outlive append().
     [[nodiscard]] double solve(std::span<const Index> walk, Watch& watch, double fraction);
     // Appends the triangles of the last solve, as half-edges of the graph whose origins are their corners, and the
     // lengths of the edges inside.

@@ -7,6 +7,7 @@
 
 namespace crofton::triangulate {
 namespace {
+constexpr double kFraction = 0.5;  // the share of the work that is done, as told to the caller
 constexpr std::uint8_t kPlaced = CandidateGraph::kCertain | CandidateGraph::kLeftSettled;
 constexpr std::uint8_t kSettled = CandidateGraph::kConstraint | CandidateGraph::kDead;
 }  // namespace
@@ -24,23 +25,25 @@ void LmtSkeleton::prune(std::span<const glm::dvec2> points, CandidateGraph& grap
         for (Index p = 0; p < graph.vertex_count(); ++p) {
             if (changed_[p] == 0) continue;
             again = true;
-            if (watch.stopped(0.5)) return;
             changed_[p] = 0;
-            look_around(p);
+            look_around(p, watch);
+            if (watch.stopped(kFraction, 1)) return;
         }
     }
 }
 
 // Certifies the edges of p whose certificate has lost an edge at p, and kills those that have none.
-void LmtSkeleton::look_around(Index p) {
+void LmtSkeleton::look_around(Index p, Watch& watch) {
     auto& g = *graph_;
     stamp(p);
     for (Index h = g.first[p], end = g.first[p + 1]; h < end; ++h) {
         if ((g.flags[h] & kSettled) != 0) continue;
         const Certificate c = certificates_[h];
         const bool stands = c.left != kNone && stamp_[c.left] == stamp_value_ && stamp_[c.right] == stamp_value_;
-        if (stands || certify(h)) continue;
+        if (stands) continue;
         const Index q = g.destination[h];
+        if (watch.stopped(kFraction, g.first[q + 1] - g.first[q])) return;
+        if (certify(h)) continue;
         g.flags[h] |= CandidateGraph::kDead;
         g.flags[g.twin[h]] |= CandidateGraph::kDead;
         stamp_[q] = 0;
@@ -100,7 +103,7 @@ bool LmtSkeleton::certify(Index h) {
 
 // Living Delaunay edges cross only others, which are walked through the Delaunay triangles. Almost all of them cross a
 // living Delaunay edge; only triangles with one that does not are searched for crossings inside.
-void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) {
+bool LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph, Watch& watch) {
     graph_ = &graph;
     points_ = mesh.points;
     auto& g = graph;
@@ -110,40 +113,65 @@ void LmtSkeleton::mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph) 
         find_delaunay();
     }
     crossed_.assign(count, 0);
-    chord_head_.assign(mesh_->triangle_count(), kNone);
-    chords_.clear();
-    const auto is_chord = [&](Index h) {
-        return h < g.twin[h] && alive(h) && (g.flags[h] & (CandidateGraph::kDelaunay | kPlaced)) == 0;
-    };
-    for (Index h = 0; h < count; ++h) {
-        if (is_chord(h)) walk(h, [&](Index, Index crossing) { cross_delaunay(h, crossing); });
-    }
-    lonely_.clear();
-    for (Index h = 0; h < count; ++h) {
-        if (is_chord(h) && !crossed_[h]) lonely_.push_back(h);
-    }
-    for (const Index h : lonely_) walk(h, [&](Index triangle, Index) { chord_head_[triangle] = kEmptyList; });
-    for (Index h = 0; h < count && !lonely_.empty(); ++h) {
-        if (!is_chord(h)) continue;
-        walk(h, [&](Index triangle, Index) {
-            if (chord_head_[triangle] == kNone) return;
-            chords_.push_back({h, chord_head_[triangle]});
-            chord_head_[triangle] = static_cast<Index>(chords_.size() - 1);
-        });
-    }
-    for (const Index h : lonely_) {
-        walk(h, [&](Index triangle, Index) {
-            for (Index i = chord_head_[triangle]; i != kEmptyList && !crossed_[h]; i = chords_[i].next) {
-                const Index k = chords_[i].half_edge;
-                if (candidates_cross(points_, origin(h), g.destination[h], origin(k), g.destination[k]))
-                    crossed_[h] = 1;
-            }
-        });
-    }
+    if (!cross_chords(watch) || !cross_lonely_chords(watch)) return false;
     for (Index h = 0; h < count; ++h) {
         if (alive(h) && (g.flags[h] & kPlaced) == 0 && !crossed_[h] && !crossed_[g.twin[h]])
             g.flags[h] |= CandidateGraph::kCertain;
     }
+    return true;
+}
+
+bool LmtSkeleton::is_chord(Index h) const {
+    return h < graph_->twin[h] && alive(h) && (graph_->flags[h] & (CandidateGraph::kDelaunay | kPlaced)) == 0;
+}
+
+bool LmtSkeleton::cross_chords(Watch& watch) {
+    for (Index h = 0; h < crossed_.size(); ++h) {
+        std::size_t steps = 0;
+        if (!is_chord(h)) continue;
+        walk(h, [&](Index, Index crossing) {
+            cross_delaunay(h, crossing);
+            ++steps;
+        });
+        if (watch.stopped(kFraction, steps)) return false;
+    }
+    return true;
+}
+
+bool LmtSkeleton::cross_lonely_chords(Watch& watch) {
+    const auto& g = *graph_;
+    lonely_.clear();
+    for (Index h = 0; h < crossed_.size(); ++h) {
+        if (is_chord(h) && !crossed_[h]) lonely_.push_back(h);
+    }
+    if (lonely_.empty()) return true;
+    chord_head_.assign(mesh_->triangle_count(), kNone);
+    chords_.clear();
+    for (const Index h : lonely_) walk(h, [&](Index triangle, Index) { chord_head_[triangle] = kEmptyList; });
+    for (Index h = 0; h < crossed_.size(); ++h) {
+        std::size_t steps = 0;
+        if (!is_chord(h)) continue;
+        walk(h, [&](Index triangle, Index) {
+            ++steps;
+            if (chord_head_[triangle] == kNone) return;
+            chords_.push_back({h, chord_head_[triangle]});
+            chord_head_[triangle] = static_cast<Index>(chords_.size() - 1);
+        });
+        if (watch.stopped(kFraction, steps)) return false;
+    }
+    for (const Index h : lonely_) {
+        std::size_t steps = 0;
+        walk(h, [&](Index triangle, Index) {
+            for (Index i = chord_head_[triangle]; i != kEmptyList && !crossed_[h]; i = chords_[i].next) {
+                const Index k = chords_[i].half_edge;
+                ++steps;
+                if (candidates_cross(points_, origin(h), g.destination[h], origin(k), g.destination[k]))
+                    crossed_[h] = 1;
+            }
+        });
+        if (watch.stopped(kFraction, steps)) return false;
+    }
+    return true;
 }
 
 // graph_edge_[e] is the graph's half-edge for the mesh's e, where it is a candidate.

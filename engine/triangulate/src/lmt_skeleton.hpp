@@ -16,7 +16,8 @@ class LmtSkeleton {
     void prune(std::span<const glm::dvec2> points, CandidateGraph& graph, Watch& watch);
     // Sets kCertain on living edges that no living edge crosses, but for those in settled faces. `mesh` is the
     // constrained Delaunay triangulation that the candidates of this graph, the last one pruned, come from.
-    void mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph);
+    // Returns false, with nothing set, if the watch stops.
+    [[nodiscard]] bool mark_certain(const HalfEdgeMesh& mesh, CandidateGraph& graph, Watch& watch);
 
   private:
     struct Certificate {
@@ -27,7 +28,7 @@ class LmtSkeleton {
     };
 
     [[nodiscard]] bool alive(Index h) const { return (graph_->flags[h] & CandidateGraph::kDead) == 0; }
-    void look_around(Index p);
+    void look_around(Index p, Watch& watch);
     void stamp(Index p);
     [[nodiscard]] bool certify(Index h);
     [[nodiscard]] Index origin(Index h) const { return graph_->destination[graph_->twin[h]]; }
@@ -35,6 +36,9 @@ class LmtSkeleton {
     void cross_delaunay(Index h, Index crossing);
     template <class Visit>
     void walk(Index h, Visit visit) const;
+    [[nodiscard]] bool cross_chords(Watch& watch);
+    [[nodiscard]] bool cross_lonely_chords(Watch& watch);
+    [[nodiscard]] bool is_chord(Index h) const;
 
     std::span<const glm::dvec2> points_;
     const HalfEdgeMesh* mesh_ = nullptr;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace crofton::triangulate {
 namespace {
@@ -10,6 +11,9 @@ namespace {
 constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
 // Candidates, their twins, certificates, walks and programme slots, with the growth of their arrays.
 constexpr std::size_t kBytesPerHalfEdge = 96;
+// Of one operation of a sum, with room for the roots in it.
+constexpr double kRounding = 0x1p-50;
+constexpr double kPruned = 0.55;  // the share of the work that is done when edges are pruned, as told to the caller
 constexpr std::size_t kLongRing = 3000, kFewCandidates = 40;
 constexpr std::size_t kBytesPerTriangleSide = 2 * sizeof(TriangleSupport::Lists::Entry);
 
@@ -18,39 +22,35 @@ double length(std::span<const glm::dvec2> points, const Segment& s) {
     return std::sqrt(d.x * d.x + d.y * d.y);
 }
 
+// Reorders the lengths.
+double sum_of_shortest(std::span<double> lengths, std::size_t count) {
+    count = std::min(count, lengths.size());
+    std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(count), lengths.end());
+    return std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
+}
+
+tl::unexpected<Error> cancelled() {
+    return fail(ErrorCode::cancelled, kNoItem, "cancelled by the progress callback");
+}
+
 }  // namespace
 
-Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, Triangulation& result) {
-    Watch watch(options);
+Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, Watch& watch, Triangulation& result) {
     lower_bound_ = 0.0;
     proven_ = true;
     corners_.clear();
     diagonals_.clear();
-    const auto cancelled = [] { return fail(ErrorCode::cancelled, kNoItem, "cancelled by the progress callback"); };
-    if (!finder_.find(domain, options.bytes / kBytesPerHalfEdge, watch, graph_)) {
-        if (watch.cancelled()) return cancelled();
+    const bool candidates = finder_.find(domain, options.bytes / kBytesPerHalfEdge, watch, graph_);
+    const bool faces = candidates && settle_faces(domain, options, watch);
+    if (watch.cancelled()) return cancelled();
+    if (!faces) {
+        bound_whole(domain, candidates);
         return false;
     }
+    if (infeasible_) return fail(ErrorCode::internal, kNoItem, "a side of the polygon has no triangle");
     const auto points = domain.mesh().points;
-    // Long rings with few candidates are pruned too: sums of thousands of lengths that tie are costly to compare.
-    const bool long_ring =
-        domain.vertex_count() > kLongRing && graph_.half_edge_count() < kFewCandidates * domain.vertex_count();
-    const bool prune = domain.ring_count() > 1 || long_ring;
-    if (!prune) find_faces(graph_, CandidateGraph::kConstraint, faces_);
-    if (prune || has_pieces()) {
-        skeleton_.prune(points, graph_, watch);
-        skeleton_.mark_certain(domain.mesh(), graph_);
-        find_faces(graph_, kFixed, faces_);
-    }
-    if (has_pieces()) {
-        settle_simple_faces();
-        if (!support_.build(points, graph_, options.bytes / kBytesPerTriangleSide, watch, lists_))
-            return fail(ErrorCode::internal, kNoItem, "a side of the polygon has no triangle");
-        skeleton_.mark_certain(domain.mesh(), graph_);
-        find_faces(graph_, kFixed, faces_);
-    }
     program_.start(points, graph_);
-    bool complete = true;
+    unsolved_.clear();
     const auto count = static_cast<Index>(faces_.component.size());
     for (Index w = 0; w < count; ++w) {
         if (faces_.component[w] != w) continue;
@@ -58,10 +58,37 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
         if (watch.cancelled()) return cancelled();
         if (outcome == FaceSearch::Outcome::infeasible)
             return fail(ErrorCode::internal, w, "a face has no triangulation");
-        if (outcome == FaceSearch::Outcome::gave_up) complete = false;
+        if (outcome == FaceSearch::Outcome::gave_up) gave_up_ = true;
     }
+    const bool complete = !gave_up_;
+    bound_unsolved(points);
     finish(domain, complete, result);
     return complete;
+}
+
+// Returns false if the watch stops before the certain edges are known.
+bool MinimumWeight::settle_faces(const Domain& domain, const Options& options, Watch& watch) {
+    const auto points = domain.mesh().points;
+    infeasible_ = gave_up_ = false;
+    // Long rings with few candidates are pruned too: sums of thousands of lengths that tie are costly to compare.
+    const bool long_ring =
+        domain.vertex_count() > kLongRing && graph_.half_edge_count() < kFewCandidates * domain.vertex_count();
+    const bool prune = domain.ring_count() > 1 || long_ring;
+    if (!prune) find_faces(graph_, CandidateGraph::kConstraint, faces_);
+    if (prune || has_pieces()) {
+        skeleton_.prune(points, graph_, watch);
+        if (watch.stopped_now(kPruned) || !skeleton_.mark_certain(domain.mesh(), graph_, watch)) return false;
+        find_faces(graph_, kFixed, faces_);
+    }
+    if (has_pieces()) {
+        settle_simple_faces();
+        infeasible_ = !support_.build(points, graph_, options.bytes / kBytesPerTriangleSide, watch, lists_);
+        // The faces found before are a valid division, too.
+        if (infeasible_ || watch.stopped_now(kPruned) || !skeleton_.mark_certain(domain.mesh(), graph_, watch))
+            return true;
+        find_faces(graph_, kFixed, faces_);
+    }
+    return true;
 }
 
 bool MinimumWeight::has_pieces() const {
@@ -89,17 +116,14 @@ FaceSearch::Outcome MinimumWeight::solve_face(std::span<const glm::dvec2> points
     }
     const std::size_t before = diagonals_.size();
     Outcome outcome = Outcome::gave_up;
-    // A search once begun goes on to its first triangulation, so none begins late.
-    if (!simple && watch.stopped_now(fraction)) {
-        outcome = Outcome::gave_up;
-    } else if (!simple) {
+    if (!simple && !watch.stopped_now(fraction)) {
         outcome = search_.solve(points, graph_, faces_, name, watch, corners_, diagonals_);
-    } else if (!watch.stopped(fraction)) {
+    } else if (simple && !watch.stopped(fraction, 1)) {
         const double weight = program_.solve(faces_.walk(name), watch, fraction);
         if (weight < std::numeric_limits<double>::infinity()) {
             program_.append(corners_, diagonals_);
             outcome = Outcome::solved;
-        } else if (!watch.stopped(fraction)) {
+        } else if (!watch.stopped_now(fraction)) {
             outcome = Outcome::infeasible;
         }
     }
@@ -107,30 +131,69 @@ FaceSearch::Outcome MinimumWeight::solve_face(std::span<const glm::dvec2> points
         for (std::size_t i = before; i < diagonals_.size(); ++i) lower_bound_ += length(points, diagonals_[i]);
     } else {
         proven_ = false;
-        lower_bound_ += face_lower_bound(points, name);
+        unsolved_.push_back(name);
     }
     return outcome;
 }
 
+// Without faces: all diagonals are different candidates, of which there are at least as many as the shortest.
+void MinimumWeight::bound_whole(const Domain& domain, bool candidates) {
+    const auto& mesh = domain.mesh();
+    double bound = delaunay_bound_.weight(domain), slits = 0.0;
+    if (candidates) {
+        std::size_t diagonals = 0;
+        for (Index e = 0; e < mesh.origin.size(); ++e) {
+            if ((e & 3u) == 3u || mesh.twin[e] == kNone || e > mesh.twin[e]) continue;
+            if (!domain.inside(e / 4) || !domain.inside(mesh.twin[e] / 4)) continue;
+            if (mesh.mark[e] == 0)
+                ++diagonals;
+            else
+                slits += length(mesh.points, {mesh.origin[e], mesh.destination(e)});
+        }
+        lengths_.clear();
+        for (Index h = 0; h < graph_.half_edge_count(); ++h) {
+            if ((graph_.flags[h] & (kFixed | CandidateGraph::kDead)) != 0 || h > graph_.twin[h]) continue;
+            lengths_.push_back(length(mesh.points, {graph_.destination[h], graph_.destination[graph_.twin[h]]}));
+        }
+        bound = std::max(bound, slits + sum_of_shortest(lengths_, diagonals));
+    }
+    lower_bound_ = bound * (1.0 - kRounding * static_cast<double>(mesh.points.size() + 16)) * domain.scale();
+}
+
 // A face with m sides in p pieces has t = m − 2 + 2(p − 1) triangles and (3t − m)/2 diagonals, all different
 // candidates.
-double MinimumWeight::face_lower_bound(std::span<const glm::dvec2> points, Index name) {
-    std::size_t sides = 0;
-    for (std::size_t w = 0; w < faces_.walk_count(); ++w) {
-        if (faces_.component[w] == name) sides += faces_.walk(w).size();
-    }
-    const std::size_t triangles = sides - 2 + 2 * (faces_.component_size[name] - 1);
-    lengths_.clear();
+void MinimumWeight::bound_unsolved(std::span<const glm::dvec2> points) {
+    if (unsolved_.empty()) return;
+    struct Face {
+        Index sides = 0, begin = 0, end = 0;
+    };
+    Vector<Face> faces(faces_.component.size());
+    for (std::size_t w = 0; w < faces_.walk_count(); ++w)
+        faces[faces_.component[w]].sides += static_cast<Index>(faces_.walk(w).size());
+    const auto face_of = [&](Index h) {
+        const bool open = (graph_.flags[h] & (kFixed | CandidateGraph::kDead)) == 0 && h < graph_.twin[h];
+        return open && faces_.walk_of[h] != kNone ? faces_.component[faces_.walk_of[h]] : kNone;
+    };
     for (Index h = 0; h < graph_.half_edge_count(); ++h) {
-        if ((graph_.flags[h] & (kFixed | CandidateGraph::kDead)) != 0 || h > graph_.twin[h]) continue;
-        if (faces_.walk_of[h] == kNone || faces_.component[faces_.walk_of[h]] != name) continue;
-        lengths_.push_back(length(points, {graph_.destination[h], graph_.destination[graph_.twin[h]]}));
+        if (const Index face = face_of(h); face != kNone) ++faces[face].end;
     }
-    const std::size_t diagonals = std::min((3 * triangles - sides) / 2, lengths_.size());
-    std::nth_element(lengths_.begin(), lengths_.begin() + static_cast<std::ptrdiff_t>(diagonals), lengths_.end());
-    double sum = 0.0;
-    for (std::size_t i = 0; i < diagonals; ++i) sum += lengths_[i];
-    return sum;
+    Index total = 0;
+    for (Face& face : faces) {
+        face.begin = total;
+        total += face.end;
+        face.end = face.begin;
+    }
+    lengths_.resize(total);
+    for (Index h = 0; h < graph_.half_edge_count(); ++h) {
+        if (const Index face = face_of(h); face != kNone)
+            lengths_[faces[face].end++] = length(points, {graph_.destination[h], graph_.destination[graph_.twin[h]]});
+    }
+    for (const Index name : unsolved_) {
+        const Face& face = faces[name];
+        const std::size_t triangles = face.sides - 2 + 2 * (faces_.component_size[name] - 1);
+        lower_bound_ += sum_of_shortest(std::span(lengths_).subspan(face.begin, face.end - face.begin),
+                                        (3 * triangles - face.sides) / 2);
+    }
 }
 
 void MinimumWeight::finish(const Domain& domain, bool complete, Triangulation& result) {
@@ -145,7 +208,7 @@ void MinimumWeight::finish(const Domain& domain, bool complete, Triangulation& r
         if (!complete) diagonals_.push_back(edge);
     }
     // Rounding of all sums below; what is proven keeps this distance.
-    const double slack = 1.0 - 0x1p-50 * (static_cast<double>(diagonals_.size()) + 64.0);
+    const double slack = 1.0 - kRounding * (static_cast<double>(diagonals_.size() + lengths_.size()) + 64.0);
     lower_bound_ = (lower_bound_ + weight) * slack * domain.scale();
     if (!complete) return;
     const auto input = [&](Index h) {

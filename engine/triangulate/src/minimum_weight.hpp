@@ -5,6 +5,7 @@
 #include "face_search.hpp"
 #include "faces.hpp"
 #include "interval_program.hpp"
+#include "length_bounds.hpp"
 #include "lmt_skeleton.hpp"
 #include "triangle_support.hpp"
 
@@ -14,7 +15,7 @@ class MinimumWeight {
   public:
     // False if a budget ran out before all faces had a triangulation; then known_edges() tells what is settled. Errors:
     // cancelled.
-    [[nodiscard]] Result<bool> solve(const Domain& domain, const Options& options, Triangulation& result);
+    [[nodiscard]] Result<bool> solve(const Domain& domain, const Options& options, Watch& watch, Triangulation& result);
     // Diagonals that are proven to be in a minimum-weight triangulation, or in the best one known of a face.
     [[nodiscard]] std::span<const Segment> known_edges() const { return diagonals_; }
     // The proven bound on how much heavier than the minimum a triangulation of the last domain with this weight is.
@@ -23,11 +24,13 @@ class MinimumWeight {
     }
 
   private:
+    [[nodiscard]] bool settle_faces(const Domain& domain, const Options& options, Watch& watch);
     [[nodiscard]] bool has_pieces() const;
     void settle_simple_faces();
     [[nodiscard]] FaceSearch::Outcome solve_face(std::span<const glm::dvec2> points, Index name, Watch& watch,
                                                  double fraction);
-    [[nodiscard]] double face_lower_bound(std::span<const glm::dvec2> points, Index name);
+    void bound_whole(const Domain& domain, bool candidates);
+    void bound_unsolved(std::span<const glm::dvec2> points);
     void finish(const Domain& domain, bool complete, Triangulation& result);
 
     CandidateGraph graph_;
@@ -40,9 +43,11 @@ class MinimumWeight {
     FaceSearch search_;
     Vector<std::array<Index, 3>> corners_;
     Vector<Segment> diagonals_;
+    Vector<Index> unsolved_;  // names of faces
+    DelaunayBound delaunay_bound_;
     Vector<double> lengths_;
     double lower_bound_ = 0.0;
-    bool proven_ = true;
+    bool proven_ = true, infeasible_ = false, gave_up_ = false;
 };
 
 }  // namespace crofton::triangulate

@@ -6,6 +6,10 @@
 #include "local_minimality.hpp"
 
 namespace crofton::triangulate {
+namespace {
+// The shares of the work that are done when listing and pruning begin, as told to the caller.
+constexpr double kListing = 0.5, kPruning = 0.55;
+}  // namespace
 
 void TriangleSupport::start(std::span<const glm::dvec2> points, CandidateGraph& graph, Lists& lists) {
     points_ = points;
@@ -20,7 +24,7 @@ bool TriangleSupport::build(std::span<const glm::dvec2> points, CandidateGraph& 
                             Lists& lists) {
     start(points, graph, lists);
     if (!list_triangles(limit, watch)) return true;
-    drop_incomplete();
+    drop_incomplete(watch);
     return run(watch);
 }
 
@@ -39,11 +43,14 @@ bool TriangleSupport::list_triangles(std::size_t limit, Watch& watch) {
     leaving_.assign(g.vertex_count(), kNone);
     admitted_.assign(g.vertex_count(), kNone);
     for (Index p = 0; p < g.vertex_count(); ++p) {
-        if (watch.stopped(0.5) || lists_->entries.size() > limit) return false;
+        if (lists_->entries.size() > limit) return false;
         for (Index h = g.first[p]; h < g.first[p + 1]; ++h) leaving_[g.destination[h]] = alive(h) ? h : kNone;
         for (Index h = g.first[p]; h < g.first[p + 1]; ++h) {
             if (g.destination[h] < p || !alive(h) || (!left_inside(h) && !left_inside(g.twin[h]))) continue;
+            const Index q = g.destination[h];
+            if (watch.stopped(kListing, g.first[p + 1] - g.first[p] + g.first[q + 1] - g.first[q])) return false;
             collect_sides(h);
+            if (watch.stopped(kListing, left_.size() * right_.size())) return false;
             if (!fixed(h)) support_sides(h);
             store(h, left_);
             store(g.twin[h], right_);
@@ -135,10 +142,11 @@ void TriangleSupport::store(Index h, const Vector<Side>& side) {
 }
 
 // A triangle must be in the lists of all its sides.
-void TriangleSupport::drop_incomplete() {
+void TriangleSupport::drop_incomplete(Watch& watch) {
     const auto& g = *graph_;
     for (Index h = 0; h < g.half_edge_count(); ++h) {
         const Index p = origin(h);
+        if (watch.stopped(kListing, 4 * lists_->ranges[h].size)) return;
         for (Index i = 0; i < lists_->ranges[h].size;) {
             const Index next = entries(h)[i].next;
             const auto others = entries(next);
@@ -156,7 +164,7 @@ bool TriangleSupport::run(Watch& watch) {
         const Index h = stack_.back();
         stack_.pop_back();
         queued_[h] = 0;
-        if (watch.stopped(0.55)) return true;
+        if (watch.stopped(kPruning, 4 * lists_->ranges[h].size + 1)) return true;
         if (alive(h)) check(h);
     }
     return feasible_;

@@ -47,7 +47,7 @@ class TriangleSupport {
     void scan(Index h, Admit admit) const;
     void support_sides(Index h);
     void store(Index h, const Vector<Side>& side);
-    void drop_incomplete();
+    void drop_incomplete(Watch& watch);
     [[nodiscard]] bool run(Watch& watch);
     void check(Index h);
     [[nodiscard]] bool find_support(Index h, Lists::Entry& entry) const;

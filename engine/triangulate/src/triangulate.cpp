@@ -60,9 +60,10 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
     result.weight = 0.0;
     result.optimal = false;
     result.gap = std::numeric_limits<double>::infinity();
+    Watch watch(options);
     if (auto built = workspace_->domain.build(polygon); !built) return built;
     if (options.method == Method::minimum_weight) {
-        const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, result);
+        const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
         if (!solved) return tl::unexpected<Error>(solved.error());
         if (*solved) return {};
         workspace_->domain.insert_diagonals(workspace_->minimum_weight.known_edges());

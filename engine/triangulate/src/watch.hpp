@@ -1,5 +1,6 @@
 // When to stop: time, the caller's wish.
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <crofton/triangulate/triangulate.hpp>
 
@@ -14,9 +15,10 @@ class Watch {
         }
     }
 
-    // Cheap enough for inner loops: the clock is read and the caller told every 64th time only.
-    [[nodiscard]] bool stopped(double fraction) {
-        if (!stopped_ && ++ticks_ % 64 == 0) check(fraction);
+    // Cheap enough for inner loops: the clock is read and the caller told only when so many steps of some 10 ns have
+    // been made since the last time.
+    [[nodiscard]] bool stopped(double fraction, std::size_t steps) {
+        if (!stopped_ && (steps_ += steps) >= kStepsBetween) check(fraction);
         return stopped_;
     }
     [[nodiscard]] bool stopped_now(double fraction) {
@@ -28,14 +30,19 @@ class Watch {
   private:
     using Clock = std::chrono::steady_clock;
 
+    static constexpr std::size_t kStepsBetween = 1 << 14;
+
     void check(double fraction) {
-        cancelled_ = options_.progress != nullptr && !options_.progress(options_.user, fraction);
+        steps_ = 0;
+        fraction_ = std::max(fraction_, fraction);
+        cancelled_ = options_.progress != nullptr && !options_.progress(options_.user, fraction_);
         stopped_ = cancelled_ || (limited_ && Clock::now() >= deadline_);
     }
 
     const Options& options_;
     Clock::time_point deadline_{};
-    std::uint32_t ticks_ = 0;
+    std::size_t steps_ = 0;
+    double fraction_ = 0.0;
     bool limited_ = false, stopped_ = false, cancelled_ = false;
 };
 
