@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <crofton/triangulate/planar_patches.hpp>
 #include <limits>
@@ -114,6 +115,115 @@ TEST_SUITE("triangulate/planar_patches") {
             CHECK(again->improved == 0);
             CHECK(again->weight_before == doctest::Approx(report->weight_after).epsilon(1e-12));
         }
+    }
+
+    TEST_CASE("values of another number than vertices are refused") {
+        const TriangleMesh mesh = fan_of_rectangle(4.0f, 1.0f, 4);
+        const std::vector<float> values(2 * mesh.positions.size() - 1);
+        const triangulate::VertexValues uv{values, 2, 0.0, false};
+        CHECK(find_planar_patches(mesh, 0.0, {&uv, 1}).error().code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a flat area is one patch only where its values are one linear function, up to their tolerance") {
+        const TriangleMesh mesh = fan_of_rectangle(8.0f, 1.0f, 8);
+        std::vector<float> uv;
+        for (const auto& p : mesh.positions) uv.insert(uv.end(), {0.25f * p.x + p.y, 3.0f - p.x});
+        const auto patches = [&](double tolerance, bool constant = false) {
+            const triangulate::VertexValues field{uv, 2, tolerance, constant};
+            return find_planar_patches(mesh, 0.0, {&field, 1}).value().size();
+        };
+        CHECK(patches(1e-6) == 1);
+        CHECK(patches(1e-6, true) == 0);
+        CHECK(patches(10.0, true) == 1);
+        // The far corner of the last triangle leaves the plane of values.
+        uv[2 * 4] += 0.01f;
+        CHECK(patches(0.02) == 1);
+        const triangulate::VertexValues field{uv, 2, 1e-3, false};
+        const auto parted = find_planar_patches(mesh, 0.0, {&field, 1});
+        for (const auto& patch : *parted) CHECK(std::count(patch.vertices.begin(), patch.vertices.end(), 4u) == 0);
+        uv[2 * 4] = std::numeric_limits<float>::quiet_NaN();
+        const auto broken = find_planar_patches(mesh, 0.0, {&field, 1});
+        for (const auto& patch : *broken) CHECK(std::count(patch.vertices.begin(), patch.vertices.end(), 4u) == 0);
+    }
+
+    TEST_CASE("what is interpolated changes nowhere by more than twice the tolerance") {
+        TriangleMesh mesh = fan_of_rectangle(16.0f, 2.0f, 16);
+        std::vector<float> values;
+        constexpr double kTolerance = 0.01;
+        std::uint32_t state = 7;
+        for (const auto& p : mesh.positions) {
+            state = state * 1664525u + 1013904223u;
+            const float noise = 0.004f * (static_cast<float>(state >> 16) / 65536.0f - 0.5f);
+            values.push_back(0.5f * p.x - p.y + noise);
+        }
+        const TriangleMesh before = mesh;
+        const triangulate::VertexValues field{values, 1, kTolerance, false};
+        triangulate::PatchOptions options;
+        options.values = {&field, 1};
+        CHECK(retriangulate_planar_patches(mesh, options)->improved >= 1);
+        const auto interpolated = [&](const TriangleMesh& m, const glm::dvec2& p) {
+            for (std::size_t t = 0; t < m.indices.size(); t += 3) {
+                const auto corner = [&](std::size_t k) { return glm::dvec2(m.positions[m.indices[t + k % 3]]); };
+                double sum = 0.0, area = 0.0;
+                bool inside = true;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const glm::dvec2 a = corner(k + 1) - p, b = corner(k + 2) - p;
+                    const double part = a.x * b.y - a.y * b.x;
+                    inside = inside && part >= 0.0;
+                    area += part;
+                    sum += part * static_cast<double>(values[m.indices[t + k]]);
+                }
+                if (inside && area > 0.0) return sum / area;
+            }
+            return std::numeric_limits<double>::quiet_NaN();
+        };
+        for (double x = 0.03; x < 16.0; x += 0.37)
+            for (double y = 0.05; y < 2.0; y += 0.23)
+                CHECK(std::fabs(interpolated(mesh, {x, y}) - interpolated(before, {x, y})) <= 2.0 * kTolerance);
+    }
+
+    TEST_CASE("a seam that ends inside a patch keeps its two sides apart") {
+        // A fan around vertex 0 whose first and last rim vertices, 1 and 9, share a place: a slit between them.
+        TriangleMesh mesh;
+        mesh.positions = {{4, 0.5f, 0}, {9, 0, 0}, {9, 1, 0}, {7, 1, 0}, {3, 1, 0},
+                          {0, 1, 0},    {0, 0, 0}, {2, 0, 0}, {6, 0, 0}, {9, 0, 0}};
+        for (std::uint32_t i = 1; i < 9; ++i) mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
+        const auto report = retriangulate_planar_patches(mesh);
+        REQUIRE(report.has_value());
+        CHECK(report->patches == 1);
+        CHECK(report->improved == 1);
+        std::set<std::uint32_t> used;
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            glm::vec3 middle(0.0f);
+            for (std::size_t k = 0; k < 3; ++k) middle += mesh.positions[mesh.indices[i + k]] / 3.0f;
+            // Above the slit y = 0.5 − (x − 4) / 10 or below it.
+            const bool above = middle.y > 0.9f - 0.1f * middle.x;
+            for (std::size_t k = 0; k < 3; ++k) {
+                used.insert(mesh.indices[i + k]);
+                CHECK(mesh.indices[i + k] != (above ? 9u : 1u));
+            }
+        }
+        CHECK(used.size() == 10);
+    }
+
+    TEST_CASE("a patch that overlaps itself is left as it was, and says why") {
+        // A fan that goes round one and a half times.
+        TriangleMesh mesh;
+        mesh.positions.emplace_back(0.0f);
+        for (int i = 0; i <= 12; ++i) {
+            const float x[8] = {2, 1, 0, -1, -2, -1, 0, 1}, y[8] = {0, 1, 2, 1, 0, -1, -2, -1};
+            mesh.positions.emplace_back(x[i % 8], y[i % 8], 0.0f);
+        }
+        for (std::uint32_t i = 1; i <= 12; ++i) mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
+        const TriangleMesh before = mesh;
+        const auto report = retriangulate_planar_patches(mesh);
+        REQUIRE(report.has_value());
+        CHECK(mesh.indices == before.indices);
+        CHECK(report->improved == 0);
+        CHECK(report->refused == 1);
+        REQUIRE(report->results.size() == 1);
+        CHECK_FALSE(report->results[0].refused.empty());
+        CHECK(report->results[0].weight_after == report->results[0].weight_before);
     }
 
     TEST_CASE("a finely divided flat grid keeps its inner vertices") {

@@ -11,9 +11,52 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
+// The values of a patch, continued from its first triangle.
+class ValueField {
+  public:
+    ValueField(const TriangleMesh& mesh, std::span<const VertexValues> values, std::size_t triangle)
+        : mesh_(mesh), values_(values), corner_(&mesh.indices[3 * triangle]) {
+        const glm::dvec3 a(mesh.positions[corner_[0]]);
+        u_ = glm::dvec3(mesh.positions[corner_[1]]) - a;
+        v_ = glm::dvec3(mesh.positions[corner_[2]]) - a;
+        normal_ = glm::cross(u_, v_);
+    }
+
+    // Of the three corners only what must be constant can fail.
+    [[nodiscard]] bool agrees(std::uint32_t vertex) const {
+        if (values_.empty()) return true;
+        const glm::dvec3 d = glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[corner_[0]]);
+        const double square = glm::dot(normal_, normal_);
+        const double s = glm::dot(glm::cross(d, v_), normal_) / square;
+        const double t = glm::dot(glm::cross(u_, d), normal_) / square;
+        for (const VertexValues& field : values_) {
+            const auto at = [&](std::uint32_t v, std::size_t k) {
+                return static_cast<double>(field.values[v * field.components + k]);
+            };
+            for (std::size_t k = 0; k < field.components; ++k) {
+                const double a = at(corner_[0], k), own = at(vertex, k);
+                const double expected =
+                    field.constant ? a : a + s * (at(corner_[1], k) - a) + t * (at(corner_[2], k) - a);
+                const bool corner = vertex == corner_[0] || vertex == corner_[1] || vertex == corner_[2];
+                // Rounding of s and t is no difference at the corners themselves.
+                if (corner && !field.constant ? !std::isfinite(own) : !(std::fabs(own - expected) <= field.tolerance))
+                    return false;
+            }
+        }
+        return true;
+    }
+
+  private:
+    const TriangleMesh& mesh_;
+    std::span<const VertexValues> values_;
+    const std::uint32_t* corner_;
+    glm::dvec3 u_, v_, normal_;
+};
+
 class PatchFinder {
   public:
-    PatchFinder(const TriangleMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {}
+    PatchFinder(const TriangleMesh& mesh, double tolerance, std::span<const VertexValues> values)
+        : mesh_(mesh), tolerance_(tolerance), values_(values) {}
 
     Vector<PlanarPatch> find() {
         find_partners();
@@ -69,14 +112,18 @@ class PatchFinder {
         const auto in_plane = [&](const glm::dvec3& p) {
             return tolerance_ > 0.0 ? std::fabs(glm::dot(unit, p - a)) <= tolerance_ : orientation(a, b, c, p) == 0;
         };
+        const ValueField field(mesh_, values_, seed);
         members_.assign(1, seed);
         patch_of_[seed] = seed;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!field.agrees(corner(3 * std::size_t{seed} + k))) return;
         for (std::size_t i = 0; i < members_.size(); ++i) {
             for (std::size_t side = 3 * members_[i]; side < 3 * members_[i] + 3; ++side) {
                 if (partner_[side] == kNone) continue;
                 const std::uint32_t other = partner_[side] / 3;
                 if (patch_of_[other] != kNone || glm::dot(normal(other), n) <= 0.0) continue;
-                if (!in_plane(position(corner(next(next(partner_[side])))))) continue;
+                const std::uint32_t apex = corner(next(next(partner_[side])));
+                if (!in_plane(position(apex)) || !field.agrees(apex)) continue;
                 patch_of_[other] = seed;
                 members_.push_back(other);
             }
@@ -171,24 +218,47 @@ class PatchFinder {
 
     const TriangleMesh& mesh_;
     double tolerance_;
+    std::span<const VertexValues> values_;
     Vector<std::uint32_t> partner_, patch_of_, members_, start_, local_;
     Vector<Boundary> boundary_;
 };
 
-bool faces_alike(const TriangleMesh& mesh, const PlanarPatch& patch, const Triangulation& result, const glm::dvec3& n) {
-    for (const auto& t : result.triangles) {
-        const glm::dvec3 a(mesh.positions[patch.vertices[t[0]]]), b(mesh.positions[patch.vertices[t[1]]]);
-        const glm::dvec3 c(mesh.positions[patch.vertices[t[2]]]);
-        const glm::dvec3 m = glm::cross(b - a, c - a);
-        const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
-        // At least a millionth as high as long: what rounding makes of three collinear vertices is not.
-        if (glm::dot(m, n) <= 1e-6 * longest) return false;
-    }
-    return true;
+glm::dvec3 normal_of(const TriangleMesh& mesh, std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+    const glm::dvec3 a(mesh.positions[i]);
+    return glm::cross(glm::dvec3(mesh.positions[j]) - a, glm::dvec3(mesh.positions[k]) - a);
 }
 
-PatchResult describe(const PlanarPatch& patch, bool usable, bool lighter, const Triangulation& result) {
+// Why the triangles of `result` cannot stand for those of the patch; empty where they can.
+std::string mismatch(const TriangleMesh& mesh, const PlanarPatch& patch, const Triangulation& result) {
+    if (result.triangles.size() != patch.triangles.size())
+        return "it overlaps itself: its rings enclose something else";
+    glm::dvec3 facing(0.0);
+    double area_before = 0.0, area_after = 0.0;
+    for (const std::size_t t : patch.triangles) {
+        const glm::dvec3 m = normal_of(mesh, mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+        if (facing == glm::dvec3(0.0)) facing = glm::normalize(m);
+        area_before += glm::dot(m, facing);
+    }
+    for (const auto& t : result.triangles) {
+        const std::uint32_t i = patch.vertices[t[0]], j = patch.vertices[t[1]], k = patch.vertices[t[2]];
+        const glm::dvec3 a(mesh.positions[i]), b(mesh.positions[j]), c(mesh.positions[k]);
+        const glm::dvec3 m = normal_of(mesh, i, j, k);
+        const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
+        // At least a millionth as high as long: what rounding makes of three collinear vertices is not.
+        if (glm::dot(m, facing) <= 1e-6 * longest)
+            return "vertices " + std::to_string(i) + ", " + std::to_string(j) + " and " + std::to_string(k) +
+                   " are collinear up to rounding, and would make a triangle without area";
+        area_after += glm::dot(m, facing);
+    }
+    if (!(std::fabs(area_after - area_before) <= 1e-9 * area_before))
+        return "it overlaps itself: its rings enclose another area";
+    return {};
+}
+
+PatchResult describe(const PlanarPatch& patch, std::string refused, bool lighter, const Triangulation& result) {
+    const bool usable = refused.empty();
     PatchResult r;
+    r.refused = std::move(refused);
     r.triangles = patch.triangles;
     r.vertices = patch.polygon.points.size();
     r.holes = patch.polygon.ring_count() - 1;
@@ -204,13 +274,18 @@ PatchResult describe(const PlanarPatch& patch, bool usable, bool lighter, const 
 
 }  // namespace
 
-Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double tolerance) {
+Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double tolerance,
+                                                std::span<const VertexValues> values) {
     if (auto valid = validate(mesh); !valid) return tl::unexpected<Error>(valid.error());
-    return PatchFinder(mesh, tolerance).find();
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (values[i].values.size() != values[i].components * mesh.positions.size())
+            return fail(ErrorCode::invalid_argument, i,
+                        "vertex values " + std::to_string(i) + ": not `components` for each vertex");
+    return PatchFinder(mesh, tolerance, values).find();
 }
 
 Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const PatchOptions& options) {
-    auto patches = find_planar_patches(mesh, options.tolerance);
+    auto patches = find_planar_patches(mesh, options.tolerance, options.values);
     if (!patches) return tl::unexpected<Error>(patches.error());
     PatchReport report;
     Triangulator triangulator;
@@ -222,16 +297,14 @@ Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const Patch
         const auto begin = std::chrono::steady_clock::now();
         const auto done = triangulator.triangulate(patch.polygon, options.triangulation, result);
         if (!done && done.error().code == ErrorCode::cancelled) return tl::unexpected<Error>(done.error());
-        const auto first = 3 * static_cast<std::size_t>(patch.triangles[0]);
-        const glm::dvec3 a(mesh.positions[mesh.indices[first]]), b(mesh.positions[mesh.indices[first + 1]]);
-        const glm::dvec3 n = glm::normalize(glm::cross(b - a, glm::dvec3(mesh.positions[mesh.indices[first + 2]]) - a));
-        const bool usable =
-            done && result.triangles.size() == patch.triangles.size() && faces_alike(mesh, patch, result, n);
+        std::string refused = done ? mismatch(mesh, patch, result) : done.error().message;
+        const bool usable = refused.empty();
+        report.refused += !usable;
         if (!usable || (options.triangulation.method == Method::minimum_weight && !result.optimal)) ++report.unproven;
         // Differences below the rounding of the projection are none.
         const bool lighter = usable && result.weight < patch.weight * (1.0 - 1e-12);
         report.weight_after += lighter ? result.weight : patch.weight;
-        report.results.push_back(describe(patch, usable, lighter, result));
+        report.results.push_back(describe(patch, std::move(refused), lighter, result));
         const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
         report.results.back().microseconds = time.count();
         if (!lighter) continue;
