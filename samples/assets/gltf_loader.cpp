@@ -8,6 +8,7 @@
 #include "assets/file.hpp"
 #include "assets/gltf_accessor.hpp"
 #include "assets/gltf_color.hpp"
+#include "assets/gltf_elements.hpp"
 #include "assets/scene_source.hpp"
 
 namespace crofton::assets {
@@ -27,17 +28,6 @@ bool exists(int index, std::size_t count) {
 
 std::string label(const char* what, int index, const std::string& name) {
     return what + (" " + std::to_string(index)) + (name.empty() ? "" : " '" + name + "'");
-}
-
-// To plain triangles; what is not triangles is nothing.
-std::vector<std::uint32_t> as_triangles(int mode, const std::vector<std::uint32_t>& in) {
-    if (mode == TINYGLTF_MODE_TRIANGLES) return in;
-    std::vector<std::uint32_t> out;
-    const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
-    if (!fan && mode != TINYGLTF_MODE_TRIANGLE_STRIP) return out;
-    for (std::size_t i = 2; i < in.size(); ++i)
-        out.insert(out.end(), {fan ? in[0] : in[i - 2 + i % 2], in[i - 1 - (fan ? 0 : i % 2)], in[i]});
-    return out;
 }
 
 class GltfReader {
@@ -198,7 +188,7 @@ class GltfReader {
         } else {
             for (std::uint32_t i = 0; i < xyz->size() / 3; ++i) indices.push_back(i);
         }
-        indices = as_triangles(primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode, indices);
+        indices = triangle_list(primitive.mode < 0 ? kGltfTriangles : primitive.mode, std::move(indices));
         if (indices.empty()) source_.warnings.push_back(where + ": is not made of triangles; left out");
         mesh.indices.assign(indices.begin(), indices.end());
         for (std::size_t i = 0; i < xyz->size(); i += 3)

@@ -1,7 +1,9 @@
-// Wavefront OBJ: v (with optional colours), f (any polygon, as a fan), o, g, usemtl with Kd and Ke of a material library.
+// Wavefront OBJ: v (with optional colours), vt, vn, f (any polygon, as a fan), o, g, usemtl with Kd, Ke and map_Kd of a
+// material library.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <string>
@@ -10,17 +12,24 @@
 namespace crofton::assets {
 
 struct ObjFile {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     // The faces between one o, g or usemtl and the next.
     struct Part {
         std::string name;
         glm::vec3 color{0.62f, 0.6f, 0.56f};  // linear
         glm::vec3 emission{0.0f};             // Ke, as it stands
+        std::string material;                 // as usemtl has it
+        std::string texture;                  // map_Kd's file, as it stands; empty: none
         std::vector<std::uint32_t> indices;   // three a triangle, into positions
+        // As many as indices, into texcoords and normals; kNone where the corner has none, both empty where none has.
+        std::vector<std::uint32_t> texcoord_indices, normal_indices;
     };
     std::vector<glm::dvec3> positions;  // in the file's order, used by faces or not; finite
     std::vector<glm::vec3> colors;      // one a position; negative red where the file gives none
+    std::vector<glm::vec2> texcoords;   // v upwards, as in the file
+    std::vector<glm::vec3> normals;     // of any length
     std::vector<Part> parts;            // at least one; any may be without faces
-    std::vector<std::string> warnings;  // material libraries that could not be read
+    std::vector<std::string> warnings;  // material libraries, texture coordinates and normals that are not there
 };
 
 // Errors name the file, the line and the reason: numbers that are none, NaN or beyond ±`largest` (a float's range

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
-    double seconds = 10.0, tolerance = -1.0;
+    double seconds = 10.0, tolerance = -1.0, attribute_tolerance = 1e-4;
     bool no_indices = false, compare = false;
     std::uint64_t frusta = 100'000;
     std::size_t least_vertices = 5;
@@ -137,6 +137,10 @@ Result<int> run(const TriangulateOptions& options) {
     }
     if (!(options.seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
+    if (!(options.attribute_tolerance >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "--attribute-tolerance must not be negative");
+    if (options.json == "-" && options.out == "-")
+        return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --out can go to stdout");
     if (options.compare) {
         if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
             return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
@@ -151,7 +155,7 @@ Result<int> run(const TriangulateOptions& options) {
     if (!options.svg.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
     return run_meshes({options.file, options.method, *method, options.json, options.out, options.seconds,
-                       options.tolerance, options.no_indices});
+                       options.tolerance, options.attribute_tolerance, options.no_indices});
 }
 
 constexpr const char* kExamples =
@@ -159,13 +163,18 @@ constexpr const char* kExamples =
     "anew:\n"
     ".obj, .glb, .gltf. Indices count a polygon's points ring by ring. A polygon that is refused is named on stderr, "
     "has an\n"
-    "`error` in the JSON, and makes the exit status 2; the others are done all the same.\n"
+    "`error` in the JSON, and makes the exit status 2; the others are done all the same. So it is with a mesh's "
+    "parts.\n"
+    "--out keeps all of a glTF asset but indices: materials, images, skins, animations, extensions. Images and buffers "
+    "in\n"
+    "other files are taken in. A patch ends at seams, and where texture coordinates, normals or colours bend.\n"
     "Examples:\n"
     "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
     "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
     "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
     "  crofton triangulate glyphs.poly --compare                    what each method costs frusta and pixels\n"
-    "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n";
+    "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n"
+    "  crofton triangulate town --out town.glb                      the town that comes with crofton, as a file\n";
 
 }  // namespace
 
@@ -184,6 +193,11 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_option(
         "--tolerance", options->tolerance,
         "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
+    command
+        ->add_option("--attribute-tolerance", options->attribute_tolerance,
+                     "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
+                     "within a patch; inf: as far as they like")
+        ->capture_default_str();
     command->add_flag("--compare", options->compare,
                       "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
     command->add_option("--frusta", options->frusta, "How many random frusta --compare measures with")
@@ -193,7 +207,8 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
     command->add_option("--json", options->json, "Write results as JSON; - for stdout");
     command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout");
-    command->add_option("--out", options->out, "Write the retriangulated meshes as .glb");
+    command->add_option("--out", options->out,
+                        "Write the asset with its patches triangulated anew, as .glb; - for stdout");
     command->callback([options, &outcome] {
         const auto status = run(*options);
         outcome.status = status ? *status : report_error("", status.error());

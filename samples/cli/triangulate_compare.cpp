@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "assets/gltf_primitive.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "polygon_files.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
-#include "triangulate_meshes.hpp"
 #include "triangulation_costs.hpp"
 
 namespace crofton::cli {
@@ -41,7 +41,7 @@ Result<std::vector<Polygon>> gather(const CompareRun& run) {
     if (!source) return tl::unexpected(source.error());
     for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
         const TriangleMesh& mesh = source->scene.mesh(m);
-        const auto patches = triangulate::find_planar_patches(mesh, patch_tolerance(mesh, run.tolerance));
+        const auto patches = triangulate::find_planar_patches(mesh, assets::patch_tolerance(mesh, run.tolerance));
         if (!patches) return tl::unexpected(patches.error());
         for (const auto& patch : *patches) add(patch.polygon);
     }

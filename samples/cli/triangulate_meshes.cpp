@@ -1,36 +1,95 @@
 #include "triangulate_meshes.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <crofton/triangulate/planar_patches.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "assets/gltf_builder.hpp"
+#include "assets/gltf_patches.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
-#include "glb_writer.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
 namespace {
 
+using assets::PrimitivePatches;
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
 
-double size_of(const TriangleMesh& mesh) {
-    glm::vec3 low = mesh.positions[0], high = low;
-    for (const auto& p : mesh.positions) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
+// So many lines say what was left alone and why; the JSON has all of them.
+constexpr std::size_t kMostReasons = 20;
+
+Result<assets::GltfDocument> document_of(const std::string& file) {
+    const std::string kind = assets::extension(file);
+    if (kind == "glb" || kind == "gltf") return assets::read_gltf_document(file);
+    if (kind == "obj") {
+        const auto obj = assets::read_obj(file);
+        if (!obj) return tl::unexpected(obj.error());
+        return assets::gltf_from_obj(*obj, assets::folder(file));
     }
-    const glm::vec3 d = high - low;
-    return std::max({d.x, d.y, d.z});
+    auto source = assets::load_scene(file);
+    if (!source) return tl::unexpected(source.error());
+    source->scene.update();
+    auto document = assets::gltf_from_scene(source->scene);
+    document.warnings = std::move(source->warnings);
+    return document;
 }
 
-json to_json(const std::string& name, const TriangleMesh& mesh, const triangulate::PatchResult& r, bool no_indices) {
-    json entry{{"name", name},
+struct Sums {
+    std::size_t primitives = 0, vertices = 0, triangles_before = 0, triangles_after = 0, patches = 0;
+    std::size_t patch_triangles = 0, improved = 0, unproven = 0, left_alone = 0, refused = 0;
+    double weight_before = 0.0, weight_after = 0.0, microseconds = 0.0;
+
+    void add(const PrimitivePatches& p) {
+        ++primitives;
+        vertices += p.vertices;
+        triangles_before += p.triangles_before;
+        triangles_after += p.triangles_after;
+        patches += p.report.patches;
+        patch_triangles += p.report.triangles;
+        improved += p.report.improved;
+        unproven += p.report.unproven;
+        left_alone += p.report.refused + !p.left_alone.empty();
+        refused += p.error.has_value();
+        weight_before += p.report.weight_before;
+        weight_after += p.report.weight_after;
+        microseconds += p.microseconds;
+    }
+
+    [[nodiscard]] json to_json() const {
+        return {{"primitives", primitives},
+                {"vertices", vertices},
+                {"triangles_before", triangles_before},
+                {"triangles_after", triangles_after},
+                {"patches", patches},
+                {"patch_triangles", patch_triangles},
+                {"improved", improved},
+                {"unproven", unproven},
+                {"refused", refused},
+                {"weight_before", weight_before},
+                {"weight_after", weight_after},
+                {"microseconds", microseconds}};
+    }
+
+    void print(const std::string& name) const {
+        std::printf("%-24s %8zu %10zu %10zu %9zu %9zu %9zu %9zu %14.8g %14.8g\n", name.c_str(), primitives,
+                    triangles_before, triangles_after, patches, improved, unproven, left_alone + refused, weight_before,
+                    weight_after);
+    }
+};
+
+std::string label(const PrimitivePatches& p) {
+    return "mesh " + std::to_string(p.mesh) + (p.name.empty() ? "" : " '" + p.name + "'") + ": primitive " +
+           std::to_string(p.primitive);
+}
+
+json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) {
+    const triangulate::PatchResult& r = p.report.results[number];
+    json entry{{"name", p.name + "_" + std::to_string(p.primitive) + "_" + std::to_string(number)},
+               {"primitive", p.primitive},
                {"vertices", r.vertices},
                {"holes", r.holes},
                {"triangle_count", r.triangles.size()},
@@ -42,94 +101,130 @@ json to_json(const std::string& name, const TriangleMesh& mesh, const triangulat
     if (no_indices) return entry;
     json triangles = json::array();
     for (const std::size_t t : r.triangles)
-        triangles.push_back({mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]});
+        triangles.push_back({p.indices[3 * t], p.indices[3 * t + 1], p.indices[3 * t + 2]});
     entry["triangles"] = std::move(triangles);
     return entry;
 }
 
-json to_json(const std::string& name, const TriangleMesh& mesh, const triangulate::PatchReport& r, bool no_indices,
-             double microseconds) {
-    json polygons = json::array();
-    for (std::size_t i = 0; i < r.results.size(); ++i)
-        polygons.push_back(to_json(name + "_" + std::to_string(i), mesh, r.results[i], no_indices));
-    return {{"name", name},
-            {"vertices", mesh.positions.size()},
-            {"triangles", mesh.triangle_count()},
-            {"patches", r.patches},
-            {"patch_triangles", r.triangles},
-            {"improved", r.improved},
-            {"unproven", r.unproven},
-            {"weight_before", r.weight_before},
-            {"weight_after", r.weight_after},
-            {"microseconds", microseconds},
-            {"polygons", std::move(polygons)}};
+// What stays as it was: whole primitives, or one patch of them by its first triangle.
+json reasons_json(const PrimitivePatches& p) {
+    json reasons = json::array();
+    if (!p.left_alone.empty()) reasons.push_back({{"primitive", p.primitive}, {"why", p.left_alone}});
+    for (const auto& r : p.report.results)
+        if (!r.refused.empty())
+            reasons.push_back({{"primitive", p.primitive}, {"first_triangle", r.triangles[0]}, {"why", r.refused}});
+    return reasons;
+}
+
+// A mesh's primitives; `primitives` is not empty.
+json mesh_json(const std::vector<const PrimitivePatches*>& primitives, bool no_indices) {
+    Sums sums;
+    json polygons = json::array(), left_alone = json::array(), errors = json::array();
+    for (const PrimitivePatches* p : primitives) {
+        sums.add(*p);
+        for (std::size_t i = 0; i < p->report.results.size(); ++i) polygons.push_back(patch_json(*p, i, no_indices));
+        for (auto& reason : reasons_json(*p)) left_alone.push_back(std::move(reason));
+        if (p->error)
+            errors.push_back(
+                {{"primitive", p->primitive}, {"code", to_string(p->error->code)}, {"message", p->error->message}});
+    }
+    json entry = sums.to_json();
+    entry["name"] = primitives[0]->name;
+    entry["mesh"] = primitives[0]->mesh;
+    entry["polygons"] = std::move(polygons);
+    entry["left_alone"] = std::move(left_alone);
+    entry["errors"] = std::move(errors);
+    return entry;
+}
+
+using ByMesh = std::vector<std::vector<const PrimitivePatches*>>;
+
+ByMesh by_mesh(const std::vector<PrimitivePatches>& outcomes) {
+    ByMesh meshes;
+    for (const PrimitivePatches& p : outcomes) {
+        if (meshes.empty() || meshes.back()[0]->mesh != p.mesh) meshes.emplace_back();
+        meshes.back().push_back(&p);
+    }
+    return meshes;
+}
+
+void print_reasons(const std::vector<PrimitivePatches>& outcomes) {
+    std::size_t count = 0;
+    const auto line = [&](const std::string& what, const std::string& why) {
+        if (++count == 1) std::printf("left as they were:\n");
+        if (count <= kMostReasons) std::printf("  %s: %s\n", what.c_str(), why.c_str());
+    };
+    for (const PrimitivePatches& p : outcomes) {
+        if (!p.left_alone.empty()) line(label(p), p.left_alone);
+        for (const auto& r : p.report.results)
+            if (!r.refused.empty()) line(label(p) + ", patch at triangle " + std::to_string(r.triangles[0]), r.refused);
+    }
+    if (count > kMostReasons) std::printf("  and %zu more, which --json lists\n", count - kMostReasons);
+}
+
+void print_table(const ByMesh& meshes, const Sums& total, const std::vector<PrimitivePatches>& outcomes) {
+    std::printf("%-24s %8s %10s %10s %9s %9s %9s %9s %14s %14s\n", "mesh", "parts", "triangles", "after", "patches",
+                "improved", "unproven", "left", "weight before", "weight after");
+    for (const auto& primitives : meshes) {
+        Sums sums;
+        for (const PrimitivePatches* p : primitives) sums.add(*p);
+        sums.print(std::to_string(primitives[0]->mesh) + " " + primitives[0]->name);
+    }
+    total.print("all");
+    print_reasons(outcomes);
+}
+
+Result<void> write_report(const MeshRun& run, const ByMesh& meshes, const Sums& total) {
+    json entries = json::array();
+    for (const auto& primitives : meshes) entries.push_back(mesh_json(primitives, run.no_indices));
+    json summary = total.to_json();
+    summary["meshes"] = meshes.size();
+    return write_json(run.json, {{"file", assets::file_name(run.file)},
+                                 {"method", run.method_name},
+                                 {"meshes", std::move(entries)},
+                                 {"summary", std::move(summary)}});
 }
 
 }  // namespace
 
-double patch_tolerance(const TriangleMesh& mesh, double tolerance) {
-    return tolerance >= 0.0 || mesh.positions.empty() ? std::max(tolerance, 0.0) : 1e-6 * size_of(mesh);
-}
-
 Result<int> run_meshes(const MeshRun& run) {
-    auto source = assets::load_scene(run.file);
-    if (!source) return tl::unexpected(source.error());
-    source->scene.update();
-    for (const auto& warning : source->warnings) std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
-    std::vector<TriangleMesh> meshes;
-    json entries = json::array();
-    triangulate::PatchReport total;
-    double total_time = 0.0;
+    if (!run.out.empty() && run.out != "-" && assets::extension(run.out) != "glb")
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "--out writes binary glTF: name it .glb, not '" + run.out + "'");
+    auto document = document_of(run.file);
+    if (!document) return tl::unexpected(document.error());
+    for (const auto& warning : document->warnings)
+        std::fprintf(stderr, "crofton: warning: %s: %s\n", run.file.c_str(), warning.c_str());
+    assets::PatchSettings settings{
+        {.method = run.method, .seconds = run.seconds}, run.tolerance, run.attribute_tolerance};
+    std::vector<PrimitivePatches> outcomes;
     {
-        ProgressBar bar("triangulate", source->scene.mesh_count());
-        for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
-            meshes.push_back(source->scene.mesh(m));
-            triangulate::PatchOptions options;
-            options.tolerance = patch_tolerance(meshes.back(), run.tolerance);
-            options.triangulation = {.method = run.method, .seconds = run.seconds};
-            const auto start = Clock::now();
-            const auto report = triangulate::retriangulate_planar_patches(meshes.back(), options);
-            const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-            if (!report)
-                return fail(report.error().code, m,
-                            run.file + ": " + source->scene.mesh_name(m) + ": " + report.error().message);
-            entries.push_back(to_json(source->scene.mesh_name(m), meshes.back(), *report, run.no_indices, time));
-            total.patches += report->patches;
-            total.improved += report->improved;
-            total.triangles += report->triangles;
-            total.unproven += report->unproven;
-            total.weight_before += report->weight_before;
-            total.weight_after += report->weight_after;
-            total_time += time;
-            bar.set(m + 1);
-        }
+        std::optional<ProgressBar> bar;
+        settings.progress = [&](std::size_t done, std::size_t of) {
+            if (!bar) bar.emplace("triangulate", of);
+            bar->set(done);
+        };
+        auto done = assets::retriangulate_patches(*document, settings);
+        if (!done) return assets::in_file(run.file, "", done.error());
+        outcomes = std::move(*done);
     }
+    if (outcomes.empty()) return fail(ErrorCode::empty, kNoItem, run.file + ": holds no meshes");
     if (!run.out.empty()) {
-        if (auto written = write_file(run.out, make_glb(source->scene, meshes)); !written)
-            return tl::unexpected(written.error());
+        const auto glb = assets::write_glb(*document);
+        if (!glb) return assets::in_file(run.out, "", glb.error());
+        if (auto written = write_file(run.out, *glb); !written) return tl::unexpected(written.error());
     }
-    if (!run.json.empty()) {
-        const json document{{"file", source->name},
-                            {"method", run.method_name},
-                            {"meshes", std::move(entries)},
-                            {"summary",
-                             {{"meshes", meshes.size()},
-                              {"patches", total.patches},
-                              {"improved", total.improved},
-                              {"unproven", total.unproven},
-                              {"weight_before", total.weight_before},
-                              {"weight_after", total.weight_after},
-                              {"microseconds", total_time}}}};
-        if (auto written = write_json(run.json, document); !written) return tl::unexpected(written.error());
+    Sums total;
+    for (const PrimitivePatches& p : outcomes) {
+        total.add(p);
+        if (p.error)
+            std::fprintf(stderr, "crofton: %s: %s: %s\n", run.file.c_str(), label(p).c_str(), p.error->message.c_str());
     }
-    if (run.json != "-") {
-        std::printf("%-16s %8s %10s %10s %10s %10s %14s %14s\n", "method", "meshes", "patches", "triangles", "improved",
-                    "unproven", "weight before", "weight after");
-        std::printf("%-16s %8zu %10zu %10zu %10zu %10zu %14.8g %14.8g\n", run.method_name.c_str(), meshes.size(),
-                    total.patches, total.triangles, total.improved, total.unproven, total.weight_before,
-                    total.weight_after);
-    }
-    return kSuccess;
+    const ByMesh meshes = by_mesh(outcomes);
+    if (!run.json.empty())
+        if (auto written = write_report(run, meshes, total); !written) return tl::unexpected(written.error());
+    if (run.json != "-" && run.out != "-") print_table(meshes, total, outcomes);
+    return total.refused ? kBadInput : kSuccess;
 }
 
 }  // namespace crofton::cli

@@ -1,6 +1,6 @@
-// The planar patches of a file's meshes, triangulated anew.
+// `crofton triangulate` on meshes: their planar patches, triangulated anew.
 #pragma once
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <string>
 
@@ -12,13 +12,12 @@ struct MeshRun {
     std::string json, out;
     double seconds = 10.0;
     double tolerance = -1.0;  // negative: a millionth of each mesh's size
+    double attribute_tolerance = 1e-4;
     bool no_indices = false;
 };
 
-// `tolerance`, or where it is negative a millionth of the mesh's size.
-[[nodiscard]] double patch_tolerance(const TriangleMesh& mesh, double tolerance);
-
-// Exit status; prints a table unless the JSON goes to stdout.
+// Exit status: kBadInput where a primitive could not be read, the others being done all the same. Prints a table unless
+// the JSON goes to stdout. `out` is written whole, or not at all.
 [[nodiscard]] Result<int> run_meshes(const MeshRun& run);
 
 }  // namespace crofton::cli
