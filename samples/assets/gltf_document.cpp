@@ -245,12 +245,16 @@ const Json* entry(const Json& object, const char* key, std::size_t index) {
     return index < length_of(object, key) ? &object.find(key)->at(index) : nullptr;
 }
 
+std::optional<std::size_t> as_whole_number(const Json& value) {
+    if (!value.is_number_integer() || value < 0) return std::nullopt;
+    return value.get<std::size_t>();
+}
+
 Result<std::size_t> whole_number(const Json& object, const char* key, std::size_t otherwise) {
     const Json* value = member(object, key);
     if (!value) return otherwise;
-    if (!value->is_number_unsigned())
-        return fail(ErrorCode::parse, kNoItem, std::string(key) + " is no whole number of at least 0");
-    return value->get<std::size_t>();
+    if (const auto number = as_whole_number(*value)) return *number;
+    return fail(ErrorCode::parse, kNoItem, std::string(key) + " is no whole number of at least 0");
 }
 
 Result<GltfDocument> read_gltf_document(const std::string& path) {

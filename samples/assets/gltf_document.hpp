@@ -35,6 +35,8 @@ void take_in_images(GltfDocument& document, const std::string& folder);
 [[nodiscard]] const nlohmann::ordered_json* member(const nlohmann::ordered_json& object, const char* key);
 [[nodiscard]] const nlohmann::ordered_json* entry(const nlohmann::ordered_json& object, const char* key,
                                                   std::size_t index);
+// `value` as a whole number ≥ 0, or nothing.
+[[nodiscard]] std::optional<std::size_t> as_whole_number(const nlohmann::ordered_json& value);
 // A number that counts or names something; `otherwise` where there is none. Errors: not a whole number ≥ 0.
 [[nodiscard]] Result<std::size_t> whole_number(const nlohmann::ordered_json& object, const char* key,
                                                std::size_t otherwise);

@@ -162,9 +162,7 @@ class PatchRun {
     }
 
     void note_accessors(const Json& primitive, std::size_t group) {
-        const auto number = [](const Json& json) {
-            return json.is_number_unsigned() ? json.get<std::size_t>() : kNoNumber;
-        };
+        const auto number = [](const Json& json) { return as_whole_number(json).value_or(kNoNumber); };
         if (const Json* indices = member(primitive, "indices")) {
             const auto [user, first] = users_.try_emplace(number(*indices), group);
             if (!first) groups_[user->second].index_accessor_shared = groups_[group].index_accessor_shared = true;

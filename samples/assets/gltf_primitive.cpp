@@ -65,8 +65,9 @@ class PrimitiveReader {
     }
 
     Result<Elements> elements(const Json& accessor, std::optional<std::size_t> count, std::string& storage) const {
-        if (!accessor.is_number_unsigned()) return fail(ErrorCode::parse, kNoItem, "names no accessor");
-        return accessor_elements(document_, accessor.get<std::size_t>(), count, storage);
+        const auto number = as_whole_number(accessor);
+        if (!number) return fail(ErrorCode::parse, kNoItem, "names no accessor");
+        return accessor_elements(document_, *number, count, storage);
     }
 
     Result<void> read_positions() {
