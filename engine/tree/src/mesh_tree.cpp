@@ -21,7 +21,22 @@ struct Reference {
 struct Range {
     std::size_t begin, end;
     [[nodiscard]] std::size_t size() const { return end - begin; }
+    [[nodiscard]] std::size_t leaves() const { return (size() + kMeshWidth - 1) / kMeshWidth; }
 };
+
+// A range that is to become `count` children.
+struct Part {
+    Range range;
+    std::uint32_t count;
+};
+
+// The fewest children whose subtrees, one level lower, can all be full: empty lanes gather near the root, where few
+// nodes are, and not in the many above the leaves.
+std::uint32_t child_count(std::size_t leaves) {
+    std::size_t below = 1;
+    while (below * kMeshWidth < leaves) below *= kMeshWidth;
+    return static_cast<std::uint32_t>((leaves + below - 1) / below);
+}
 
 struct Task {
     Range range;
@@ -51,7 +66,7 @@ class MeshTreeBuilder {
   private:
     void collect();
     void split_node(const Task& task);
-    Range split(Range& range);
+    Part split(Part& part);
     MeshBox fit(const Range& range) const;
     MeshBox fit(const Range& range, const glm::dmat3& frame) const;
     std::uint32_t add_leaf(const Range& range);
@@ -87,8 +102,10 @@ void MeshTreeBuilder::collect() {
     }
 }
 
-// Halves a range at the median along the direction in which its centroids spread most; returns the upper part.
-Range MeshTreeBuilder::split(Range& range) {
+// Halves a part, in shares of its children, along the direction in which its centroids spread most; returns the upper
+// half.
+Part MeshTreeBuilder::split(Part& part) {
+    const Range range = part.range;
     const auto begin = references_.begin() + static_cast<std::ptrdiff_t>(range.begin);
     const auto end = references_.begin() + static_cast<std::ptrdiff_t>(range.end);
     glm::dvec3 sum(0.0), squares(0.0), products(0.0);
@@ -113,13 +130,13 @@ Range MeshTreeBuilder::split(Range& range) {
     const glm::vec3 direction(frame[longest]);
     for (auto r = begin; r != end; ++r) r->key = glm::dot(r->centroid, direction);
     // Whole leaves below: the cut is a multiple of the leaf's size, so that no lanes stay empty but in the last leaf.
-    const std::size_t leaves = (range.size() + kMeshWidth - 1) / kMeshWidth;
-    const std::size_t cut = leaves / 2 * kMeshWidth;
+    const std::uint32_t below = part.count / 2;
+    const std::size_t cut = (range.leaves() * below + part.count / 2) / part.count * kMeshWidth;
     std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Reference& a, const Reference& b) {
         return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
     });
-    const Range upper{range.begin + cut, range.end};
-    range.end = upper.begin;
+    const Part upper{{range.begin + cut, range.end}, part.count - below};
+    part = {{range.begin, range.begin + cut}, below};
     return upper;
 }
 
@@ -185,30 +202,27 @@ std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
     return static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
 }
 
-// Splits the largest part until there are eight, or all are leaves.
 void MeshTreeBuilder::split_node(const Task& task) {
-    Range parts[kMeshWidth] = {task.range};
+    Part parts[kMeshWidth] = {{task.range, child_count(task.range.leaves())}};
     std::uint32_t count = 1;
-    while (count < kMeshWidth) {
-        Range* largest = std::max_element(parts, parts + count, [](auto& a, auto& b) { return a.size() < b.size(); });
-        if (largest->size() <= kMeshWidth) break;
-        parts[count++] = split(*largest);
-    }
+    for (std::uint32_t i = 0; i < count; ++i)
+        while (parts[i].count > 1) parts[count++] = split(parts[i]);
     MeshNode node{};
     node.count = count;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-        const MeshBox box = fit(parts[lane]);
+        const Range& range = parts[lane].range;
+        const MeshBox box = fit(range);
         for (int k = 0; k < 3; ++k) {
             node.center[k][lane] = box.center[k];
             node.half[k][lane] = box.half[k];
             for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
         }
-        if (parts[lane].size() <= kMeshWidth) {
-            node.child[lane] = kMeshLeaf | add_leaf(parts[lane]);
+        if (range.size() <= kMeshWidth) {
+            node.child[lane] = kMeshLeaf | add_leaf(range);
         } else {
             node.child[lane] = static_cast<std::uint32_t>(tree_.nodes_.size());
             tree_.nodes_.emplace_back();
-            tasks_.push_back({parts[lane], node.child[lane]});
+            tasks_.push_back({range, node.child[lane]});
         }
     }
     tree_.nodes_[task.node] = node;
