@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // below 1e-280.
 constexpr double kDeterminantError = 0x1.d0p-51;
 
-using DD = hn::CappedTag<double, tree::kMeshWidth>;
+using DD = hn::CappedTag<double, tree::kMeshLeafWidth>;
 using VD = hn::Vec<DD>;
 using MD = hn::Mask<DD>;
 

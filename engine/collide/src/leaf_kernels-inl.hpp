@@ -18,9 +18,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Eight triangles with what the tests need of them, coordinates exactly those of the scalar code.
 struct LeafLanes {
-    alignas(64) double vertex[3][3][tree::kMeshWidth];
-    alignas(64) double low[3][tree::kMeshWidth];
-    alignas(64) double high[3][tree::kMeshWidth];
+    alignas(64) double vertex[3][3][tree::kMeshLeafWidth];
+    alignas(64) double low[3][tree::kMeshLeafWidth];
+    alignas(64) double high[3][tree::kMeshLeafWidth];
     double all_low[3], all_high[3];          // of the whole leaf
     std::uint32_t leaf = ~std::uint32_t{0};  // whose lanes these are
 };
@@ -41,7 +41,7 @@ HWY_INLINE void carry_over(DD d, const MeshPair& pair, VD* p) {
 HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, bool of_b, LeafLanes& out) {
     const DD d;
     const hn::Rebind<float, DD> df;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         VD w[3][3];
         for (int c = 0; c < 3; ++c) {
             for (int i = 0; i < 3; ++i) w[c][i] = hn::PromoteTo(d, hn::Load(df, leaf.vertex[c][i] + l));
@@ -55,7 +55,7 @@ HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, boo
     }
     for (int i = 0; i < 3; ++i) {
         VD low = hn::Load(d, out.low[i]), high = hn::Load(d, out.high[i]);
-        for (std::size_t l = hn::Lanes(d); l < tree::kMeshWidth; l += hn::Lanes(d)) {
+        for (std::size_t l = hn::Lanes(d); l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
             low = hn::Min(low, hn::Load(d, out.low[i] + l));
             high = hn::Max(high, hn::Load(d, out.high[i] + l));
         }
@@ -68,7 +68,7 @@ HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, boo
 HWY_INLINE std::uint32_t candidates(const LeafLanes& in_a, const LeafLanes& in_b) {
     const DD d;
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
         for (int i = 0; i < 3; ++i) {
             near = hn::And(near, hn::Le(hn::Load(d, in_a.low[i] + l), hn::Set(d, in_b.all_high[i])));
@@ -83,7 +83,7 @@ HWY_INLINE std::uint32_t candidates(const LeafLanes& in_a, const LeafLanes& in_b
 HWY_INLINE std::uint32_t partners(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b) {
     const DD d;
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
         for (int i = 0; i < 3; ++i) {
             near = hn::And(near, hn::Le(hn::Load(d, in_b.low[i] + l), hn::Set(d, in_a.high[i][one])));
@@ -110,7 +110,7 @@ HWY_INLINE void gather(const LeafLanes& in_a, std::uint32_t lane_a, const LeafLa
 HWY_INLINE void extents_along(const LeafLanes& in_a, const LeafLanes& in_b, const float* direction, double* end_of_a,
                               double* begin_of_b) {
     const DD d;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         VD a[3], b[3];
         for (int v = 0; v < 3; ++v) {
             a[v] = b[v] = hn::Zero(d);
@@ -138,7 +138,7 @@ HWY_INLINE double magnitude_of(const LeafLanes& in_a, const LeafLanes& in_b) {
 HWY_INLINE std::uint32_t lanes_before(const double* begin, double end, double doubt, double limit) {
     const DD d;
     std::uint32_t beyond = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         const VD from = hn::Load(d, begin + l), to = hn::Set(d, end);
         const VD gap = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(from, to), hn::Set(d, doubt)));
         beyond |= bits_of(d, hn::Gt(hn::Mul(hn::Mul(gap, gap), hn::Set(d, 0.999998)), hn::Set(d, limit)), l);
@@ -150,7 +150,7 @@ HWY_INLINE std::uint32_t lanes_before(const double* begin, double end, double do
 HWY_INLINE std::uint32_t near_mask(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b, double limit) {
     const DD d;
     std::uint32_t apart = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         VD sum = hn::Zero(d);
         for (int i = 0; i < 3; ++i) {
             VD gap = hn::Max(hn::Sub(hn::Load(d, in_b.low[i] + l), hn::Set(d, in_a.high[i][one])),

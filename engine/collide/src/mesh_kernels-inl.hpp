@@ -14,8 +14,14 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, tree::kMeshWidth>;
+using D = hn::CappedTag<float, tree::kMeshNodeWidth>;
 using V = hn::Vec<D>;
+
+HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
+}
 
 // Rounding of the products and sums of one test, relative to the boxes' sizes: 16 roundings of 2^-24 at most, axes
 // orthonormal to 1e-6, and a margin.
@@ -126,7 +132,7 @@ HWY_INLINE V gap_of_lane_face(D d, const Lanes& s, const QueryBox& q, int j) {
 HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const QueryBox& q, float slop) {
     const D d;
     std::uint32_t apart = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshNodeWidth; l += hn::Lanes(d)) {
         const Lanes s = prepare(d, node, l, q, slop);
         V gap = gap_of_query_face(d, s, q, 0);
         gap = hn::Max(gap, hn::Max(gap_of_query_face(d, s, q, 1), gap_of_query_face(d, s, q, 2)));
@@ -149,9 +155,7 @@ HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const QueryBox
                 }
             }
         }
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Gt(gap, zero), bits);
-        apart |= static_cast<std::uint32_t>(bits[0]) << l;
+        apart |= bits_of(d, hn::Gt(gap, zero)) << l;
     }
     return ~apart & ((1u << node.count) - 1u);
 }
@@ -184,7 +188,7 @@ HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, f
                                 float* bounds) {
     const D d;
     const V zero = hn::Zero(d);
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshNodeWidth; l += hn::Lanes(d)) {
         const Lanes s = prepare(d, node, l, q, slop);
         V in_query = zero, in_lane = zero;
         for (int k = 0; k < 3; ++k) {

@@ -80,7 +80,7 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);
-            if (gathered.count == tree::kMeshWidth && settle(gathered, visit)) return true;
+            if (gathered.count == tree::kMeshLeafWidth && settle(gathered, visit)) return true;
         }
     }
     return false;
@@ -163,7 +163,7 @@ bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, L
     load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
-    alignas(64) double end_of_a[tree::kMeshWidth], begin_of_b[tree::kMeshWidth];
+    alignas(64) double end_of_a[tree::kMeshLeafWidth], begin_of_b[tree::kMeshLeafWidth];
     extents_along(leaves.a, leaves.b, nearest.direction, end_of_a, begin_of_b);
     const double doubt = 0x1p-48 * magnitude_of(leaves.a, leaves.b);
     for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
@@ -173,7 +173,7 @@ bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, L
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);
-            if (gathered.count == tree::kMeshWidth && settle_near(gathered, nearest, visit)) return true;
+            if (gathered.count == tree::kMeshLeafWidth && settle_near(gathered, nearest, visit)) return true;
         }
     }
     return gathered.count > 0 && settle_near(gathered, nearest, visit);
@@ -199,7 +199,7 @@ void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visi
         const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
         const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
-        HWY_ALIGN float bounds[tree::kMeshWidth];
+        HWY_ALIGN float bounds[tree::kMeshNodeWidth];
         alignas(16) float direction[4] = {nearest.direction[0], nearest.direction[1], nearest.direction[2]};
         if (!into_a) turn(pair.to_b, nearest.direction, direction);
         distance_bounds(node, box, pair.slop, direction, bounds);

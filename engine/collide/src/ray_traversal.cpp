@@ -12,14 +12,14 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, tree::kMeshWidth>;
+using D = hn::CappedTag<float, tree::kMeshNodeWidth>;
 using V = hn::Vec<D>;
 
 // Slabs of eight boxes, grown by the slop: entry distance of each lane that is met before `limit`.
 HWY_INLINE std::uint32_t box_entries(const tree::MeshNode& node, const RayQuery& q, float limit, float* entry) {
     const D d;
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshNodeWidth; l += hn::Lanes(d)) {
         V offset[3], first = hn::Zero(d), last = hn::Set(d, limit);
         for (int i = 0; i < 3; ++i) offset[i] = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, q.start[i]));
         for (int k = 0; k < 3; ++k) {
@@ -42,9 +42,9 @@ HWY_INLINE std::uint32_t box_entries(const tree::MeshNode& node, const RayQuery&
         first = hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f));
         last = hn::Mul(last, hn::Set(d, 1.0f + 0x1p-20f));
         hn::Store(first, d, entry + l);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Le(first, last), bits);
-        lanes |= static_cast<std::uint32_t>(bits[0]) << l;
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, hn::Le(first, last), bytes);
+        lanes |= (static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8) << l;
     }
     return lanes & ((1u << node.count) - 1u);
 }
@@ -75,7 +75,7 @@ HWY_INLINE std::uint32_t triangle_hits(const tree::MeshLeaf& leaf, const RayQuer
     const DD d;
     const hn::Rebind<float, DD> df;
     std::uint32_t hits = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         VD p[3][3], direction[3];
         for (int i = 0; i < 3; ++i) {
             direction[i] = hn::Set(d, q.direction[i]);
@@ -106,7 +106,7 @@ HWY_INLINE std::uint32_t triangle_hits(const tree::MeshLeaf& leaf, const RayQuer
 
 HWY_INLINE void trace_leaf(const RayQuery& q, std::uint32_t index, LineTest line_meets, RayAnswer& answer) {
     const tree::MeshLeaf& leaf = q.leaves[index];
-    HWY_ALIGN double t[tree::kMeshWidth];
+    HWY_ALIGN double t[tree::kMeshLeafWidth];
     std::uint32_t open = 0;
     std::uint32_t lanes = triangle_hits(leaf, q, t, open);
     lanes = (lanes | open) & ((1u << leaf.count) - 1u);
@@ -139,7 +139,7 @@ RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
             continue;
         }
         const tree::MeshNode& node = q.nodes[step.child];
-        HWY_ALIGN float entry[tree::kMeshWidth];
+        HWY_ALIGN float entry[tree::kMeshNodeWidth];
         const float limit = reached < 1e37 ? static_cast<float>(reached) * 1.000001f + q.slop : 1e37f;
         // The nearest child goes on top.
         const std::uint32_t base = height;

@@ -80,7 +80,7 @@ HWY_INLINE VD squared_to_face(DD d, const Point& p, const Point (&t)[3]) {
 HWY_INLINE std::uint32_t closer_lanes(const TrianglePairs& pairs, double limit) {
     const DD d;
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         if (l >= pairs.count) break;
         Point a[3], b[3];
         for (int v = 0; v < 3; ++v) {

@@ -19,9 +19,9 @@ constexpr double kUnderflow = 1e-280;
 
 // Gathered from wherever candidates are found, so that no lane is idle. Vertices [v][i] as exact arithmetic sees them.
 struct TrianglePairs {
-    alignas(64) double a[3][3][tree::kMeshWidth] = {};
-    alignas(64) double b[3][3][tree::kMeshWidth] = {};
-    LeafTriangle of_a[tree::kMeshWidth], of_b[tree::kMeshWidth];
+    alignas(64) double a[3][3][tree::kMeshLeafWidth] = {};
+    alignas(64) double b[3][3][tree::kMeshLeafWidth] = {};
+    LeafTriangle of_a[tree::kMeshLeafWidth], of_b[tree::kMeshLeafWidth];
     std::uint32_t count = 0;
 };
 
@@ -132,7 +132,7 @@ HWY_INLINE void judge_lanes(DD d, const TrianglePairs& pairs, std::size_t l, Lan
 HWY_INLINE LaneVerdict judge(const TrianglePairs& pairs) {
     const DD d;
     LaneVerdict verdict;
-    for (std::size_t l = 0; l < tree::kMeshWidth; l += hn::Lanes(d))
+    for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d))
         if (l < pairs.count) judge_lanes(d, pairs, l, verdict);
     const std::uint32_t used = (1u << pairs.count) - 1u;
     return {verdict.hits & used, verdict.open & used};

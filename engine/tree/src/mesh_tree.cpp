@@ -21,7 +21,7 @@ struct Reference {
 struct Range {
     std::size_t begin, end;
     [[nodiscard]] std::size_t size() const { return end - begin; }
-    [[nodiscard]] std::size_t leaves() const { return (size() + kMeshWidth - 1) / kMeshWidth; }
+    [[nodiscard]] std::size_t leaves() const { return (size() + kMeshLeafWidth - 1) / kMeshLeafWidth; }
 };
 
 // A range that is to become `count` children.
@@ -34,7 +34,7 @@ struct Part {
 // nodes are, and not in the many above the leaves.
 std::uint32_t child_count(std::size_t leaves) {
     std::size_t below = 1;
-    while (below * kMeshWidth < leaves) below *= kMeshWidth;
+    while (below * kMeshNodeWidth < leaves) below *= kMeshNodeWidth;
     return static_cast<std::uint32_t>((leaves + below - 1) / below);
 }
 
@@ -131,7 +131,7 @@ Part MeshTreeBuilder::split(Part& part) {
     for (auto r = begin; r != end; ++r) r->key = glm::dot(r->centroid, direction);
     // Whole leaves below: the cut is a multiple of the leaf's size, so that no lanes stay empty but in the last leaf.
     const std::uint32_t below = part.count / 2;
-    const std::size_t cut = (range.leaves() * below + part.count / 2) / part.count * kMeshWidth;
+    const std::size_t cut = (range.leaves() * below + part.count / 2) / part.count * kMeshLeafWidth;
     std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Reference& a, const Reference& b) {
         return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
     });
@@ -192,7 +192,7 @@ MeshBox MeshTreeBuilder::fit(const Range& range) const {
 std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
     MeshLeaf leaf{};
     leaf.count = static_cast<std::uint32_t>(range.size());
-    for (std::size_t lane = 0; lane < kMeshWidth; ++lane) {
+    for (std::size_t lane = 0; lane < kMeshLeafWidth; ++lane) {
         const std::uint32_t triangle = references_[range.begin + std::min(lane, range.size() - 1)].triangle;
         leaf.triangle[lane] = triangle;
         for (std::size_t v = 0; v < 3; ++v)
@@ -203,7 +203,7 @@ std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
 }
 
 void MeshTreeBuilder::split_node(const Task& task) {
-    Part parts[kMeshWidth] = {{task.range, child_count(task.range.leaves())}};
+    Part parts[kMeshNodeWidth] = {{task.range, child_count(task.range.leaves())}};
     std::uint32_t count = 1;
     for (std::uint32_t i = 0; i < count; ++i)
         while (parts[i].count > 1) parts[count++] = split(parts[i]);
@@ -217,7 +217,7 @@ void MeshTreeBuilder::split_node(const Task& task) {
             node.half[k][lane] = box.half[k];
             for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
         }
-        if (range.size() <= kMeshWidth) {
+        if (range.size() <= kMeshLeafWidth) {
             node.child[lane] = kMeshLeaf | add_leaf(range);
         } else {
             node.child[lane] = static_cast<std::uint32_t>(tree_.nodes_.size());
@@ -242,7 +242,7 @@ Result<MeshTree> MeshTreeBuilder::build() {
     valid.reserve(references_.size());
     for (const Reference& reference : references_) valid.push_back(reference.triangle);
     tree_.pieces_ = piece_points(mesh_, valid);
-    const std::size_t leaf_estimate = references_.size() / kMeshWidth + 1;
+    const std::size_t leaf_estimate = references_.size() / kMeshLeafWidth + 1;
     tree_.leaves_.reserve(leaf_estimate);
     tree_.nodes_.reserve(leaf_estimate / 4 + 1);
     const Range all{0, references_.size()};

@@ -4,23 +4,24 @@
 
 namespace crofton::tree {
 
-inline constexpr std::uint32_t kMeshWidth = 8;
+inline constexpr std::uint32_t kMeshNodeWidth = 16;
+inline constexpr std::uint32_t kMeshLeafWidth = 8;
 inline constexpr std::uint32_t kMeshLeaf = 0x80000000u;  // set in a child that is a leaf: the rest is its index
 
 // Boxes of up to eight children side by side, as one vector load wants them. Lane l's box holds every triangle below
 // it.
 struct alignas(64) MeshNode {
-    float center[3][kMeshWidth];
-    float axes[3][3][kMeshWidth];  // [k][i]: component i of axis k; orthonormal to 1e-6
-    float half[3][kMeshWidth];
-    std::uint32_t child[kMeshWidth];
+    float center[3][kMeshNodeWidth];
+    float axes[3][3][kMeshNodeWidth];  // [k][i]: component i of axis k; orthonormal to 1e-6
+    float half[3][kMeshNodeWidth];
+    std::uint32_t child[kMeshNodeWidth];
     std::uint32_t count;  // lanes in use: the first ones
 };
 
 // Up to eight triangles, vertices side by side. Unused lanes repeat the last triangle.
 struct alignas(64) MeshLeaf {
-    float vertex[3][3][kMeshWidth];  // [v][i]: component i of vertex v, exactly the mesh's own
-    std::uint32_t triangle[kMeshWidth];
+    float vertex[3][3][kMeshLeafWidth];  // [v][i]: component i of vertex v, exactly the mesh's own
+    std::uint32_t triangle[kMeshLeafWidth];
     std::uint32_t count;
 };
 
