@@ -21,6 +21,8 @@ struct LeafLanes {
     alignas(64) double vertex[3][3][tree::kMeshLeafWidth];
     alignas(64) double low[3][tree::kMeshLeafWidth];
     alignas(64) double high[3][tree::kMeshLeafWidth];
+    alignas(64) double normal[3][tree::kMeshLeafWidth];  // (v1 − v0) × (v2 − v0)
+    alignas(64) double normal_size[tree::kMeshLeafWidth];  // |v1 − v0|₁ |v2 − v0|₁
     double all_low[3], all_high[3];          // of the whole leaf
     std::uint32_t leaf = ~std::uint32_t{0};  // whose lanes these are
 };
@@ -38,6 +40,17 @@ HWY_INLINE void carry_over(DD d, const MeshPair& pair, VD* p) {
     for (int i = 0; i < 3; ++i) p[i] = out[i];
 }
 
+HWY_INLINE void store_planes(DD d, const VD (&w)[3][3], std::size_t l, LeafLanes& out) {
+    VD u[3], v[3], normal[3];
+    for (int i = 0; i < 3; ++i) {
+        u[i] = hn::Sub(w[1][i], w[0][i]);
+        v[i] = hn::Sub(w[2][i], w[0][i]);
+    }
+    cross(u, v, normal);
+    for (int i = 0; i < 3; ++i) hn::Store(normal[i], d, out.normal[i] + l);
+    hn::Store(hn::Mul(sum_abs(u), sum_abs(v)), d, out.normal_size + l);
+}
+
 HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, bool of_b, LeafLanes& out) {
     const DD d;
     const hn::Rebind<float, DD> df;
@@ -52,6 +65,7 @@ HWY_INLINE void load_lanes(const MeshPair& pair, const tree::MeshLeaf& leaf, boo
             hn::Store(hn::Min(w[0][i], hn::Min(w[1][i], w[2][i])), d, out.low[i] + l);
             hn::Store(hn::Max(w[0][i], hn::Max(w[1][i], w[2][i])), d, out.high[i] + l);
         }
+        store_planes(d, w, l, out);
     }
     for (int i = 0; i < 3; ++i) {
         VD low = hn::Load(d, out.low[i]), high = hn::Load(d, out.high[i]);
@@ -79,17 +93,37 @@ HWY_INLINE std::uint32_t candidates(const LeafLanes& in_a, const LeafLanes& in_b
     return lanes;
 }
 
-// Triangles of b whose bounds meet those of triangle `one` of a.
-HWY_INLINE std::uint32_t partners(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b) {
+// An upper bound of |w|₁ for the difference w of any two points of the leaves; the factor covers its own rounding.
+HWY_INLINE double reach_of(const LeafLanes& in_a, const LeafLanes& in_b) {
+    double reach = 0.0;
+    for (int i = 0; i < 3; ++i)
+        reach += HWY_MAX(in_a.all_high[i], in_b.all_high[i]) - HWY_MIN(in_a.all_low[i], in_b.all_low[i]);
+    return reach * 1.0000001;
+}
+
+// Triangles of b whose bounds meet those of triangle `one` of a, and which are not surely on one side of its plane.
+HWY_INLINE std::uint32_t partners(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b, double reach) {
     const DD d;
+    const VD error = hn::Set(d, kDeterminantError * reach * in_a.normal_size[one] + kUnderflow);
     std::uint32_t lanes = 0;
     for (std::size_t l = 0; l < tree::kMeshLeafWidth; l += hn::Lanes(d)) {
         MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
+        VD side[3];
         for (int i = 0; i < 3; ++i) {
             near = hn::And(near, hn::Le(hn::Load(d, in_b.low[i] + l), hn::Set(d, in_a.high[i][one])));
             near = hn::And(near, hn::Le(hn::Set(d, in_a.low[i][one]), hn::Load(d, in_b.high[i] + l)));
         }
-        lanes |= bits_of(d, near, l);
+        for (int v = 0; v < 3; ++v) {
+            VD w[3];
+            for (int i = 0; i < 3; ++i)
+                w[i] = hn::Sub(hn::Load(d, in_b.vertex[v][i] + l), hn::Set(d, in_a.vertex[0][i][one]));
+            side[v] = hn::MulAdd(hn::Set(d, in_a.normal[0][one]), w[0],
+                                 hn::MulAdd(hn::Set(d, in_a.normal[1][one]), w[1],
+                                            hn::Mul(hn::Set(d, in_a.normal[2][one]), w[2])));
+        }
+        const VD low = hn::Min(side[0], hn::Min(side[1], side[2])), high = hn::Max(side[0], hn::Max(side[1], side[2]));
+        const MD apart = hn::Or(hn::Gt(low, error), hn::Lt(high, hn::Neg(error)));
+        lanes |= bits_of(d, hn::AndNot(apart, near), l);
     }
     return lanes;
 }

@@ -74,9 +74,10 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
     load_pair(pair, a, b, leaves);
     const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+    const double reach = reach_of(leaves.a, leaves.b);
     for (std::uint32_t mask = candidates(leaves.a, leaves.b) & all_lanes(leaf_a); mask != 0; mask &= mask - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
-        std::uint32_t near = partners(leaves.a, lane, leaves.b) & all_lanes(leaf_b);
+        std::uint32_t near = partners(leaves.a, lane, leaves.b, reach) & all_lanes(leaf_b);
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);
