@@ -44,7 +44,48 @@ TriangleMesh cube(double half) {
 
 }  // namespace
 
+namespace {
+
+// One triangle in the plane z = 0 and, as another mesh, `count` small ones that pierce it, with numbers `step` apart:
+// those between lie elsewhere.
+void pierced(std::size_t count, std::size_t step, TriangleMesh& large, TriangleMesh& small) {
+    large.positions = {{-9.0f, -9.0f, 0.0f}, {30.0f, -9.0f, 0.0f}, {-9.0f, 30.0f, 0.0f}};
+    large.indices = {0, 1, 2};
+    for (std::size_t t = 0; t < count * step; ++t) {
+        const std::size_t place = t * 7919 % (count * step);
+        const float x = 0.1f * static_cast<float>(place % 64), y = 0.1f * static_cast<float>(place / 64 % 64);
+        const float z = t % step == 0 ? 0.0f : 5.0f;
+        for (const glm::vec3 corner :
+             {glm::vec3(x, y, z - 1.0f), glm::vec3(x + 0.01f, y, z + 1.0f), glm::vec3(x, y + 0.01f, z + 1.0f)}) {
+            small.indices.push_back(static_cast<std::uint32_t>(small.positions.size()));
+            small.positions.push_back(corner);
+        }
+    }
+}
+
+}  // namespace
+
 TEST_SUITE("collide/mesh_mesh") {
+    TEST_CASE("pairs come in order, few or many, near in number or far") {
+        for (const std::size_t count : {1u, 20u, 30u, 300u, 2500u})
+            for (const std::size_t step : {1u, 40u}) {
+                TriangleMesh large, small;
+                pierced(count, step, large, small);
+                const auto one = tree::MeshTree::build(large), many = tree::MeshTree::build(small);
+                REQUIRE(one.has_value());
+                REQUIRE(many.has_value());
+                Vector<TrianglePair> to_many, to_one;
+                intersecting_triangles(*one, *many, Pose{}, to_many);
+                intersecting_triangles(*many, *one, Pose{}, to_one);
+                REQUIRE(to_many.size() == count);
+                REQUIRE(to_one.size() == count);
+                for (std::size_t i = 0; i < count; ++i) {
+                    CHECK(to_many[i] == TrianglePair{0, static_cast<std::uint32_t>(i * step)});
+                    CHECK(to_one[i] == TrianglePair{static_cast<std::uint32_t>(i * step), 0});
+                }
+            }
+    }
+
     TEST_CASE("a triangle with NaN or a wild index is left out by name, and its neighbours are found all the same") {
         TriangleMesh a = wavy_torus(1.0, 0.4, 0.1), b = a;
         const Pose pose{glm::dmat3(1.0), {0.7, 0.1, 0.05}};
@@ -170,7 +211,8 @@ TEST_SUITE("collide/mesh_mesh") {
         CHECK(penetration(a, b, {glm::dmat3(1.0), {1.6, 0.1, 0.0}}, {}).depth == 0.0);
     }
 
-    TEST_CASE("the distance is, to the bit, the least of all pairs of triangles, near and far, of like and unlike size") {
+    TEST_CASE(
+        "the distance is, to the bit, the least of all pairs of triangles, near and far, of like and unlike size") {
         std::mt19937_64 random(13);
         for (int trial = 0; trial < 40; ++trial) {
             const TriangleMesh a = wavy_torus(1.0, 0.3, 0.2, 10, 8);

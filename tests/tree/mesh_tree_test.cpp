@@ -92,8 +92,8 @@ TEST_SUITE("tree/mesh_tree") {
         CHECK(tree->triangle_count() == 17);
     }
 
-    TEST_CASE("every triangle is in exactly one leaf and in every box above it; depth grows with log8") {
-        for (const std::size_t count : {1u, 8u, 9u, 100u, 5000u}) {
+    TEST_CASE("every triangle is in exactly one leaf and in every box above it; only the root has few children") {
+        for (const std::size_t count : {1u, 8u, 9u, 100u, 129u, 2049u, 2100u, 5000u}) {
             const TriangleMesh mesh = random_triangles(count, 30.0f);
             const auto tree = MeshTree::build(mesh);
             REQUIRE(tree.has_value());
@@ -101,7 +101,10 @@ TEST_SUITE("tree/mesh_tree") {
             int deepest = 0;
             walk(*tree, 0, 1, seen, deepest, mesh);
             CHECK(std::ranges::all_of(seen, [](int n) { return n == 1; }));
-            CHECK(deepest <= std::log(double(count)) / std::log(8.0) + 2.0);
+            int levels = 1;
+            for (std::size_t leaves = 16; 8 * leaves < count; leaves *= 16) ++levels;
+            CHECK(deepest == levels);
+            for (const MeshNode& node : tree->nodes().subspan(1)) CHECK(node.count >= 8);
         }
     }
 

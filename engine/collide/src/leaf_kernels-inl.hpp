@@ -21,10 +21,10 @@ struct LeafLanes {
     alignas(64) double vertex[3][3][tree::kMeshLeafWidth];
     alignas(64) double low[3][tree::kMeshLeafWidth];
     alignas(64) double high[3][tree::kMeshLeafWidth];
-    alignas(64) double normal[3][tree::kMeshLeafWidth];  // (v1 − v0) × (v2 − v0)
+    alignas(64) double normal[3][tree::kMeshLeafWidth];    // (v1 − v0) × (v2 − v0)
     alignas(64) double normal_size[tree::kMeshLeafWidth];  // |v1 − v0|₁ |v2 − v0|₁
-    double all_low[3], all_high[3];          // of the whole leaf
-    std::uint32_t leaf = ~std::uint32_t{0};  // whose lanes these are
+    double all_low[3], all_high[3];                        // of the whole leaf
+    std::uint32_t leaf = ~std::uint32_t{0};                // whose lanes these are
 };
 
 // The same roundings as transform(Pose) in pose.cpp: products and sums one by one, tiny results taken as zero.
@@ -117,9 +117,9 @@ HWY_INLINE std::uint32_t partners(const LeafLanes& in_a, std::uint32_t one, cons
             VD w[3];
             for (int i = 0; i < 3; ++i)
                 w[i] = hn::Sub(hn::Load(d, in_b.vertex[v][i] + l), hn::Set(d, in_a.vertex[0][i][one]));
-            side[v] = hn::MulAdd(hn::Set(d, in_a.normal[0][one]), w[0],
-                                 hn::MulAdd(hn::Set(d, in_a.normal[1][one]), w[1],
-                                            hn::Mul(hn::Set(d, in_a.normal[2][one]), w[2])));
+            side[v] = hn::MulAdd(
+                hn::Set(d, in_a.normal[0][one]), w[0],
+                hn::MulAdd(hn::Set(d, in_a.normal[1][one]), w[1], hn::Mul(hn::Set(d, in_a.normal[2][one]), w[2])));
         }
         const VD low = hn::Min(side[0], hn::Min(side[1], side[2])), high = hn::Max(side[0], hn::Max(side[1], side[2]));
         const MD apart = hn::Or(hn::Gt(low, error), hn::Lt(high, hn::Neg(error)));

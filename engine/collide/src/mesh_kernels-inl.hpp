@@ -1,4 +1,4 @@
-// One box against the eight of a node, one triangle against the eight of a leaf; included once per instruction set.
+// One box against the sixteen of a node; included once per instruction set.
 #if defined(CROFTON_COLLIDE_MESH_KERNELS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_MESH_KERNELS
 #undef CROFTON_COLLIDE_MESH_KERNELS

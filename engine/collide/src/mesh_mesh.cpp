@@ -8,6 +8,7 @@
 
 #include "closest_points.hpp"
 #include "mesh_pair.hpp"
+#include "pair_sort.hpp"
 #include "posed_mesh.hpp"
 
 namespace crofton::collide {
@@ -102,8 +103,7 @@ void intersecting_triangles(const tree::MeshTree& a, const tree::MeshTree& b, co
         pairs.push_back(hit.indices());
         return false;
     });
-    const auto key = [](const TrianglePair& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
-    std::sort(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
+    sort_pairs(pairs);
 }
 
 void contacts(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b_to_a, Vector<MeshContact>& found,

@@ -50,8 +50,8 @@ struct Nearest {
 // Calls `visit` for pairs that may be nearer than `nearest`, nearest boxes first.
 void visit_nearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts);
 
-// A stack this deep is never exceeded: depth ≤ 11 levels in each tree (2^28 triangles, eight-wide median splits), each
-// step down leaves at most seven siblings.
+// A stack this deep is never exceeded: at most 7 levels of nodes in each tree (2^25 leaves, sixteen to a node that is
+// full), each step down leaves at most fifteen siblings.
 inline constexpr std::uint32_t kMeshStackSize = 512;
 
 }  // namespace crofton::collide

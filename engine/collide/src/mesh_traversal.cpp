@@ -14,9 +14,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 
-// Lane `lane` of node `node`; the root has no lane.
+// Lane `lane` of node `node`, the root having no lane; with what the descent asks of it at once.
 struct Reference {
     std::uint32_t node, lane;
+    std::uint32_t child;
+    float size;  // sum of the half extents
 };
 constexpr std::uint32_t kRoot = ~std::uint32_t{0};
 
@@ -25,8 +27,11 @@ struct Step {
     float bound;
 };
 
-HWY_INLINE std::uint32_t child_of(const MeshPair& pair, int side, Reference r) {
-    return r.node == kRoot ? 0 : pair.nodes[side][r.node].child[r.lane];
+HWY_INLINE Reference root_of(const MeshPair& pair, int side) {
+    return {kRoot, 0, 0, half_sum(box_of(*pair.root[side]))};
+}
+HWY_INLINE Reference lane_of(const tree::MeshNode& node, std::uint32_t index, std::uint32_t lane) {
+    return {index, lane, node.child[lane], node.half[0][lane] + node.half[1][lane] + node.half[2][lane]};
 }
 HWY_INLINE QueryBox box_at(const MeshPair& pair, int side, Reference r) {
     return r.node == kRoot ? box_of(*pair.root[side]) : box_of(pair.nodes[side][r.node], r.lane);
@@ -35,10 +40,11 @@ HWY_INLINE QueryBox box_at(const MeshPair& pair, int side, Reference r) {
 HWY_INLINE QueryBox query_box(const MeshPair& pair, const Reference& a, const Reference& b, bool into_a) {
     return into_a ? carried(pair.to_a, box_at(pair, 1, b)) : carried(pair.to_b, box_at(pair, 0, a));
 }
-HWY_INLINE float size_of(const MeshPair& pair, int side, Reference r) {
-    if (r.node == kRoot) return half_sum(box_of(*pair.root[side]));
-    const tree::MeshNode& node = pair.nodes[side][r.node];
-    return node.half[0][r.lane] + node.half[1][r.lane] + node.half[2][r.lane];
+// The pair of boxes one level down in the mesh that is descended, whose node is number `index`.
+HWY_INLINE Step below(const Step& step, bool into_a, const tree::MeshNode& node, std::uint32_t index,
+                      std::uint32_t lane, float bound) {
+    if (into_a) return {lane_of(node, index, lane), step.b, bound};
+    return {step.a, lane_of(node, index, lane), bound};
 }
 
 HWY_INLINE std::uint32_t all_lanes(const tree::MeshLeaf& leaf) {
@@ -87,12 +93,9 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
     return false;
 }
 
-HWY_INLINE void prefetch_child(const MeshPair& pair, int side, std::uint32_t child) {
-    const bool is_leaf = child & tree::kMeshLeaf;
-    const char* address = is_leaf ? reinterpret_cast<const char*>(pair.leaves[side] + (child & ~tree::kMeshLeaf))
-                                  : reinterpret_cast<const char*>(pair.nodes[side] + child);
-    const std::size_t size = is_leaf ? sizeof(tree::MeshLeaf) : sizeof(tree::MeshNode);
-    for (std::size_t byte = 0; byte < size; byte += 64) hwy::Prefetch(address + byte);
+HWY_INLINE void prefetch_leaf(const tree::MeshLeaf* leaf) {
+    const char* const address = reinterpret_cast<const char*>(leaf);
+    for (std::size_t byte = 0; byte < sizeof(tree::MeshLeaf); byte += 64) hwy::Prefetch(address + byte);
 }
 
 // Pairs of leaves wait here, in order, until what they need has come from memory.
@@ -102,16 +105,16 @@ struct LeafQueue {
     std::size_t begin = 0, count = 0;
 };
 
-// Descends the larger box: the other's box is carried into its frame and tested against eight children at once.
-HWY_INLINE bool descends_a(const MeshPair& pair, const Step& step, std::uint32_t child_a, std::uint32_t child_b) {
-    if (child_a & tree::kMeshLeaf) return false;
-    return (child_b & tree::kMeshLeaf) || size_of(pair, 0, step.a) >= size_of(pair, 1, step.b);
+// Descends the larger box: the other's box is carried into its frame and tested against all its children at once.
+HWY_INLINE bool descends_a(const Step& step) {
+    if (step.a.child & tree::kMeshLeaf) return false;
+    return (step.b.child & tree::kMeshLeaf) || step.a.size >= step.b.size;
 }
 
 void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, TraversalCounts& counts) {
     Step stack[kMeshStackSize];
     std::uint32_t height = 0;
-    stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
+    stack[height++] = {root_of(pair, 0), root_of(pair, 1), 0.0f};
     const float slop = pair.slop + pair.tolerance;
     LeafPair leaves;
     TrianglePairs gathered;
@@ -124,7 +127,7 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
     };
     while (height > 0) {
         const Step step = stack[--height];
-        const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
+        const std::uint32_t a = step.a.child, b = step.b.child;
         if (a & b & tree::kMeshLeaf) {
             if (queue.count == LeafQueue::kCapacity && visit_first()) return;
             const std::size_t place = (queue.begin + queue.count++) % LeafQueue::kCapacity;
@@ -133,14 +136,16 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
             if (at_once && (visit_first() || settle(gathered, visit))) return;
             continue;
         }
-        const bool into_a = descends_a(pair, step, a, b);
-        const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
+        const bool into_a = descends_a(step);
+        const std::uint32_t index = into_a ? a : b;
+        const tree::MeshNode& node = pair.nodes[into_a ? 0 : 1][index];
         const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
         for (std::uint32_t mask = overlap_mask(node, box, slop); mask != 0; mask &= mask - 1) {
             const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
-            stack[height++] = into_a ? Step{{a, lane}, step.b, 0.0f} : Step{step.a, {b, lane}, 0.0f};
-            prefetch_child(pair, into_a ? 0 : 1, node.child[lane]);
+            stack[height++] = below(step, into_a, node, index, lane, 0.0f);
+            if (node.child[lane] & tree::kMeshLeaf)
+                prefetch_leaf(pair.leaves[into_a ? 0 : 1] + (node.child[lane] & ~tree::kMeshLeaf));
         }
     }
     while (queue.count > 0)
@@ -185,19 +190,20 @@ void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visi
     std::uint32_t height = 0;
     LeafPair leaves;
     TrianglePairs gathered;
-    stack[height++] = {{kRoot, 0}, {kRoot, 0}, 0.0f};
+    stack[height++] = {root_of(pair, 0), root_of(pair, 1), 0.0f};
     while (height > 0) {
         const Step step = stack[--height];
         if (static_cast<double>(step.bound) > nearest.squared) continue;
-        const std::uint32_t a = child_of(pair, 0, step.a), b = child_of(pair, 1, step.b);
+        const std::uint32_t a = step.a.child, b = step.b.child;
         if (a & b & tree::kMeshLeaf) {
             if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, gathered, nearest, visit,
                                   counts))
                 return;
             continue;
         }
-        const bool into_a = descends_a(pair, step, a, b);
-        const tree::MeshNode& node = into_a ? pair.nodes[0][a] : pair.nodes[1][b];
+        const bool into_a = descends_a(step);
+        const std::uint32_t index = into_a ? a : b;
+        const tree::MeshNode& node = pair.nodes[into_a ? 0 : 1][index];
         const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
         HWY_ALIGN float bounds[tree::kMeshNodeWidth];
@@ -210,7 +216,7 @@ void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visi
             if (static_cast<double>(bounds[lane]) > nearest.squared) continue;
             std::uint32_t place = height++;
             for (; place > base && stack[place - 1].bound < bounds[lane]; --place) stack[place] = stack[place - 1];
-            stack[place] = into_a ? Step{{a, lane}, step.b, bounds[lane]} : Step{step.a, {b, lane}, bounds[lane]};
+            stack[place] = below(step, into_a, node, index, lane, bounds[lane]);
         }
     }
 }

@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, tree::kMeshNodeWidth>;
 using V = hn::Vec<D>;
 
-// Slabs of eight boxes, grown by the slop: entry distance of each lane that is met before `limit`.
+// Slabs of sixteen boxes, grown by the slop: entry distance of each lane that is met before `limit`.
 HWY_INLINE std::uint32_t box_entries(const tree::MeshNode& node, const RayQuery& q, float limit, float* entry) {
     const D d;
     std::uint32_t lanes = 0;

@@ -4,11 +4,11 @@
 
 namespace crofton::tree {
 
-inline constexpr std::uint32_t kMeshNodeWidth = 16;
-inline constexpr std::uint32_t kMeshLeafWidth = 8;
+inline constexpr std::uint32_t kMeshNodeWidth = 16;      // boxes to a node: a vector of floats
+inline constexpr std::uint32_t kMeshLeafWidth = 8;       // triangles to a leaf: a vector of doubles
 inline constexpr std::uint32_t kMeshLeaf = 0x80000000u;  // set in a child that is a leaf: the rest is its index
 
-// Boxes of up to eight children side by side, as one vector load wants them. Lane l's box holds every triangle below
+// Boxes of up to sixteen children side by side, as one vector load wants them. Lane l's box holds every triangle below
 // it.
 struct alignas(64) MeshNode {
     float center[3][kMeshNodeWidth];

@@ -1,4 +1,4 @@
-// A static hierarchy of oriented boxes over the triangles of one mesh, eight boxes to a node, for collisions and rays.
+// A static hierarchy of oriented boxes over the triangles of one mesh, sixteen boxes to a node, for collisions and rays.
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -16,7 +16,8 @@ struct MeshTreeOptions {
     measure::Criterion criterion = measure::minimal_perimeter();  // decides between candidate boxes
 };
 
-// Depth is at most log8 of the triangle count plus two: splits are at medians.
+// Every node but the root has at least eight children, and the nodes make no more levels than sixteen-way splits need:
+// log16 of the number of leaves, rounded up.
 class MeshTree {
   public:
     // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed
