@@ -1,6 +1,8 @@
 #version 460
 // Lit triangles. The position is computed exactly as ClipPredictor does, so that triangle counts agree to the bit.
 
+layout(constant_id = 0) const uint faces = 0;  // 0: both will be seen, else only the front
+
 layout(push_constant) uniform Frame {
     vec4 to_sun;        // unit vector; w: distance of half the haze
     vec4 sun;           // linear RGB
@@ -18,7 +20,14 @@ layout(location = 3) in mat4 to_clip;
 layout(location = 7) in mat3x4 to_world_normal;  // cofactors of the linear part; .w of the columns: the tint
 layout(location = 10) in vec4 options;           // x: share of the tint in the colour, y: 1 = unlit
 
-layout(location = 0) out vec4 lit_color;  // .a: how much brighter the back is than the front, less 1
+layout(location = 0) out vec4 front;  // display colour; .a: how bright the back is by comparison
+
+// Haze by view depth d and its distance h: d² / (h² + d²); then a square root for the display's gamma.
+vec3 shown(vec3 lit, float depth) {
+    float square = max(depth, 0.0) * max(depth, 0.0);
+    float haze = frame.fog.w * square / (square + frame.to_sun.w * frame.to_sun.w);
+    return sqrt(mix(lit, frame.fog.rgb, haze));
+}
 
 void main() {
     precise vec4 x = to_clip[0] * position.x;
@@ -35,7 +44,10 @@ void main() {
     vec3 ambient = 0.5 * (frame.sky_ambient.rgb + frame.ground_ambient.rgb);
     vec3 slope = (0.5 * n.y) * (frame.sky_ambient.rgb - frame.ground_ambient.rgb);
     float facing = dot(n, frame.to_sun.xyz);
-    vec3 front = mix(ambient + slope + frame.sun.rgb * max(facing, 0.0), vec3(1.0), options.y);
-    vec3 back = mix(ambient - slope + frame.sun.rgb * max(-facing, 0.0), vec3(1.0), options.y);
-    lit_color = vec4(albedo * front, back.g / max(front.g, 1e-4) - 1.0);
+    vec3 to_front = mix(ambient + slope + frame.sun.rgb * max(facing, 0.0), vec3(1.0), options.y);
+    front = vec4(shown(albedo * to_front, clip.w), 1.0);
+    if (faces == 0) {
+        vec3 to_back = mix(ambient - slope + frame.sun.rgb * max(-facing, 0.0), vec3(1.0), options.y);
+        front.a = shown(to_back, clip.w).g / max(shown(to_front, clip.w).g, 1e-2);
+    }
 }

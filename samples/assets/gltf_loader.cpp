@@ -141,6 +141,7 @@ class GltfReader {
             if (!id) return in_file(name, "", id.error());
             ids.push_back(*id);
             note_unlit(*id, mesh.primitives[p].material);
+            note_sides(*id, mesh.primitives[p].material);
             const glm::vec3 emission = emission_of(mesh.primitives[p].material);
             if (emission == glm::vec3(0.0f)) continue;
             source_.emission.resize(*id + 1);
@@ -161,6 +162,13 @@ class GltfReader {
         for (std::size_t k = 0; k < 3 && k < m.emissiveFactor.size(); ++k)
             result[static_cast<int>(k)] = static_cast<float>(m.emissiveFactor[k] * strength);
         return result;
+    }
+
+    // Faces without a material are one-sided as well: it is glTF's default.
+    void note_sides(scene::MeshId mesh, int material) {
+        source_.one_sided.resize(mesh + std::size_t{1});
+        source_.one_sided[mesh] = !exists(material, model_.materials.size()) ||
+                                  !model_.materials[static_cast<std::size_t>(material)].doubleSided;
     }
 
     void note_unlit(scene::MeshId mesh, int material) {

@@ -27,6 +27,8 @@ struct SceneSource {
     std::function<void(scene::Scene&, std::uint32_t)> motion;
     // By mesh: 1 where the colours are light already (glTF's KHR_materials_unlit). Empty: none.
     std::vector<std::uint8_t> unlit = {};
+    // By mesh: 1 where faces are meant to be seen from their front only (glTF's doubleSided: false). Empty: none.
+    std::vector<std::uint8_t> one_sided = {};
     // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
     std::vector<std::vector<glm::vec3>> emission = {};
 

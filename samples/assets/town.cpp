@@ -161,6 +161,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
                                   crane.start * scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
                                                                 glm::dvec3(1.0)));
     };
+    source.one_sided.assign(source.scene.mesh_count(), 1);  // where both sides show, both are built
     return source;
 }
 

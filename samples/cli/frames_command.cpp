@@ -152,7 +152,8 @@ class FramesRun {
     Result<void> prepare_drawing(const ImageSize& size) {
         std::vector<std::uint8_t> is_mover(source_->scene.instance_count(), 0);
         for (const scene::InstanceId instance : pipeline_->movers()) is_mover[instance] = 1;
-        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover, source_->unlit);
+        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover,
+                      pipeline::DrawList::Looks{source_->unlit, source_->one_sided});
         if (options_.no_draw) return {};
         auto drawing = make_drawing(*list_, size);
         if (drawing) {

@@ -231,7 +231,7 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     wanted.kind = render::DeviceKind::any;
     auto device = render::Device::create(wanted);
     if (!device) return tl::unexpected(device.error());
-    auto rasterizer = render::Rasterizer::create(*device, {.width = width, .height = height, .cull_back_faces = true});
+    auto rasterizer = render::Rasterizer::create(*device, {.width = width, .height = height});
     if (!rasterizer) return tl::unexpected(rasterizer.error());
     Vector<render::Vertex> vertices;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
@@ -242,7 +242,7 @@ Result<void> write_lit_picture(const std::string& path, const TriangleMesh& mesh
     here.position = glm::dvec3(0.0);
     render::DrawTransform transform = render::draw_transform(glm::mat4(world_to_clip(here)), glm::dmat3(1.0));
     transform.unlit = 1.0f;
-    const render::DrawRange range{0, static_cast<std::uint32_t>(mesh.indices.size()), 0};
+    const render::DrawRange range{0, static_cast<std::uint32_t>(mesh.indices.size()), 0, true};
     render::Frame frame;
     frame.camera = here;
     frame.transforms = {&transform, 1};

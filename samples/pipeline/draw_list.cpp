@@ -39,10 +39,14 @@ glm::dmat3 normal_matrix(const glm::dmat3& linear) {
     return glm::determinant(linear) < 0.0 ? -cofactor : cofactor;
 }
 
+std::uint8_t flag(std::span<const std::uint8_t> flags, scene::MeshId mesh) {
+    return mesh < flags.size() ? flags[mesh] : std::uint8_t{0};
+}
+
 }  // namespace
 
 DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId> order,
-                   std::span<const std::uint8_t> is_mover, std::span<const std::uint8_t> unlit)
+                   std::span<const std::uint8_t> is_mover, const Looks& looks)
     : scene_(scene), baked_origin_(middle_of(scene)), instances_(order.begin(), order.end()) {
     const std::vector<MeshVertices> meshes = vertices_of_meshes(scene);
     std::size_t baked_vertices = 0;
@@ -59,7 +63,8 @@ DrawList::DrawList(const scene::Scene& scene, std::span<const scene::InstanceId>
         ranks_[instance] = rank;
         const bool baked = bake && !is_mover[instance];
         baked_.push_back(baked);
-        unlit_.push_back(mesh < unlit.size() ? unlit[mesh] : std::uint8_t{0});
+        unlit_.push_back(flag(looks.unlit, mesh));
+        one_sided_.push_back(flag(looks.one_sided, mesh));
         if (!baked) {
             if (shared[mesh].index_count == 0) shared[mesh] = append(meshes[mesh].vertices, meshes[mesh].indices);
             parts_.push_back(shared[mesh]);
@@ -103,13 +108,17 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
     transforms_[1].unlit = 1.0f;
     for (const std::uint32_t rank : selected_) {
         std::uint32_t transform = unlit_[rank];
+        const scene::Transform& world = scene_.world(scene_.node_of(instances_[rank]));
         if (!baked_[rank]) {
-            const scene::Transform& world = scene_.world(scene_.node_of(instances_[rank]));
             transform = static_cast<std::uint32_t>(transforms_.size());
             transforms_.push_back(render::draw_transform(to_clip(world.linear, world.translation), world.linear));
             transforms_.back().unlit = unlit_[rank];
         }
-        ranges_.push_back({parts_[rank].first_index, parts_[rank].index_count, transform});
+        const Part& part = parts_[rank];
+        // Mirrored, fronts and backs change places: such instances show both.
+        const bool one_sided = one_sided_[rank] != 0 && glm::determinant(world.linear) > 0.0;
+        ranges_.push_back({part.first_index, part.index_count, transform, one_sided,
+                           inside_clip_planes(part.bounds, transforms_[transform].to_clip)});
     }
 }
 
@@ -117,6 +126,10 @@ std::uint64_t DrawList::predict_clipped() {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < selected_.size(); ++i) {
         const Part& part = parts_[selected_[i]];
+        if (ranges_[i].unclipped) {
+            sum += part.index_count / 3;
+            continue;
+        }
         sum +=
             predictor_.count(std::span<const glm::vec3>(positions_).subspan(part.first_vertex, part.vertex_count),
                              std::span<const std::uint32_t>(local_indices_).subspan(part.first_index, part.index_count),

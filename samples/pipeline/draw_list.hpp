@@ -14,10 +14,14 @@ namespace crofton::pipeline {
 // a transform each.
 class DrawList {
   public:
-    // `order` lists the instances as they should lie in the buffer, a tree's leaf order; `is_mover` is by instance,
-    // `unlit` by mesh and may be shorter: those meshes show their colours as they are.
+    // By mesh, and possibly shorter, the rest being 0.
+    struct Looks {
+        std::span<const std::uint8_t> unlit{};      // shows its colours as they are
+        std::span<const std::uint8_t> one_sided{};  // does not show its back faces
+    };
+    // `order` lists the instances as they should lie in the buffer, a tree's leaf order; `is_mover` is by instance.
     DrawList(const scene::Scene& scene, std::span<const scene::InstanceId> order,
-             std::span<const std::uint8_t> is_mover, std::span<const std::uint8_t> unlit = {});
+             std::span<const std::uint8_t> is_mover, const Looks& looks);
 
     [[nodiscard]] std::span<const render::Vertex> vertices() const { return vertices_; }
     [[nodiscard]] std::span<const std::uint32_t> indices() const { return indices_; }
@@ -46,13 +50,13 @@ class DrawList {
     glm::dvec3 baked_origin_{0.0};
     Vector<render::Vertex> vertices_;
     Vector<glm::vec3> positions_;
-    Vector<std::uint32_t> indices_;             // into vertices_
-    Vector<std::uint32_t> local_indices_;       // the same, from each part's first vertex
-    std::vector<scene::InstanceId> instances_;  // by rank: the order in the buffer
-    std::vector<std::uint32_t> ranks_;          // by instance
-    std::vector<Part> parts_;                   // by rank
-    std::vector<std::uint8_t> baked_, unlit_;   // by rank
-    std::vector<std::uint32_t> selected_;       // ranks, ascending
+    Vector<std::uint32_t> indices_;                        // into vertices_
+    Vector<std::uint32_t> local_indices_;                  // the same, from each part's first vertex
+    std::vector<scene::InstanceId> instances_;             // by rank: the order in the buffer
+    std::vector<std::uint32_t> ranks_;                     // by instance
+    std::vector<Part> parts_;                              // by rank
+    std::vector<std::uint8_t> baked_, unlit_, one_sided_;  // by rank
+    std::vector<std::uint32_t> selected_;                  // ranks, ascending
     std::vector<render::DrawRange> ranges_;
     std::vector<render::DrawTransform> transforms_;
     ClipPredictor predictor_;

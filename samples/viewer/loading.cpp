@@ -126,8 +126,9 @@ Result<void> Session::load(const SceneRequest& request) {
     }
     std::vector<std::uint8_t> is_mover(stage_->scene().instance_count(), 0);
     for (const scene::InstanceId mover : stage_->source().movers) is_mover[mover] = 1;
-    list_ = std::make_unique<pipeline::DrawList>(stage_->scene(), stage_->pipeline().spatial_order(), is_mover,
-                                                 stage_->source().unlit);
+    list_ = std::make_unique<pipeline::DrawList>(
+        stage_->scene(), stage_->pipeline().spatial_order(), is_mover,
+        pipeline::DrawList::Looks{stage_->source().unlit, stage_->source().one_sided});
     return upload_geometry();
 }
 

@@ -135,4 +135,19 @@ TEST_SUITE("assets/gltf_loader") {
         REQUIRE(dark.has_value());
         CHECK(dark->emission.empty());
     }
+
+    TEST_CASE("faces are one-sided unless the material says otherwise") {
+        const std::string plain = gltf_json("[{\"mesh\":0}]");
+        for (const bool twice : {false, true}) {
+            std::string text = plain;
+            text.insert(text.find("\"indices\":1") + 11, ",\"material\":0");
+            text.insert(1, std::string("\"materials\":[{\"doubleSided\":") + (twice ? "true" : "false") + "}],");
+            const auto scene = load_glb(text);
+            REQUIRE(scene.has_value());
+            CHECK(scene->one_sided == std::vector<std::uint8_t>{twice ? std::uint8_t{0} : std::uint8_t{1}});
+        }
+        const auto bare = load_glb(plain);
+        REQUIRE(bare.has_value());
+        CHECK(bare->one_sided == std::vector<std::uint8_t>{1});
+    }
 }

@@ -28,16 +28,17 @@ struct Soup {
 // Counts on the GPU and on the CPU, and finds the first triangle where they differ.
 class Comparison {
   public:
-    explicit Comparison(Device& device) : rasterizer_(std::move(*Rasterizer::create(device, {64, 64, false}))) {}
+    explicit Comparison(Device& device) : rasterizer_(std::move(*Rasterizer::create(device, {64, 64}))) {}
 
     void upload(const Soup& soup) {
         Vector<Vertex> vertices;
         for (const glm::vec3& p : soup.positions) vertices.push_back({p, {0, 1, 0}, {1, 1, 1}});
         REQUIRE(rasterizer_.set_geometry(vertices, soup.indices));
     }
-    std::uint64_t gpu(const glm::mat4& matrix, std::uint32_t first, std::uint32_t count) {
+    std::uint64_t gpu(const glm::mat4& matrix, std::uint32_t first, std::uint32_t count, bool one_sided = false,
+                      bool unclipped = false) {
         const DrawTransform transform = draw_transform(matrix, glm::dmat3(1.0));
-        const DrawRange range{first, count, 0};
+        const DrawRange range{first, count, 0, one_sided, unclipped};
         Frame frame{.camera = {}, .transforms = {&transform, 1}, .ranges = {&range, 1}, .environment = {}};
         frame.environment.sky = false;
         const auto counters = rasterizer_.draw(frame);
@@ -49,6 +50,7 @@ class Comparison {
         upload(soup);
         ClipPredictor predictor;
         const auto total = static_cast<std::uint32_t>(soup.indices.size());
+        CHECK(gpu(matrix, 0, total, true) == gpu(matrix, 0, total));
         if (gpu(matrix, 0, total) == predictor.count(soup.positions, soup.indices, matrix)) return;
         std::uint32_t begin = 0, end = total / 3;
         while (end - begin > 1) {
@@ -142,7 +144,7 @@ TEST_SUITE("geometry/clip_space") {
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
         ClipPredictor predictor;
         const Vector<std::uint32_t> indices{0, 1, 2};
-        int whole = 0, none = 0;
+        int whole = 0, none = 0, clear = 0;
         for (int i = 0; i < 20000; ++i) {
             Camera camera;
             camera.position = {1e7 * unit(random), 0.0, 0.0};
@@ -160,7 +162,16 @@ TEST_SUITE("geometry/clip_space") {
             if (predictor.count(soup.positions, soup.indices, matrix, bounds) != counted) FAIL("differs in case " << i);
             whole += counted == 12;
             none += counted == 0;
+            if (!inside_clip_planes(bounds, matrix)) continue;
+            ++clear;
+            for (const glm::vec3& p : soup.positions) {
+                const glm::dvec4 at = glm::dmat4(matrix) * glm::dvec4(p, 1.0);
+                if (!(std::abs(at.x) <= at.w && std::abs(at.y) <= at.w && 0.0 <= at.z && at.z <= at.w))
+                    FAIL("not inside in case " << i);
+            }
         }
+        CHECK(clear > 500);
+        CHECK(whole >= clear);
         CHECK(whole > 500);
         CHECK(none > 500);
         // Points within a few roundings of the right plane: their box is that point.
@@ -205,6 +216,28 @@ TEST_SUITE("geometry/clip_space") {
             comparison.check(random_soup(seed++, 50000, 5.0f, 60.0f, 0.0f), matrix);
             comparison.check(random_soup(seed++, 50000, 2.0f, 2.0f, 0.5f), matrix);
         }
+        CHECK(device->validation_messages().empty());
+    }
+    TEST_CASE(
+        "back faces that are culled count all the same in meshes inside the clip planes, of one triangle or 50,000") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Comparison comparison(*device);
+        const glm::mat4 matrix = some_matrix();
+        const glm::dvec3 ahead = glm::dvec3(1.0, 2.0, 3.0) + 20.0 * glm::normalize(glm::dvec3(0.3, -0.2, -1.0));
+        std::uint64_t seed = 40;
+        for (const int count : {1, 5, 400, 2000, 50000}) {
+            Soup soup = random_soup(seed++, count, 2.0f, 2.0f, 0.0f);
+            Aabb bounds;
+            for (glm::vec3& p : soup.positions) bounds.include(p += glm::vec3(ahead));
+            REQUIRE(inside_clip_planes(bounds, matrix));
+            comparison.upload(soup);
+            const auto total = static_cast<std::uint32_t>(soup.indices.size());
+            CHECK(comparison.gpu(matrix, 0, total, true, true) == static_cast<std::uint64_t>(count));
+        }
+        // The promise matters: where some of the mesh is clipped, lavapipe misses culled faces.
+        Soup soup = random_soup(seed, 2000, 30.0f, 3.0f, 0.0f);
+        comparison.upload(soup);
+        CHECK(comparison.gpu(matrix, 0, 6000, true, true) < comparison.gpu(matrix, 0, 6000, true, false));
         CHECK(device->validation_messages().empty());
     }
     TEST_CASE("agrees with lavapipe for stretched, mirrored and far-off placements") {

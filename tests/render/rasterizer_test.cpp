@@ -46,7 +46,7 @@ std::uint64_t count_color(const Image& image, int r, int g, int b) {
 }
 
 Rasterizer make_rasterizer(Device& device, std::uint32_t size = 64) {
-    auto rasterizer = Rasterizer::create(device, {size, size, false});
+    auto rasterizer = Rasterizer::create(device, {size, size});
     REQUIRE(rasterizer);
     REQUIRE(rasterizer->set_geometry(kVertices, kIndices));
     return std::move(*rasterizer);
@@ -57,8 +57,8 @@ Rasterizer make_rasterizer(Device& device, std::uint32_t size = 64) {
 TEST_SUITE("render/rasterizer") {
     TEST_CASE("bad sizes, geometry and ranges are refused by name, and the rasterizer works on") {
         CROFTON_REQUIRE_DEVICE(device);
-        CHECK(Rasterizer::create(*device, {0, 10, false}).error().code == ErrorCode::out_of_range);
-        CHECK(Rasterizer::create(*device, {10, 1u << 30, false}).error().code == ErrorCode::out_of_range);
+        CHECK(Rasterizer::create(*device, {0, 10}).error().code == ErrorCode::out_of_range);
+        CHECK(Rasterizer::create(*device, {10, 1u << 30}).error().code == ErrorCode::out_of_range);
         Rasterizer rasterizer = make_rasterizer(*device);
         const std::uint32_t bad_index[] = {0, 1, 7}, two[] = {0, 1};
         CHECK(rasterizer.set_geometry(kVertices, bad_index).error().item == 2);
@@ -83,7 +83,7 @@ TEST_SUITE("render/rasterizer") {
     }
     TEST_CASE("a frame of nothing counts nothing and shows the background, even without geometry") {
         CROFTON_REQUIRE_DEVICE(device);
-        auto rasterizer = Rasterizer::create(*device, {32, 16, false});
+        auto rasterizer = Rasterizer::create(*device, {32, 16});
         REQUIRE(rasterizer);
         Frame frame{.camera = camera_at(10.0), .transforms = {}, .ranges = {}, .environment = {}};
         frame.environment.sky = false;
@@ -189,6 +189,67 @@ TEST_SUITE("render/rasterizer") {
         for (std::uint32_t i = 0; i < 5000; ++i)
             wrong += image.rgba[4 * i] != i % 256 || image.rgba[4 * i + 1] != i / 256 || image.rgba[4 * i + 2] != 255;
         CHECK(wrong == 0);
+        CHECK(device->validation_messages().empty());
+    }
+    TEST_CASE("back faces of one-sided ranges are counted but not seen, whether culled or dropped by the shader") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Rasterizer rasterizer = make_rasterizer(*device);
+        const std::uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 2, 1, 0, 3, 2};  // the square's front, then its back
+        REQUIRE(rasterizer.set_geometry(kVertices, indices));
+        const Camera camera = camera_at(10.0);
+        const DrawTransform transforms[] = {flat_transform(camera, {}, {0, 0, 1}),
+                                            flat_transform(camera, {0, 0, 1}, {1, 0, 0}, 0.5)};
+        for (const bool unclipped : {false, true}) {
+            // A nearer half-size square, seen from its back, hides nothing.
+            const DrawRange ranges[] = {{6, 6, 1, true, unclipped}, {0, 6, 0, true, unclipped}};
+            Frame frame{.camera = camera, .transforms = transforms, .ranges = ranges, .environment = {}};
+            frame.environment.sky = false;
+            const auto counters = rasterizer.draw(frame);
+            REQUIRE(counters);
+            CHECK(rasterizer.draw_count() == 2);
+            CHECK(counters->input_assembly_primitives == 4);
+            CHECK(counters->clipping_invocations == 4);
+            CHECK(counters->clipping_primitives == 4);
+            CHECK(counters->samples_passed == 64 * 64);
+            Image image;
+            REQUIRE(rasterizer.read_pixels(image));
+            CHECK(count_color(image, 0, 0, 255) == 64 * 64);
+        }
+        CHECK(device->validation_messages().empty());
+    }
+    TEST_CASE("ranges keep what they say of their faces when they are merged") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Rasterizer rasterizer = make_rasterizer(*device);
+        const Camera camera = camera_at(10.0);
+        const DrawTransform transform = flat_transform(camera, {}, {0, 0, 1});
+        const DrawRange alike[] = {{0, 3, 0, true, true}, {3, 3, 0, true, true}, {6, 3, 0, true, true}},
+                        unlike[] = {{0, 3, 0, true, true}, {3, 3, 0, false, true}, {6, 3, 0, true, false}};
+        REQUIRE(rasterizer.draw({camera, {&transform, 1}, alike}));
+        CHECK(rasterizer.draw_count() == 1);
+        REQUIRE(rasterizer.draw({camera, {&transform, 1}, unlike}));
+        CHECK(rasterizer.draw_count() == 3);
+    }
+    TEST_CASE("a frame of 90,000 triangles, more than one portion, counts and shows as one") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Rasterizer rasterizer = make_rasterizer(*device);
+        const Camera camera = camera_at(10.0);
+        const DrawTransform transforms[] = {flat_transform(camera, {0, 0, 1}, {0, 1, 0}),
+                                            flat_transform(camera, {}, {0, 0, 1})};
+        Vector<DrawRange> ranges(45'000, {6, 3, 0});
+        ranges.push_back({0, 6, 1});
+        ranges.insert(ranges.end(), 45'000, {6, 3, 0});
+        Frame frame{.camera = camera, .transforms = transforms, .ranges = ranges, .environment = {}};
+        frame.environment.sky = false;
+        const auto counters = rasterizer.draw(frame);
+        REQUIRE(counters);
+        CHECK(counters->input_assembly_primitives == 90'002);
+        CHECK(counters->clipping_primitives == 90'002);
+        CHECK(counters->samples_passed == 64 * 64);  // the small triangle's first, then the rest of the square
+        Image image;
+        REQUIRE(rasterizer.read_pixels(image));
+        const std::uint64_t green = count_color(image, 0, 255, 0);
+        CHECK(green > 20);
+        CHECK(count_color(image, 0, 0, 255) == 64 * 64 - green);
         CHECK(device->validation_messages().empty());
     }
     TEST_CASE("lines, wires and sky are seen but not counted") {

@@ -148,6 +148,10 @@ glm::mat4 ModelToClip::operator()(const glm::dmat3& linear, const glm::dvec3& tr
     return result;
 }
 
+bool inside_clip_planes(const Aabb& bounds, const glm::mat4& model_to_clip) {
+    return clip_side(model_to_clip, bounds) == ClipSide::inside;
+}
+
 std::uint64_t ClipPredictor::count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                    const glm::mat4& model_to_clip) {
     CROFTON_ASSERT(indices.size() % 3 == 0, "three indices a triangle");

@@ -1,17 +1,24 @@
 // Ranges checked, merged and laid out for the GPU.
 #pragma once
+#include <array>
 #include <crofton/core/memory.hpp>
 #include <crofton/render/rasterizer.hpp>
 
 namespace crofton::render {
 
+// Which faces are seen, and where the others are dropped. The values are the shaders' `faces`.
+enum class Faces : std::uint32_t { both, front_by_shader, front_by_culling };
+inline constexpr std::array kAllFaces{Faces::both, Faces::front_by_shader, Faces::front_by_culling};
+
 // One draw after merging.
 struct MergedDraw {
     std::uint32_t first_index, index_count, transform;
+    Faces faces;
 };
 
-// Appends to `draws`, joining a range to the one before where it continues it with the same transform.
-// Errors: item = the first range that is not whole triangles, or refers beyond indices or transforms.
+// Appends to `draws`, by faces in the order of kAllFaces, joining a range to the one before where it continues it with
+// the same transform. Errors: item = the first range that is not whole triangles, or refers beyond indices or
+// transforms.
 [[nodiscard]] Result<void> merge_ranges(std::span<const DrawRange> ranges, std::size_t index_count,
                                         std::size_t transform_count, Vector<MergedDraw>& draws);
 

@@ -21,7 +21,7 @@ struct Recipe {
     std::span<const VkVertexInputBindingDescription> bindings;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     VkPolygonMode mode = VK_POLYGON_MODE_FILL;
-    VkCullModeFlags cull = VK_CULL_MODE_NONE;
+    Faces faces = Faces::both;
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  // reversed-Z
     bool depth_write = true;
     bool depth_bias = false;
@@ -96,11 +96,13 @@ Result<VkShaderModule> create_shader(const VulkanContext& context, std::span<con
     return module;
 }
 
-VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage, VkShaderModule module) {
+VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage, VkShaderModule module,
+                                           const VkSpecializationInfo& constants) {
     VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
     info.stage = stage;
     info.module = module;
     info.pName = "main";
+    info.pSpecializationInfo = &constants;
     return info;
 }
 
@@ -118,8 +120,10 @@ VkPipelineColorBlendAttachmentState blend_state(bool blend) {
 
 VkResult create_pipeline(const Pipelines& pipelines, const Recipe& recipe, VkShaderModule vertex,
                          VkShaderModule fragment, VkPipeline& pipeline) {
-    const std::array stages{stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex),
-                            stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+    const VkSpecializationMapEntry entry{0, 0, sizeof recipe.faces};
+    const VkSpecializationInfo constants{1, &entry, sizeof recipe.faces, &recipe.faces};
+    const std::array stages{stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex, constants),
+                            stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, constants)};
     VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     input.vertexBindingDescriptionCount = static_cast<std::uint32_t>(recipe.bindings.size());
     input.pVertexBindingDescriptions = recipe.bindings.data();
@@ -132,7 +136,7 @@ VkResult create_pipeline(const Pipelines& pipelines, const Recipe& recipe, VkSha
     viewport.scissorCount = 1;
     VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
     raster.polygonMode = recipe.mode;
-    raster.cullMode = recipe.cull;
+    raster.cullMode = recipe.faces == Faces::front_by_culling ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     raster.depthBiasEnable = recipe.depth_bias;
     raster.depthBiasConstantFactor = 16.0f;
@@ -227,19 +231,22 @@ constexpr std::array<VkVertexInputAttributeDescription, 2> kLineAttributes{{
 
 Pipelines::~Pipelines() {
     const auto& vk = context.vk;
-    for (VkPipeline pipeline : {triangles, wires, lines, sky}) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
+    for (VkPipeline pipeline : triangles) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
+    for (VkPipeline pipeline : {wires, lines, sky}) vk.vkDestroyPipeline(context.device, pipeline, nullptr);
     vk.vkDestroyPipelineLayout(context.device, layout, nullptr);
     vk.vkDestroyRenderPass(context.device, render_pass, nullptr);
 }
 
-Result<void> Pipelines::create(bool cull_back_faces) {
+Result<void> Pipelines::create() {
     auto pass = create_render_pass(context);
     if (!pass) return tl::unexpected(std::move(pass.error()));
     render_pass = *pass;
     if (auto made = create_layout(*this); !made) return made;
 
     Recipe triangle_recipe{shaders::scene_vert, shaders::scene_frag, kVertexAttributes, kVertexBindings};
-    triangle_recipe.cull = cull_back_faces ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+    std::array<Recipe, kAllFaces.size()> face_recipes;
+    face_recipes.fill(triangle_recipe);
+    for (const Faces faces : kAllFaces) face_recipes[static_cast<std::size_t>(faces)].faces = faces;
     Recipe wire_recipe = triangle_recipe;
     wire_recipe.mode = VK_POLYGON_MODE_LINE;
     wire_recipe.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
@@ -253,8 +260,12 @@ Result<void> Pipelines::create(bool cull_back_faces) {
     sky_recipe.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
     sky_recipe.depth_write = false;
 
-    const std::array<std::pair<const Recipe*, VkPipeline*>, 4> all{
-        {{&triangle_recipe, &triangles}, {&line_recipe, &lines}, {&sky_recipe, &sky}, {&wire_recipe, &wires}}};
+    const std::array<std::pair<const Recipe*, VkPipeline*>, 6> all{{{&face_recipes[0], &triangles[0]},
+                                                                    {&face_recipes[1], &triangles[1]},
+                                                                    {&face_recipes[2], &triangles[2]},
+                                                                    {&line_recipe, &lines},
+                                                                    {&sky_recipe, &sky},
+                                                                    {&wire_recipe, &wires}}};
     for (const auto& [recipe, pipeline] : all) {
         if (recipe == &wire_recipe && !context.wireframe) continue;
         auto cooked = cook(*this, *recipe);

@@ -1,7 +1,10 @@
-// The render pass and the four pipelines, as one owner.
+// The render pass and the pipelines, as one owner.
 #pragma once
+#include <array>
 #include <crofton/render/resources.hpp>
 #include <crofton/render/vulkan_context.hpp>
+
+#include "draw_list.hpp"
 
 namespace crofton::render {
 
@@ -14,14 +17,14 @@ struct Pipelines {
     Pipelines(const Pipelines&) = delete;
     Pipelines& operator=(const Pipelines&) = delete;
 
-    [[nodiscard]] Result<void> create(bool cull_back_faces);
+    [[nodiscard]] Result<void> create();
 
     const VulkanContext& context;
     // Colour ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment shaders that follow.
     VkRenderPass render_pass = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    VkPipeline triangles = VK_NULL_HANDLE;
-    VkPipeline wires = VK_NULL_HANDLE;  // null where the device cannot
+    std::array<VkPipeline, kAllFaces.size()> triangles{};  // by Faces
+    VkPipeline wires = VK_NULL_HANDLE;                     // null where the device cannot
     VkPipeline lines = VK_NULL_HANDLE;
     VkPipeline sky = VK_NULL_HANDLE;
 };

@@ -32,10 +32,11 @@ Rasterizer::State::~State() {
     context.vk.vkDeviceWaitIdle(context.device);
     context.vk.vkDestroyQueryPool(context.device, statistics, nullptr);
     context.vk.vkDestroyQueryPool(context.device, occlusion, nullptr);
+    context.vk.vkDestroyQueryPool(context.device, stamps, nullptr);
 }
 
 Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
-    if (auto made = pipelines.create(options.cull_back_faces); !made) return made;
+    if (auto made = pipelines.create(); !made) return made;
     auto target = std::make_unique<Target>(context);
     if (auto made = target->create(pipelines.render_pass, {options.width, options.height}); !made) return made;
     targets.push_back(std::move(target));
@@ -56,6 +57,13 @@ Result<void> Rasterizer::State::create_queries() {
                                   VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
                                   VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT;
         result = context.vk.vkCreateQueryPool(context.device, &info, nullptr, &statistics);
+    }
+    if (result == VK_SUCCESS && context.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU &&
+        context.properties.limits.timestampComputeAndGraphics == VK_TRUE) {
+        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        info.queryCount = stamp_count = kMaxPortions;
+        info.pipelineStatistics = 0;
+        result = context.vk.vkCreateQueryPool(context.device, &info, nullptr, &stamps);
     }
     if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateQueryPool"));
     return {};

@@ -31,6 +31,12 @@ struct Rasterizer::State {
 
     VkQueryPool statistics = VK_NULL_HANDLE;  // null where the device has none
     VkQueryPool occlusion = VK_NULL_HANDLE;
+    // Software devices bin on one thread and rasterise on others, but hand over what is binned only at the frame's end,
+    // or before a time stamp is taken: so one is taken, and never read, after each portion of this many triangles.
+    static constexpr std::uint32_t kPortionTriangles = 20'000;
+    static constexpr std::uint32_t kMaxPortions = 64;
+    VkQueryPool stamps = VK_NULL_HANDLE;
+    std::uint32_t stamp_count = 0, next_stamp = 0;  // 0 on other devices
     Commands commands;
 
     [[nodiscard]] Result<void> create(const RasterizerOptions& options);
@@ -41,6 +47,7 @@ struct Rasterizer::State {
     [[nodiscard]] Result<void> prepare(const Frame& frame);
     void record(const Frame& frame, const Target& target);
     void record_draws(std::size_t begin, std::size_t end);
+    void record_counted_draws();
     [[nodiscard]] Result<GpuCounters> read_counters() const;
 };
 

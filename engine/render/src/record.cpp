@@ -27,7 +27,7 @@ SceneConstants scene_constants(const Frame& frame) {
     const Environment& e = frame.environment;
     // Orthographic views have w = 1 everywhere: no haze.
     const bool haze = e.haze_distance > 0.0f && frame.camera.projection == Projection::perspective;
-    return {wide(glm::normalize(e.to_sun), haze ? e.haze_distance : 0.0f),
+    return {wide(glm::normalize(e.to_sun), haze ? e.haze_distance : 1.0f),
             wide(e.sun),
             wide(e.sky_ambient),
             wide(e.ground_ambient),
@@ -59,13 +59,24 @@ glm::mat4 camera_relative_to_clip(const Camera& camera) {
 
 void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     const auto& vk = context.vk;
+    std::uint64_t portion = 0;
+    const auto end_portion_after = [&](std::uint64_t submitted) {
+        portion += submitted;
+        if (portion < 3 * kPortionTriangles || next_stamp == stamp_count) return;
+        vk.vkCmdWriteTimestamp(commands.handle, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, stamps, next_stamp++);
+        portion = 0;
+    };
     if (context.max_multi_draws > 0) {
         // The instance is the transform, so each call takes a run of draws that share one.
         for (std::size_t i = begin; i < end;) {
-            std::size_t run = i + 1;
-            while (run < end && draws[run].transform == draws[i].transform && run - i < context.max_multi_draws) ++run;
+            std::size_t run = i;
+            std::uint64_t run_indices = 0;
+            do run_indices += draws[run++].index_count;
+            while (run < end && draws[run].transform == draws[i].transform && run - i < context.max_multi_draws &&
+                   run_indices < 3 * kPortionTriangles);
             vk.vkCmdDrawMultiIndexedEXT(commands.handle, static_cast<std::uint32_t>(run - i), multi_draws.data() + i, 1,
                                         draws[i].transform, sizeof(VkMultiDrawIndexedInfoEXT), nullptr);
+            end_portion_after(run_indices);
             i = run;
         }
     } else if (context.multi_draw_indirect) {
@@ -80,11 +91,26 @@ void Rasterizer::State::record_draws(std::size_t begin, std::size_t end) {
     }
 }
 
+// The counted draws, which lie by faces.
+void Rasterizer::State::record_counted_draws() {
+    for (std::size_t begin = 0; begin < counted_draws;) {
+        const Faces faces = draws[begin].faces;
+        std::size_t end = begin + 1;
+        while (end < counted_draws && draws[end].faces == faces) ++end;
+        context.vk.vkCmdBindPipeline(commands.handle, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                     pipelines.triangles[static_cast<std::size_t>(faces)]);
+        record_draws(begin, end);
+        begin = end;
+    }
+}
+
 void Rasterizer::State::record(const Frame& frame, const Target& target) {
     const auto& vk = context.vk;
     const VkCommandBuffer cmd = commands.handle;
     if (statistics != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, statistics, 0, 1);
     vk.vkCmdResetQueryPool(cmd, occlusion, 0, 1);
+    if (stamps != VK_NULL_HANDLE) vk.vkCmdResetQueryPool(cmd, stamps, 0, stamp_count);
+    next_stamp = 0;
 
     const glm::vec3 background = glm::sqrt(frame.environment.horizon);
     std::array<VkClearValue, 2> clear{};
@@ -113,12 +139,13 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
         vk.vkCmdBindVertexBuffers(cmd, 0, 2, buffers.data(), offsets.data());
         vk.vkCmdBindIndexBuffer(cmd, indices.handle, 0, VK_INDEX_TYPE_UINT32);
         vk.vkCmdPushConstants(cmd, layout, kStages, 0, sizeof scene, &scene);
-        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.triangles);
     }
+    // Before the queries begin: lavapipe takes over what is bound then, and does not survive that nothing is.
+    vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.triangles[0]);
     if (statistics != VK_NULL_HANDLE) vk.vkCmdBeginQuery(cmd, statistics, 0, 0);
     vk.vkCmdBeginQuery(cmd, occlusion, 0,
                        context.precise_occlusion ? VkQueryControlFlags{VK_QUERY_CONTROL_PRECISE_BIT} : 0u);
-    record_draws(0, counted_draws);
+    record_counted_draws();
     vk.vkCmdEndQuery(cmd, occlusion, 0);
     if (statistics != VK_NULL_HANDLE) vk.vkCmdEndQuery(cmd, statistics, 0);
 

@@ -26,6 +26,10 @@ class ModelToClip {
     glm::dmat4 from_camera_relative_;
 };
 
+// True only where the float pipeline finds no point of `bounds` beyond a clip plane of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w: a
+// mesh within is drawn without any clipping. Boxes within rounding of a plane are answered false.
+[[nodiscard]] bool inside_clip_planes(const Aabb& bounds, const glm::mat4& model_to_clip);
+
 // Predicts the `clipping primitives` that Mesa's software pipeline (lavapipe) counts: each triangle is clipped, in
 // float, by the planes of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w, and a polygon of n ≥ 3 vertices counts n − 2. This is not the
 // number of triangles that meet the frustum: clipping repeats vertices that lie on planes, and rounds. Back-facing and

@@ -16,11 +16,15 @@
 
 namespace crofton::render {
 
-// `count` consecutive indices drawn with transform `transform` (an index into the frame's transforms).
+// `index_count` consecutive indices drawn with transform `transform` (an index into the frame's transforms).
 struct DrawRange {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
     std::uint32_t transform = 0;
+    bool one_sided = false;  // back faces are not seen; they are counted all the same
+    // A promise that no vertex lies beyond a clip plane, as inside_clip_planes() finds. Back faces of one-sided ranges
+    // then go before they are rasterised; elsewhere lavapipe would not count them, so the fragment shader drops them.
+    bool unclipped = false;
 };
 
 // What the vertex shader reads for one draw; made by draw_transform().
@@ -86,7 +90,6 @@ class ImageResource;  // native handles: see resources.hpp
 struct RasterizerOptions {
     std::uint32_t width = 1280;
     std::uint32_t height = 720;
-    bool cull_back_faces = false;
 };
 
 // Draws into an RGBA8 + D32 target (on lavapipe any other pair may turn on a guard band, which changes the counts).
@@ -125,8 +128,9 @@ class Rasterizer {
     [[nodiscard]] std::uint32_t width(std::uint32_t picture = 0) const;
     [[nodiscard]] std::uint32_t height(std::uint32_t picture = 0) const;
 
-    // For a window: the picture between draws, of kColorFormat, in SHADER_READ_ONLY_OPTIMAL, usable as colour attachment, transfer
-    // source and sampled image. Must be left in that layout, idle. Null where there is no such picture.
+    // For a window: the picture between draws, of kColorFormat, in SHADER_READ_ONLY_OPTIMAL, usable as colour
+    // attachment, transfer source and sampled image. Must be left in that layout, idle. Null where there is no such
+    // picture.
     [[nodiscard]] const ImageResource* native_image(std::uint32_t picture = 0) const;
 
   private:
