@@ -79,4 +79,47 @@ TEST_SUITE("capi/rays") {
             CHECK(hit == (i < 2 ? 1 : 0));
         }
     }
+
+    TEST_CASE("trees refuse what is no ray and no body, and answer for the others") {
+        const std::vector<crofton_box> boxes{box_at(0, 0, 0), box_at(3, 0, 0), box_at(6, 0, 0), box_at(6, 5, 0)};
+        const std::vector<std::uint32_t> layers{1, 2, 1, 1};
+        crofton_tree* handle = nullptr;
+        REQUIRE(crofton_tree_create(boxes.data(), layers.data(), boxes.size(), nullptr, &handle) == CROFTON_OK);
+        const Tree tree(handle);
+        std::uint32_t items[2] = {77, 77};
+        std::size_t found = 77;
+        const double nan = std::nan(""), center[] = {3, 0, 0}, nowhere[] = {0, nan, 0};
+        CHECK(crofton_tree_within_ball(tree.get(), nowhere, 1.0, ~0u, items, 2, &found) == CROFTON_NON_FINITE);
+        CHECK(crofton_tree_within_ball(tree.get(), center, -1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_within_ball(tree.get(), nullptr, 1.0, ~0u, items, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_within_ball(tree.get(), center, 1.0, ~0u, nullptr, 2, &found) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_tree_within_box(nullptr, boxes.data(), ~0u, items, 2, &found) == CROFTON_BAD_HANDLE);
+        crofton_box bad = boxes[0];
+        bad.half_extents[0] = -1.0f;
+        CHECK(crofton_tree_within_box(tree.get(), &bad, ~0u, items, 2, &found) != CROFTON_OK);
+        const crofton_ray rays[] = {ray(-5, 0, 0, 1, 0, 0), ray(9, 0, 0, -1, 0, 0), ray(0, 9, 0, 1, 0, 0),
+                                    ray(0, 0, 0, nan, 0, 0)};
+        crofton_ray_hit hits[3];
+        CHECK(crofton_tree_raycast(tree.get(), rays + 3, 1, ~0u, hits) == CROFTON_NON_FINITE);
+        CHECK(items[0] == 77);
+        CHECK(found == 77);
+
+        REQUIRE(crofton_tree_within_ball(tree.get(), center, 2.5, ~0u, items, 2, &found) == CROFTON_OK);
+        CHECK(found == 3);  // two of them only touch
+        CHECK(items[0] == 0);
+        CHECK(items[1] == 1);
+        REQUIRE(crofton_tree_within_ball(tree.get(), center, 2.499999, ~0u, nullptr, 0, &found) == CROFTON_OK);
+        CHECK(found == 1);
+        const crofton_box large = box_at(3, 0, 0, 2.5f);
+        REQUIRE(crofton_tree_within_box(tree.get(), &large, 1u, items, 2, &found) == CROFTON_OK);
+        CHECK(found == 2);
+        CHECK(items[1] == 2);
+        REQUIRE(crofton_tree_raycast(tree.get(), rays, 3, ~0u, hits) == CROFTON_OK);
+        CHECK(hits[0].index == 0);
+        CHECK(hits[0].t == doctest::Approx(4.5));
+        CHECK(hits[1].index == 2);
+        CHECK(hits[2].index == CROFTON_NONE);
+        REQUIRE(crofton_tree_raycast(tree.get(), rays, 1, 2u, hits) == CROFTON_OK);
+        CHECK(hits[0].index == 1);
+    }
 }

@@ -4,15 +4,10 @@
 
 #include "call.hpp"
 #include "convert.hpp"
+#include "tree.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-struct crofton_tree {
-    static constexpr std::uint32_t kKind = 0x43724f02;
-    Header header;
-    tree::BoxTree tree;
-};
 
 struct crofton_visible_set {
     static constexpr std::uint32_t kKind = 0x43724f03;

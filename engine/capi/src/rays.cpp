@@ -1,10 +1,13 @@
 #include <crofton/capi/rays.h>
 
-#include <crofton/collide/ray.hpp>
+#include <algorithm>
+#include <cmath>
+#include <crofton/collide/tree_query.hpp>
 #include <limits>
 
 #include "collider.hpp"
 #include "convert.hpp"
+#include "tree.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
@@ -12,10 +15,34 @@ using namespace crofton::capi;
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr crofton_ray_hit kMiss{kNever, CROFTON_NONE};
 
 crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item, collide::Ray& result) {
     result = {to_vector(ray.origin), to_vector(ray.direction), ray.max_t};
     return status_of(validate(result, item), function);
+}
+
+template <class Cast>
+crofton_status cast_all(const crofton_ray* rays, size_t count, crofton_ray_hit* hits, const char* function, Cast cast) {
+    CROFTON_CHECK(check_array(rays, count, function));
+    CROFTON_CHECK(check_array(hits, count, function));
+    collide::Ray ray;
+    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], function, i, ray));
+    for (std::size_t i = 0; i < count; ++i)
+        hits[i] = cast({to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t});
+    return CROFTON_OK;
+}
+
+template <class Body>
+crofton_status items_within(const crofton_tree& tree, const Body& body, uint32_t layer_mask, uint32_t* items,
+                            size_t capacity, size_t* found, const char* function) {
+    CROFTON_CHECK(check_array(items, capacity, function));
+    CROFTON_CHECK(check_pointer(found, function));
+    Vector<tree::ItemId> all;
+    collide::overlapping(tree.tree, body, all, layer_mask);
+    std::copy_n(all.data(), std::min(capacity, all.size()), items);
+    *found = all.size();
+    return CROFTON_OK;
 }
 
 }  // namespace
@@ -35,16 +62,10 @@ crofton_status crofton_collider_raycast(const crofton_collider* collider, const 
                                         crofton_ray_hit* hits) {
     const SharedUse use(collider, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_array(rays, count, __func__));
-    CROFTON_CHECK(check_array(hits, count, __func__));
-    collide::Ray ray;
-    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], __func__, i, ray));
-    for (std::size_t i = 0; i < count; ++i) {
-        ray = {to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t};
+    return cast_all(rays, count, hits, __func__, [&](const collide::Ray& ray) {
         const auto hit = collide::raycast(ray, collider->tree);
-        hits[i] = hit ? crofton_ray_hit{hit->t, hit->triangle} : crofton_ray_hit{kNever, CROFTON_NONE};
-    }
-    return CROFTON_OK;
+        return hit ? crofton_ray_hit{hit->t, hit->triangle} : kMiss;
+    });
 }
 
 crofton_status crofton_collider_hits_any(const crofton_collider* collider, const crofton_ray* ray, int* hit) {
@@ -56,4 +77,34 @@ crofton_status crofton_collider_hits_any(const crofton_collider* collider, const
     CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
     *hit = collide::hits_any(checked, collider->tree) ? 1 : 0;
     return CROFTON_OK;
+}
+
+crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray* rays, size_t count,
+                                    uint32_t layer_mask, crofton_ray_hit* hits) {
+    const SharedUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    return cast_all(rays, count, hits, __func__, [&](const collide::Ray& ray) {
+        const auto hit = collide::raycast(ray, tree->tree, layer_mask);
+        return hit ? crofton_ray_hit{hit->t, hit->item} : kMiss;
+    });
+}
+
+crofton_status crofton_tree_within_box(const crofton_tree* tree, const crofton_box* box, uint32_t layer_mask,
+                                       uint32_t* items, size_t capacity, size_t* found) {
+    const SharedUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(box, __func__));
+    CROFTON_CHECK(status_of(validate(to_box(box)), __func__));
+    return items_within(*tree, to_box(box), layer_mask, items, capacity, found, __func__);
+}
+
+crofton_status crofton_tree_within_ball(const crofton_tree* tree, const double center[3], double radius,
+                                        uint32_t layer_mask, uint32_t* items, size_t capacity, size_t* found) {
+    const SharedUse use(tree, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(center, __func__));
+    if (!std::isfinite(center[0] + center[1] + center[2]) || !std::isfinite(radius))
+        return report(CROFTON_NON_FINITE, __func__, "the ball's centre or radius is not finite");
+    if (radius < 0.0) return report(CROFTON_INVALID_ARGUMENT, __func__, "the ball's radius is negative");
+    return items_within(*tree, Sphere{to_vector(center), radius}, layer_mask, items, capacity, found, __func__);
 }
