@@ -36,6 +36,10 @@ KernelView kernel_view_of(const View& view) {
             result.planes[i].normal_f[j] = static_cast<float>(plane.normal[j]);
         }
         result.planes[i].offset = plane.offset;
+        int n[3];
+        for (int j = 0; j < 3; ++j) n[j] = static_cast<int>(std::lround(plane.normal[j] * 0x1p14));
+        result.pair_planes[i] = {tree::pair_of(n[0], n[1]), tree::pair_of(n[2], 0),
+                                 tree::pair_of(std::abs(n[0]), std::abs(n[1])), tree::pair_of(0, std::abs(n[2]))};
         result.planes[i].length_f = static_cast<float>(glm::length(plane.normal));
     }
     return result;

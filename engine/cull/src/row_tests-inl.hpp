@@ -12,27 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-using VI = hn::Vec<DI>;
-
-// sum + Σ of the products of the signed halves of a and b, in each lane. Exact: the planes see to the range.
-HWY_INLINE VI add_products(VI sum, VU a, VU b) {
-    const DI di;
-#if HWY_TARGET == HWY_SCALAR
-    const auto low = [&](VU v) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(hn::BitCast(di, v))); };
-    const auto high = [&](VU v) { return hn::ShiftRight<16>(hn::BitCast(di, v)); };
-    return hn::Add(sum, hn::Add(hn::Mul(low(a), low(b)), hn::Mul(high(a), high(b))));
-#elif HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL && !HWY_COMPILER_MSVC
-    // Highway checks for this instruction before it takes the target, but does not let its intrinsic be compiled there.
-    asm("vpdpwssd %2, %1, %0" : "+v"(sum.raw) : "v"(a.raw), "v"(b.raw));
-    return sum;
-#else
-    const hn::Repartition<std::int16_t, DI> d16;
-    VI rest = hn::Zero(di);
-    sum = hn::ReorderWidenMulAccumulate(di, hn::BitCast(d16, a), hn::BitCast(d16, b), sum, rest);
-    return hn::RearrangeToOddPlusEven(sum, rest);
-#endif
-}
-
 // Lanes l on of four blocks.
 struct RowLanes {
     VU xy[4], zr[4];

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <crofton/cull/statistics.hpp>
 
+// Integer products that are summed in the same step are worth a target of their own.
+#define HWY_WANT_AVX3_DL 1
 // Vectors of unknown size cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -14,7 +16,7 @@
 // clang-format on
 #include <hwy/highway.h>
 
-#include "block_tests-inl.hpp"
+#include "leaf_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
@@ -184,23 +186,18 @@ class Walk {
     HWY_INLINE void visit_leaf(std::uint32_t id, std::uint32_t planes) {
         const tree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = *in_.view;
-        if (kCountStatistics) out_.boxes_tested += in_.leaf_counts[id];
+        if (kCountStatistics) out_.boxes_tested += leaf.count;
         const LocalOrigin at = local_origin(view, leaf.origin, leaf.reach);
         const DU du;
         if (HWY_LIKELY(planes && !(planes & (planes - 1)))) {
-            const KernelPlane& plane = view.planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(planes)];
-            const LocalPlane local = local_plane(plane, at);
+            const LeafPlane plane = leaf_plane(view, hwy::Num0BitsBelowLS1Bit_Nonzero32(planes), at, leaf);
             for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-                emit(id, l, test_boxes(lanes_of(view, leaf, l), plane, local));
+                emit(id, l, test_leaf(LeafRows(view, leaf, l), plane));
             return;
         }
-        LocalPlane local[KernelView::kMaxPlanes];
-        for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
-            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            local[i] = local_plane(view.planes[i], at);
-        }
+        const LeafPlanes local(view, planes, at, leaf);
         for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-            emit(id, l, test_leaf(view, leaf, l, planes, local, in_.exact));
+            emit(id, l, test_leaf(LeafRows(view, leaf, l), local.planes, local.count, in_.exact));
     }
 
     const TreeKernelInput& in_;
