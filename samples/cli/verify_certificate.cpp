@@ -16,26 +16,46 @@ struct Row {
 };
 constexpr double kRounding = 0x1p-48;
 
+// base, and slope k, by their terms: calls add(term) for each, all of which are sums of products of T(stored numbers).
+template <class T, class Add>
+void base_terms(const Frustum& frustum, const Plane& plane, const Obb& box, const Add& add) {
+    for (int j = 0; j < 3; ++j) add(T(plane.normal[j]) * (T(box.center[j]) - T(frustum.origin[j])));
+}
+template <class T, class Add>
+void slope_terms(const Plane& plane, const Obb& box, int k, const Add& add) {
+    for (int j = 0; j < 3; ++j) add(T(plane.normal[j]) * (T(double{box.axes[k][j]}) * T(double{box.half_extents[k]})));
+}
+template <class T, class Add>
+void base_terms(const Frustum& frustum, const Plane& plane, const Aabb& box, const Add& add) {
+    for (int j = 0; j < 3; ++j) {
+        add(T(0.5 * plane.normal[j]) * (T(box.min[j]) - T(frustum.origin[j])));
+        add(T(0.5 * plane.normal[j]) * (T(box.max[j]) - T(frustum.origin[j])));
+    }
+}
+template <class T, class Add>
+void slope_terms(const Plane& plane, const Aabb& box, int k, const Add& add) {
+    add(T(0.5 * plane.normal[k]) * (T(box.max[k]) - T(box.min[k])));
+}
+
 struct Rows {
     std::array<Row, Frustum::kMaxPlanes + 6> rows;
     std::size_t count = 0;  // one a plane
 
-    Rows(const Frustum& frustum, const Obb& box) {
+    template <class Box>
+    Rows(const Frustum& frustum, const Box& box) {
         for (const Plane& plane : frustum.view()) {
             Row& row = rows[count++];
             row.base = plane.offset;
             row.size = std::fabs(plane.offset);
-            for (int j = 0; j < 3; ++j) {
-                const double product = plane.normal[j] * (box.center[j] - frustum.origin[j]);
-                row.base += product;
-                row.size += std::fabs(product);
-            }
+            base_terms<double>(frustum, plane, box, [&](double term) {
+                row.base += term;
+                row.size += std::fabs(term);
+            });
             for (int k = 0; k < 3; ++k)
-                for (int j = 0; j < 3; ++j) {
-                    const double product = plane.normal[j] * double{box.axes[k][j]} * double{box.half_extents[k]};
-                    row.slope[std::size_t(k)] += product;
-                    row.size += std::fabs(product);
-                }
+                slope_terms<double>(plane, box, k, [&](double term) {
+                    row.slope[std::size_t(k)] += term;
+                    row.size += std::fabs(term);
+                });
         }
     }
     [[nodiscard]] double value(std::size_t i, const std::array<double, 3>& t) const {
@@ -44,21 +64,22 @@ struct Rows {
     }
 };
 
-Dyadic exact_slope(const Plane& plane, const Obb& box, int k) {
+template <class Box>
+Dyadic exact_slope(const Plane& plane, const Box& box, int k) {
     Dyadic sum;
-    for (int j = 0; j < 3; ++j)
-        sum = sum + Dyadic(plane.normal[j]) * (Dyadic(double{box.axes[k][j]}) * Dyadic(double{box.half_extents[k]}));
+    slope_terms<Dyadic>(plane, box, k, [&](const Dyadic& term) { sum = sum + term; });
     return sum;
 }
 
-Dyadic exact_base(const Frustum& frustum, const Plane& plane, const Obb& box) {
+template <class Box>
+Dyadic exact_base(const Frustum& frustum, const Plane& plane, const Box& box) {
     Dyadic sum(plane.offset);
-    for (int j = 0; j < 3; ++j)
-        sum = sum + Dyadic(plane.normal[j]) * (Dyadic(box.center[j]) - Dyadic(frustum.origin[j]));
+    base_terms<Dyadic>(frustum, plane, box, [&](const Dyadic& term) { sum = sum + term; });
     return sum;
 }
 
-bool is_common_point(const Frustum& frustum, const Obb& box, const Rows& rows, const std::array<double, 3>& t) {
+template <class Box>
+bool is_common_point(const Frustum& frustum, const Box& box, const Rows& rows, const std::array<double, 3>& t) {
     for (const double coordinate : t)
         if (!(std::fabs(coordinate) <= 1.0)) return false;
     for (std::size_t i = 0; i < rows.count; ++i) {
@@ -80,7 +101,8 @@ struct Factors {
     std::size_t count = 0;
 };
 
-bool excludes(const Frustum& frustum, const Obb& box, const Rows& rows, const Factors& factors) {
+template <class Box>
+bool excludes(const Frustum& frustum, const Box& box, const Rows& rows, const Factors& factors) {
     double rough = 0.0, size = 0.0;
     std::array<double, 3> sum{};
     for (std::size_t n = 0; n < factors.count; ++n) {
@@ -214,15 +236,23 @@ Factors guess_factors(const Rows& all) {
     return best;
 }
 
-}  // namespace
-
-Proof prove(const Frustum& frustum, const Obb& box) {
+template <class Box>
+Proof prove_box(const Frustum& frustum, const Box& box) {
     const Rows rows(frustum, box);
     if (is_common_point(frustum, box, rows, walk_inside(rows))) return Proof::meets;
     if (excludes(frustum, box, rows, guess_factors(rows))) return Proof::disjoint;
     std::array<double, 3> point;
     if (guess_point(rows, point) && is_common_point(frustum, box, rows, point)) return Proof::meets;
     return Proof::none;
+}
+
+}  // namespace
+
+Proof prove(const Frustum& frustum, const Obb& box) {
+    return prove_box(frustum, box);
+}
+Proof prove(const Frustum& frustum, const Aabb& box) {
+    return prove_box(frustum, box);
 }
 
 }  // namespace crofton::cli

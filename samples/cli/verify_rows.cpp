@@ -19,7 +19,7 @@ double score(double difference, double standard_error) {
 
 VerifyRow row(std::string claim, std::string source, double predicted, double measured, double standard_error,
               double z) {
-    return {std::move(claim), std::move(source), predicted, measured, standard_error, z, std::abs(z) <= kMaxZ};
+    return {std::move(claim), std::move(source), predicted, measured, standard_error, z, std::abs(z) <= kMaxZ, 0};
 }
 
 std::string number(double value) {
@@ -96,6 +96,7 @@ nlohmann::json json_of(const std::vector<VerifyRow>& rows) {
                           {"standard_error", r.standard_error},
                           {"z", z},
                           {"holds", r.holds}});
+        if (r.cases > 0) result.back()["cases"] = r.cases;
     }
     return result;
 }

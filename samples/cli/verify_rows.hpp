@@ -18,7 +18,8 @@ struct VerifyRow {
     double standard_error =
         0.0;  // of `measured`; for computed values the allowed error / kMaxZ, so that one rule judges both
     double z = 0.0;
-    bool holds = false;  // is `claim` borne out? For a wrong claim: was it rejected?
+    bool holds = false;       // is `claim` borne out? For a wrong claim: was it rejected?
+    std::uint64_t cases = 0;  // that the claim was tried on, where they were counted
 };
 
 struct VerifyOptions {
@@ -50,8 +51,8 @@ struct Share {
 };
 [[nodiscard]] Share share_of(std::uint64_t hits, std::uint64_t trials);
 
-// An aligned table for people, and an array of {claim, source, predicted, measured, standard_error, z, holds}; z is
-// null where it is not finite.
+// An aligned table for people, and an array of {claim, source, predicted, measured, standard_error, z, holds}, and
+// cases where they were counted; z is null where it is not finite.
 [[nodiscard]] std::string table_of(const std::vector<VerifyRow>& rows);
 [[nodiscard]] nlohmann::json json_of(const std::vector<VerifyRow>& rows);
 

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 #include <cmath>
+#include <map>
 
 #include "run_cli.hpp"
 
@@ -44,6 +45,21 @@ TEST_SUITE("cli/verify") {
             CHECK(run.json().size() > 60);
             CHECK(run_cli(arguments).out == run.out);
         }
+    }
+
+    TEST_CASE("culling is right for boxes, axis-aligned boxes and balls at every offset, and says on how many") {
+        const CliRun run = run_cli("verify cull --trials 3000 --json -");
+        CHECK(run.status == 0);
+        std::map<std::string, std::uint64_t> proved;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            const std::string claim = row["claim"];
+            const std::string kind = claim.substr(0, claim.find(':'));
+            if (claim.find(": of ") != std::string::npos && claim.find(" proved ") != std::string::npos)
+                proved[kind] += row["cases"].get<std::uint64_t>();
+        }
+        CHECK(proved ==
+              std::map<std::string, std::uint64_t>{{"axis-aligned boxes", 15000}, {"balls", 15000}, {"boxes", 15000}});
     }
 
     TEST_CASE("the table lists one claim a line") {
