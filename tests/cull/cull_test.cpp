@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <algorithm>
 #include <crofton/cull/cull.hpp>
 #include <oracle/random_boxes.hpp>
@@ -84,6 +85,38 @@ TEST_SUITE("cull/cull") {
                     CHECK(sorted == ids);
                 }
             }
+    }
+
+    TEST_CASE("ascending ids and their verdicts are the tree's order sorted, however items are numbered") {
+        std::vector<Obb> boxes = oracle::random_crowd(20000, 0.0, 5).boxes;
+        Camera camera;
+        camera.position = {0.0, 0.0, 20.0};
+        camera.far = 60.0;
+        const cull::View view{*frustum_of(camera)};
+        for (int numbering = 0; numbering < 2; ++numbering) {
+            const auto tree = *tree::BoxTree::build(boxes);
+            for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+                hwy::SetSupportedTargetsForTest(rest & -rest);
+                cull::VisibleSet sorted, unsorted;
+                cull::cull(tree, view, sorted);
+                cull::cull(tree, view, unsorted, {cull::Mode::exact, cull::Order::tree});
+                std::vector<std::pair<cull::ItemId, Verdict>> expected;
+                for (std::size_t i = 0; i < unsorted.size(); ++i)
+                    expected.emplace_back(unsorted.ids()[i],
+                                          i < unsorted.inside_count() ? Verdict::inside : Verdict::straddling);
+                std::ranges::sort(expected);
+                REQUIRE(sorted.size() == expected.size());
+                CHECK(sorted.inside_count() == unsorted.inside_count());
+                CHECK(expected.size() > 1000);
+                for (std::size_t i = 0; i < expected.size(); ++i)
+                    CHECK(std::pair(sorted.ids()[i], sorted.verdicts()[i]) == expected[i]);
+            }
+            hwy::SetSupportedTargetsForTest(0);
+            std::vector<Obb> along_the_tree;
+            for (const tree::ItemId item : tree.slot_items())
+                if (item != tree::kNone) along_the_tree.push_back(boxes[item]);
+            boxes = along_the_tree;
+        }
     }
 
     TEST_CASE("binary trees, oriented or not, give classify's verdicts while items come and go") {

@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <algorithm>
 #include <crofton/cull/draw_ranges.hpp>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -26,6 +28,35 @@ TEST_SUITE("cull/draw_ranges") {
         cull::merge_ranges(bits, 62, ranges);
         CHECK(ranges.size() == 1);
         CHECK(ranges[0].count == 67);
+    }
+
+    TEST_CASE("ids in runs, in shuffled neighbourhoods or anywhere give the bits they name, on every instruction set") {
+        std::mt19937 random(3);
+        Vector<std::uint64_t> bits;
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            for (const std::size_t items : {1u, 63u, 64u, 65u, 1000u, 20000u})
+                for (const std::size_t neighbourhood : {1u, 8u, 16u, 40u, 20000u}) {
+                    std::vector<tree::ItemId> all(items);
+                    std::iota(all.begin(), all.end(), 0u);
+                    for (std::size_t i = 0; i < items; i += neighbourhood)
+                        std::shuffle(all.begin() + std::ptrdiff_t(i),
+                                     all.begin() + std::ptrdiff_t(std::min(items, i + neighbourhood)), random);
+                    std::vector<tree::ItemId> ids;  // stretches of them
+                    for (std::size_t i = 0; i < items;) {
+                        const std::size_t end = std::min(items, i + 1 + random() % 100);
+                        if (random() % 2)
+                            ids.insert(ids.end(), all.begin() + std::ptrdiff_t(i), all.begin() + std::ptrdiff_t(end));
+                        i = end;
+                    }
+                    cull::to_bits(ids, items, bits);
+                    REQUIRE(bits.size() == (items + 63) / 64);
+                    Vector<std::uint64_t> expected(bits.size(), 0);
+                    for (const tree::ItemId id : ids) expected[id / 64] |= std::uint64_t{1} << (id % 64);
+                    CHECK(bits == expected);
+                }
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("ranges hold exactly the bits, and gaps up to the limit") {

@@ -2,14 +2,15 @@
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/draw_ranges.hpp>
 
+#include "id_bits_kernel.hpp"
+
 namespace crofton::cull {
 
 void to_bits(std::span<const tree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits) {
-    bits.assign((items + 63) / 64, 0);
-    for (const tree::ItemId id : ids) {
-        CROFTON_ASSERT(id < items, "an id beyond the number of items");
-        bits[id / 64] |= std::uint64_t{1} << (id % 64);
-    }
+    for (const tree::ItemId id : ids) CROFTON_ASSERT(id < items, "an id beyond the number of items");
+    bits.assign(items / 64 + 2, 0);  // one more for the kernel
+    mark_ids_kernel(ids.data(), ids.size(), bits.data());
+    bits.resize((items + 63) / 64);
 }
 
 void merge_ranges(std::span<const std::uint64_t> bits, std::uint32_t max_gap, Vector<ItemRange>& ranges) {

@@ -83,22 +83,6 @@ void RunSpheres(const ListKernelInput<SphereRecord>& input, ListKernelOutput& ou
     ChunkQuery<SphereRecord>(input, output).run();
 }
 
-std::size_t ListBits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
-    const DU du;
-    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
-    std::size_t count = 0;
-    for (std::size_t w = 0; w < words; ++w) {
-        if (bits[w] == 0) continue;
-        for (std::size_t l = 0; l < 64; l += hn::Lanes(du)) {
-            const auto mask = mask_of(bits[w] >> l);
-            const VU ids_here = hn::Add(lanes, hn::Set(du, static_cast<std::uint32_t>(64 * w + l)));
-            hn::StoreU(hn::Compress(ids_here, mask), du, ids + count);
-            count += hn::CountTrue(du, mask);
-        }
-    }
-    return count;
-}
-
 }  // namespace
 }  // namespace crofton::cull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -109,7 +93,6 @@ namespace crofton::cull {
 HWY_EXPORT(RunBoxes);
 HWY_EXPORT(RunAabbs);
 HWY_EXPORT(RunSpheres);
-HWY_EXPORT(ListBits);
 
 void run_list_kernel(const ListKernelInput<BoxRecord>& input, ListKernelOutput& output) {
     HWY_DYNAMIC_DISPATCH(RunBoxes)(input, output);
@@ -119,10 +102,6 @@ void run_list_kernel(const ListKernelInput<AabbRecord>& input, ListKernelOutput&
 }
 void run_list_kernel(const ListKernelInput<SphereRecord>& input, ListKernelOutput& output) {
     HWY_DYNAMIC_DISPATCH(RunSpheres)(input, output);
-}
-
-std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
-    return HWY_DYNAMIC_DISPATCH(ListBits)(bits, words, ids);
 }
 
 }  // namespace crofton::cull

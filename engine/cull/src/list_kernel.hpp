@@ -29,6 +29,4 @@ void run_list_kernel(const ListKernelInput<BoxRecord>& input, ListKernelOutput& 
 void run_list_kernel(const ListKernelInput<AabbRecord>& input, ListKernelOutput& output);
 void run_list_kernel(const ListKernelInput<SphereRecord>& input, ListKernelOutput& output);
 
-std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
-
 }  // namespace crofton::cull

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "box_constraints.hpp"
+#include "id_bits_kernel.hpp"
 #include "list_kernel.hpp"
 #include "list_views_kernel.hpp"
 #include "query.hpp"

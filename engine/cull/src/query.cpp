@@ -2,10 +2,10 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <bit>
 #include <glm/geometric.hpp>
 
 #include "box_constraints.hpp"
+#include "id_bits_kernel.hpp"
 
 namespace crofton::cull {
 namespace {
@@ -242,23 +242,22 @@ void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items
     visible_.verdicts_.clear();
 }
 
-// By two bits an item, in one sweep: the ids are distinct and below the number of items.
+// By a bit an item and another for those that straddle: the ids are distinct and below the number of items.
 void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
-    const std::size_t words = (items + 31) / 32;
-    grow(visible_.bits_, words);
-    grow(visible_.verdicts_, items);
-    std::uint64_t* bits = visible_.bits_.data();
-    std::fill_n(bits, words, 0);
-    const auto mark = [&](ItemId id, std::uint64_t value) { bits[id / 32] |= value << (id % 32 * 2); };
-    for (std::size_t i = 0; i < inside; ++i) mark(visible_.ids_[i], 3);
-    for (std::size_t i = 0; i < straddling; ++i) mark(visible_.straddling_[i], 1);
-    std::size_t n = 0;
-    for (std::size_t w = 0; w < words; ++w)
-        for (std::uint64_t visible = bits[w] & 0x5555555555555555u; visible; visible &= visible - 1) {
-            const auto position = static_cast<unsigned>(std::countr_zero(visible));
-            visible_.ids_[n] = static_cast<ItemId>(32 * w + position / 2);
-            visible_.verdicts_[n++] = bits[w] >> position & 2 ? Verdict::inside : Verdict::straddling;
-        }
+    const std::size_t words = items / 64 + 2;  // one more for the kernel
+    grow(visible_.bits_, 2 * words);
+    grow(visible_.verdicts_, items + 64);
+    std::uint64_t* seen = visible_.bits_.data();
+    std::uint64_t* marked = seen + words;
+    std::fill_n(seen, 2 * words, 0);
+    mark_ids_kernel(visible_.straddling_.data(), straddling, marked);
+    std::copy_n(marked, words, seen);
+    mark_ids_kernel(visible_.ids_.data(), inside, seen);
+    constexpr MarkBytes kBytes{static_cast<std::uint8_t>(Verdict::straddling),
+                               static_cast<std::uint8_t>(Verdict::inside)};
+    static_assert(sizeof(Verdict) == 1);
+    list_marked_bits_kernel(seen, marked, words, kBytes, visible_.ids_.data(),
+                            reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data()));
 }
 
 }  // namespace crofton::cull

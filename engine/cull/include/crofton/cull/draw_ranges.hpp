@@ -14,7 +14,8 @@ struct ItemRange {
     std::uint32_t count = 0;
 };
 
-// Bit id % 64 of word id / 64 for each id; `bits` is made as long as `items` needs. Requires ids below `items`.
+// Bit id % 64 of word id / 64 for each id; `bits` is made as long as `items` needs. Requires ids below `items`,
+// each once.
 void to_bits(std::span<const tree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits);
 
 // The runs of set bits, ascending; runs that are at most `max_gap` items apart become one (drawing a few items in vain

@@ -1,0 +1,154 @@
+#include "id_bits_kernel.hpp"
+
+// Compressing bytes is worth a target of its own.
+#define HWY_WANT_AVX3_DL 1
+// Vectors of unknown size cannot be members.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "id_bits_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "block_tests-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET != HWY_SCALAR
+// Most ids come sixteen at a time from a leaf. Where items are numbered along the tree these lie within a word's
+// length.
+constexpr std::uint32_t kBefore = 24;  // how far below the first of them the word begins
+
+// Their sum, since they are distinct.
+HWY_INLINE std::uint64_t word_of(VU positions) {
+    const hn::Repartition<std::uint64_t, DU> d64;
+    const auto one = hn::Set(d64, 1);
+    const auto even = hn::And(hn::BitCast(d64, positions), hn::Set(d64, 0xffffffffu)),
+               odd = hn::ShiftRight<32>(hn::BitCast(d64, positions));
+    return hn::GetLane(hn::SumOfLanes(d64, hn::Add(hn::Shl(one, even), hn::Shl(one, odd))));
+}
+#endif
+
+HWY_INLINE void mark(std::uint32_t id, std::uint64_t* bits) {
+    bits[id / 64] |= std::uint64_t{1} << (id % 64);
+}
+
+void MarkIds(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
+    std::size_t i = 0;
+#if HWY_TARGET != HWY_SCALAR
+    const DU du;
+    const VU in_order = hn::Iota(du, kBefore), word_length = hn::Set(du, 64);
+    const std::uint64_t run = ((std::uint64_t{1} << hn::Lanes(du)) - 1) << kBefore;
+    for (; i + hn::Lanes(du) <= count; i += hn::Lanes(du)) {
+        const std::uint32_t first = ids[i] < kBefore ? 0 : ids[i] - kBefore;
+        const VU positions = hn::Sub(hn::LoadU(du, ids + i), hn::Set(du, first));
+        std::uint64_t word;
+        if (hn::AllTrue(du, hn::Eq(positions, in_order))) {
+            word = run;
+        } else if (hn::AllTrue(du, hn::Lt(positions, word_length))) {
+            word = word_of(positions);
+        } else {
+            for (std::size_t l = 0; l < hn::Lanes(du); ++l) mark(ids[i + l], bits);
+            continue;
+        }
+        std::uint64_t* to = bits + first / 64;
+        to[0] |= word << (first % 64);
+        to[1] |= word >> 1 >> (63 - first % 64);
+    }
+#endif
+    for (; i < count; ++i) mark(ids[i], bits);
+}
+
+// Visits the ids of one word.
+HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::uint32_t* ids) {
+    const DU du;
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL
+    const hn::Full512<std::uint8_t> d8;
+    const auto positions = hn::Compress(hn::Iota(d8, 0), hn::LoadMaskBits(d8, reinterpret_cast<std::uint8_t*>(&word)));
+    const hn::Half<decltype(d8)> half;
+    const hn::Half<decltype(half)> quarter;
+    const std::size_t count = hwy::PopCount(word);
+    const VU from = hn::Set(du, base);
+    const auto store = [&](std::size_t at, auto bytes)
+                           HWY_ATTR { hn::StoreU(hn::Add(hn::PromoteTo(du, bytes), from), du, ids + at); };
+    const auto lower = hn::LowerHalf(half, positions);
+    store(0, hn::LowerHalf(quarter, lower));
+    if (count > 16) store(16, hn::UpperHalf(quarter, lower));
+    if (count > 32) {
+        const auto upper = hn::UpperHalf(half, positions);
+        store(32, hn::LowerHalf(quarter, upper));
+        if (count > 48) store(48, hn::UpperHalf(quarter, upper));
+    }
+    return count;
+#else
+    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
+    std::size_t count = 0;
+    for (std::uint32_t l = 0; l < 64; l += static_cast<std::uint32_t>(hn::Lanes(du))) {
+        const auto mask = mask_of(word >> l);
+        hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, base + l)), mask), du, ids + count);
+        count += hn::CountTrue(du, mask);
+    }
+    return count;
+#endif
+}
+
+// The bytes of one word's ids.
+HWY_INLINE void mark_word(std::uint64_t word, std::uint64_t marks, MarkBytes values, std::uint8_t* bytes) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL
+    const hn::Full512<std::uint8_t> d8;
+    const auto mask = hn::LoadMaskBits(d8, reinterpret_cast<std::uint8_t*>(&word)),
+               marked = hn::LoadMaskBits(d8, reinterpret_cast<std::uint8_t*>(&marks));
+    const auto all = hn::IfThenElse(marked, hn::Set(d8, values.marked), hn::Set(d8, values.others));
+    hn::StoreU(hn::Compress(all, mask), d8, bytes);
+#else
+    for (; word; word &= word - 1) *bytes++ = marks & word & (~word + 1) ? values.marked : values.others;
+#endif
+}
+
+std::size_t ListBits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < words; ++w)
+        if (bits[w] != 0) count += list_word(bits[w], static_cast<std::uint32_t>(64 * w), ids + count);
+    return count;
+}
+
+std::size_t ListMarkedBits(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words, MarkBytes values,
+                           std::uint32_t* ids, std::uint8_t* bytes) {
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < words; ++w) {
+        if (bits[w] == 0) continue;
+        mark_word(bits[w], marks[w], values, bytes + count);
+        count += list_word(bits[w], static_cast<std::uint32_t>(64 * w), ids + count);
+    }
+    return count;
+}
+
+}  // namespace
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::cull {
+
+HWY_EXPORT(MarkIds);
+HWY_EXPORT(ListBits);
+HWY_EXPORT(ListMarkedBits);
+
+void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
+    HWY_DYNAMIC_DISPATCH(MarkIds)(ids, count, bits);
+}
+
+std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
+    return HWY_DYNAMIC_DISPATCH(ListBits)(bits, words, ids);
+}
+
+std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words,
+                                    MarkBytes values, std::uint32_t* ids, std::uint8_t* bytes) {
+    return HWY_DYNAMIC_DISPATCH(ListMarkedBits)(bits, marks, words, values, ids, bytes);
+}
+
+}  // namespace crofton::cull
+#endif

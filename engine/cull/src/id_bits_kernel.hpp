@@ -1,0 +1,21 @@
+// Ids in any order to bits, and bits to ascending ids, in vectors.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace crofton::cull {
+
+// Sets bit id % 64 of word id / 64 for each id; the ids are distinct. `bits` has a word more than the largest needs.
+void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits);
+
+// The indices of the bits that are set, ascending; returns how many. Room for 16 more is needed.
+std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
+
+// The same, and for each a byte: `marked` where its bit in `marks` is set, `others` where not. Room for 64 more bytes.
+struct MarkBytes {
+    std::uint8_t marked, others;
+};
+std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words,
+                                    MarkBytes values, std::uint32_t* ids, std::uint8_t* bytes);
+
+}  // namespace crofton::cull
