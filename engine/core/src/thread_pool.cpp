@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <crofton/core/assert.hpp>
 #include <crofton/core/thread_pool.hpp>
@@ -20,7 +21,8 @@ struct ThreadPool::State {
     std::mutex mutex;       // guards what follows
     std::condition_variable wake, done;
     Job* job = nullptr;
-    std::size_t generation = 0;
+    std::atomic<std::size_t> generation{0};  // written under the mutex
+    unsigned asleep = 0;
     std::atomic<unsigned> busy{0};  // written under the mutex
     bool quit = false;
     std::vector<std::thread> threads;
@@ -35,12 +37,27 @@ struct ThreadPool::State {
         }
     }
 
+    // Calls come close after each other, and waking a thread that sleeps takes longer than many of them. Not by yielding:
+    // a thread that yields may stay on the processor of the caller, and behind it.
+    void await_next(std::size_t seen) const {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(50);
+        while (generation.load(std::memory_order_relaxed) == seen && std::chrono::steady_clock::now() < end) {
+        }
+    }
+
     void work(unsigned worker) {
         working_for = this;
         std::size_t seen = 0;
         std::unique_lock lock(mutex);
         for (;;) {
+            if (!quit && generation == seen) {
+                lock.unlock();
+                await_next(seen);
+                lock.lock();
+            }
+            ++asleep;
             wake.wait(lock, [&] { return quit || generation != seen; });
+            --asleep;
             if (quit) return;
             seen = generation;
             if (!job) continue;  // the others finished it before this thread woke
@@ -82,12 +99,14 @@ void ThreadPool::parallel_for(std::size_t count, std::size_t grain, RangeTask bo
     CROFTON_ASSERT(State::working_for != state_.get(), "parallel_for called from inside a body of the same pool");
     const std::lock_guard one_caller(state_->one_caller);
     State::Job job{body, count, grain, {}};
+    bool wakes = false;
     {
         const std::lock_guard lock(state_->mutex);
         state_->job = &job;
         ++state_->generation;
+        wakes = state_->asleep > 0;
     }
-    if (count > grain) state_->wake.notify_all();
+    if (wakes && count > grain) state_->wake.notify_all();
     const State* outer = State::working_for;
     State::working_for = state_.get();
     State::run(job, 0);

@@ -140,6 +140,8 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
     grow(visible_.undecided_, starts[parts]);
     grow(visible_.stack_, stack * kParts);
     grow(visible_.open_leaves_, 2 * (starts[parts] / tree::kWidth + kPadding * parts));
+    static_assert(sizeof(SlotRun) == sizeof(visible_.runs_[0]));
+    grow(visible_.runs_, starts[parts] / tree::kWidth + parts);
     TreeKernelOutput outputs[kParts] = {};
     std::size_t kept[kParts] = {};
     executor.parallel_for(task_count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -153,6 +155,7 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
         const std::size_t leaves = (starts[p + 1] - starts[p]) / tree::kWidth + kPadding;
         output.open_leaves = visible_.open_leaves_.data() + 2 * (starts[p] / tree::kWidth + kPadding * p);
         output.open_planes = output.open_leaves + leaves;
+        output.runs = reinterpret_cast<SlotRun*>(visible_.runs_.data()) + starts[p] / tree::kWidth + p;
         // Last in, first out.
         for (std::size_t i = begin; i < end; ++i) output.stack[end - 1 - i] = tasks[i];
         run_tree_kernel(input, end - begin, output);
@@ -168,16 +171,16 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
     inside = whole;
     for (std::size_t p = 0; p < parts; ++p) {
         inside_at[p] = inside;
-        inside += outputs[p].inside_count - outputs[p].whole_count;
+        inside += outputs[p].inside_count;
     }
     executor.parallel_for(parts, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t p = begin; p < end; ++p) {
             const TreeKernelOutput& part = outputs[p];
-            std::copy_n(part.inside, part.whole_count, visible_.ids_.data() + whole_at[p]);
-            std::copy_n(part.inside + part.whole_count, part.inside_count - part.whole_count,
-                        visible_.ids_.data() + inside_at[p]);
-            std::copy_n(outputs[p].straddling, outputs[p].straddling_count,
-                        visible_.straddling_.data() + straddling_at[p]);
+            tree::ItemId* to = visible_.ids_.data() + whole_at[p];
+            for (std::size_t i = 0; i < part.run_count; ++i)
+                to = std::copy_n(tree.slot_items().data() + part.runs[i].first, part.runs[i].count, to);
+            std::copy_n(part.inside, part.inside_count, visible_.ids_.data() + inside_at[p]);
+            std::copy_n(part.straddling, part.straddling_count, visible_.straddling_.data() + straddling_at[p]);
         }
     });
     for (std::size_t p = 0; p < parts; ++p) append_decided(outputs[p], kept[p], inside, straddling);

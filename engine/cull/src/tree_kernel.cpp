@@ -2,8 +2,8 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <cstddef>
 #include <crofton/cull/statistics.hpp>
+#include <cstddef>
 
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
@@ -65,7 +65,7 @@ class Walk {
                 stack_size = visit_node(child, planes & ~kWhole, stack_size);
             }
         }
-        out_.whole_count = out_.inside_count;
+        if (out_.runs == nullptr) out_.whole_count = out_.inside_count;
         constexpr std::size_t kAhead = 4;
         for (std::size_t i = 0; i < std::min(kAhead, open_); ++i) prefetch_leaf(out_.open_leaves[i]);
         for (std::size_t i = 0; i < open_; ++i) {
@@ -132,7 +132,13 @@ class Walk {
             hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
     }
 
+    HWY_INLINE void note_run(std::uint32_t leaf, std::uint32_t items) {
+        out_.runs[out_.run_count++] = {leaf * tree::kWidth, items};
+        out_.whole_count += items;
+    }
+
     HWY_INLINE void copy_leaf(std::uint32_t leaf) {
+        if (out_.runs != nullptr) return note_run(leaf, in_.leaf_counts[leaf]);
         const DU du;
         for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
             hn::StoreU(hn::Load(du, in_.slot_items + leaf * tree::kWidth + l), du, out_.inside + out_.inside_count + l);
@@ -140,6 +146,7 @@ class Walk {
     }
 
     HWY_INLINE void copy_items(tree::LeafRange range) {
+        if (out_.runs != nullptr) return note_run(range.first, range.items);
         const DU du;
         const tree::ItemId* from = in_.slot_items + std::size_t{range.first} * tree::kWidth;
         tree::ItemId* to = out_.inside + out_.inside_count;
@@ -149,7 +156,7 @@ class Walk {
 
     // False for a node whose leaves are not consecutive.
     HWY_INLINE bool accept_whole(std::uint32_t child) {
-        const std::size_t before = out_.inside_count;
+        const std::size_t before = out_.inside_count + out_.whole_count;
         if (child & tree::kLeafBit) {
             copy_leaf(child & ~tree::kLeafBit);
         } else {
@@ -160,7 +167,7 @@ class Walk {
             else
                 for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) copy_leaf(leaf);
         }
-        if (kCountStatistics) out_.accepted_whole += out_.inside_count - before;
+        if (kCountStatistics) out_.accepted_whole += out_.inside_count + out_.whole_count - before;
         return true;
     }
 
