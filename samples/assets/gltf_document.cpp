@@ -39,9 +39,11 @@ Result<Container> open_container(std::string_view file) {
     if (file.size() < 20) return bad("too short for a binary glTF file");
     if (read_u32(file, 4) != 2)
         return bad("binary glTF version " + std::to_string(read_u32(file, 4)) + ", where 2 is needed");
-    if (read_u32(file, 8) != file.size())
+    if (read_u32(file, 8) > file.size())
         return bad("its header speaks of " + std::to_string(read_u32(file, 8)) + " bytes, there are " +
                    std::to_string(file.size()));
+    file = file.substr(0, read_u32(file, 8));
+    if (file.size() < 20) return bad("its header speaks of fewer bytes than it needs");
     Container container;
     std::size_t chunk = 0;
     for (std::size_t at = 12; at < file.size(); ++chunk) {
@@ -80,8 +82,6 @@ bool nested_too_deeply(std::string_view text) {
 }
 
 Result<Json> parse_json(std::string_view text) {
-    if (nested_too_deeply(text))
-        return fail(ErrorCode::parse, kNoItem, "its JSON is nested deeper than " + std::to_string(kDeepest));
     Json root = Json::parse(text.begin(), text.end(), nullptr, false);
     if (root.is_discarded()) return fail(ErrorCode::parse, kNoItem, "its JSON is damaged");
     const Json* asset = member(root, "asset");
@@ -206,22 +206,31 @@ class FilesBeside {
     std::map<std::string, ImageView> views_;
 };
 
-Result<GltfDocument> read_document(std::string_view file, const std::string& path) {
+Result<Container> open_file(std::string_view file, const std::string& path) {
     Container container;
     if (file.substr(0, kMagic.size()) == kMagic) {
         auto opened = open_container(file);
-        if (!opened) return tl::unexpected(opened.error());
+        if (!opened) return opened;
         container = std::move(*opened);
     } else if (extension(path) == "glb") {
         return fail(ErrorCode::parse, kNoItem, "is no binary glTF file");
     } else {
         container.json = file;
     }
+    if (nested_too_deeply(container.json))
+        return fail(ErrorCode::parse, kNoItem, "its JSON is nested deeper than " + std::to_string(kDeepest));
+    return container;
+}
+
+Result<GltfDocument> read_document(std::string_view file, const std::string& path) {
+    const auto opened = open_file(file, path);
+    if (!opened) return tl::unexpected(opened.error());
+    const Container& container = *opened;
     auto root = parse_json(container.json);
     if (!root) return tl::unexpected(root.error());
     GltfDocument document;
     document.root = std::move(*root);
-    document.other_chunks = std::move(container.other_chunks);
+    document.other_chunks = container.other_chunks;
     FilesBeside files(folder(path), document);
     if (auto read = files.read_buffers(container.binary); !read) return tl::unexpected(read.error());
     files.take_in_images();
@@ -255,6 +264,12 @@ Result<std::size_t> whole_number(const Json& object, const char* key, std::size_
     if (!value) return otherwise;
     if (const auto number = as_whole_number(*value)) return *number;
     return fail(ErrorCode::parse, kNoItem, std::string(key) + " is no whole number of at least 0");
+}
+
+Result<std::string_view> gltf_json(std::string_view file, const std::string& path) {
+    const auto opened = open_file(file, path);
+    if (!opened) return tl::unexpected(opened.error());
+    return opened->json;
 }
 
 Result<GltfDocument> read_gltf_document(const std::string& path) {

@@ -18,6 +18,11 @@ struct GltfDocument {
     std::vector<std::string> warnings;  // what an output will lack
 };
 
+// The JSON in the contents of a .glb or .gltf file, which `path` tells apart only where the contents do not. Bytes
+// behind the length that a binary file's header gives are no part of it. Errors: lengths and kinds of chunks, arrays
+// and objects nested too deeply for what walks them.
+[[nodiscard]] Result<std::string_view> gltf_json(std::string_view file, const std::string& path);
+
 // .glb or .gltf with its buffers. Images that lie in files beside are taken into the first buffer, so that the document
 // no longer depends on its place; one that cannot be read keeps its URI, with a warning. Other URIs stay as they are.
 // Errors name the file, the item and the reason: wrong lengths, damaged or too deeply nested JSON, another version than

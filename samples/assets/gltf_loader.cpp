@@ -9,6 +9,7 @@
 #include "assets/gltf_accessor.hpp"
 #include "assets/gltf_color.hpp"
 #include "assets/gltf_elements.hpp"
+#include "assets/gltf_primitive.hpp"
 #include "assets/scene_source.hpp"
 
 namespace crofton::assets {
@@ -225,6 +226,14 @@ std::string first_line(const std::string& text) {
     return line.empty() ? "damaged, or no glTF file" : line.substr(0, 300);
 }
 
+// Which mesh and primitive the parser could not take, or else what it said itself.
+Error why_unreadable(const std::string& path, const std::string& said) {
+    const auto document = read_gltf_document(path);
+    if (!document) return document.error();
+    const auto checked = check_primitives(*document);
+    return in_file(path, "", checked ? Error{ErrorCode::parse, kNoItem, first_line(said)} : checked.error()).value();
+}
+
 }  // namespace
 
 Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options) {
@@ -232,6 +241,8 @@ Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& option
     if (!contents) return tl::unexpected(contents.error());
     if (contents->size() >= std::size_t{1} << 32)
         return fail(ErrorCode::out_of_range, kNoItem, path + ": larger than glTF's limit of 4 GiB");
+    // The parser walks its tree recursively.
+    if (const auto json = gltf_json(*contents, path); !json) return in_file(path, "", json.error());
     tinygltf::TinyGLTF parser;
     parser.SetImageLoader(keep_bytes, nullptr);
     tinygltf::Model model;
@@ -247,7 +258,7 @@ Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& option
     } catch (const std::exception& exception) {
         error = exception.what();
     }
-    if (!parsed) return fail(ErrorCode::parse, kNoItem, path + ": " + first_line(error));
+    if (!parsed) return tl::unexpected<Error>(why_unreadable(path, error));
     for (const std::string& extension : model.extensionsRequired)
         if (extension != "KHR_mesh_quantization" && extension.rfind("KHR_materials", 0) != 0 &&
             extension != "KHR_texture_transform")

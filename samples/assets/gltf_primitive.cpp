@@ -157,6 +157,24 @@ Result<PrimitiveGeometry> read_primitive(const GltfDocument& document, const Jso
     return PrimitiveReader(document, primitive, tolerances).read();
 }
 
+Result<void> check_primitives(const GltfDocument& document) {
+    constexpr double kPositionsOnly = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; const Json* mesh = entry(document.root, "meshes", m); ++m) {
+        const Json* name = member(*mesh, "name");
+        for (std::size_t p = 0; const Json* primitive = entry(*mesh, "primitives", p); ++p) {
+            if (!reason_to_leave(*primitive).empty()) continue;
+            const auto read = read_primitive(document, *primitive, {0.0, kPositionsOnly});
+            if (read) continue;
+            Error error = read.error();
+            error.message = "mesh " + std::to_string(m) +
+                            (name && name->is_string() ? " '" + name->get<std::string>() + "'" : std::string()) +
+                            ": primitive " + std::to_string(p) + ": " + error.message;
+            return tl::unexpected<Error>(std::move(error));
+        }
+    }
+    return {};
+}
+
 double patch_tolerance(const TriangleMesh& mesh, double tolerance) {
     if (tolerance >= 0.0 || mesh.positions.empty()) return std::max(tolerance, 0.0);
     glm::vec3 low = mesh.positions[0], high = low;

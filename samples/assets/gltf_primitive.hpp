@@ -34,6 +34,10 @@ struct ValueTolerances {
                                                        const nlohmann::ordered_json& primitive,
                                                        const ValueTolerances& tolerances);
 
+// The first primitive of triangles whose indices or positions cannot be read, as an error that names mesh and
+// primitive.
+[[nodiscard]] Result<void> check_primitives(const GltfDocument& document);
+
 // `tolerance`, or where it is negative a millionth of the mesh's size.
 [[nodiscard]] double patch_tolerance(const TriangleMesh& mesh, double tolerance);
 

@@ -49,7 +49,9 @@ TEST_SUITE("assets/gltf_document") {
 
     TEST_CASE("wrong lengths, versions and orders of chunks are named") {
         const std::string whole = strip_asset().glb();
-        CHECK(says(message("long.glb", whole + "more"), "its header speaks of"));
+        CHECK(says(message("long.glb", with_u32(whole, 8, 0xFFFFFFF0u)), "its header speaks of"));
+        CHECK(says(message("none.glb", with_u32(whole, 8, 10)), "fewer bytes than it needs"));
+        CHECK(message("more.glb", whole + "more") == "read");
         CHECK(says(message("version.glb", with_u32(whole, 4, 1)), "version 1"));
         CHECK(says(message("json.glb", with_u32(whole, 12, 0xFFFFFFF0u)), "chunk 0"));
         CHECK(says(message("short.glb", with_u32(whole, 12, 8)), "chunk 1"));

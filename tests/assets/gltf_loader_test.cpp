@@ -69,6 +69,17 @@ TEST_SUITE("assets/gltf_loader") {
         CHECK(says(message(assets::load_scene(damaged.path())), "vertex 1"));
     }
 
+    TEST_CASE("what the parser refuses is named by mesh and primitive; deep nesting is refused before it") {
+        const auto of = [](const std::string& indices) {
+            return message(load_glb(gltf_json("[{\"mesh\":0}]", indices)));
+        };
+        CHECK(says(of("\"bufferView\":1,\"count\":-3"), "mesh 0 'sail': primitive 0: indices: accessor 1"));
+        CHECK(says(of("\"bufferView\":1,\"count\":\"3\""), "mesh 0 'sail': primitive 0: indices: accessor 1"));
+        CHECK(says(of("\"bufferView\":9,\"count\":3"), "mesh 0 'sail': primitive 0: indices: accessor 1"));
+        const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+        CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"extras\":" + deep + "}]"))), "deeper"));
+    }
+
     TEST_CASE("scenes without triangles and files that are something else are refused") {
         CHECK(says(message(load_glb(gltf_json("[{\"name\":\"nothing\"}]"))), "nothing to draw"));
         CHECK_FALSE(load_glb("{}").has_value());

@@ -127,4 +127,82 @@ TEST_SUITE("cli/triangulate") {
         CHECK(again.json()["summary"]["weight_before"].get<double>() ==
               doctest::Approx(before["weight_after"].get<double>()).epsilon(1e-6));
     }
+
+    TEST_CASE("a damaged glTF file leaves no output; a damaged primitive is named, and the others are written") {
+        using Json = nlohmann::ordered_json;
+        // Two flat strips of three squares, cut the long way.
+        std::string binary;
+        const auto put = [&](auto value) { binary.append(reinterpret_cast<const char*>(&value), sizeof value); };
+        for (int mesh = 0; mesh < 2; ++mesh)
+            for (int i = 0; i < 8; ++i)
+                for (const float c : {static_cast<float>(i < 4 ? i : 7 - i), i < 4 ? 0.0f : 1.0f, 0.0f}) put(c);
+        for (int mesh = 0; mesh < 2; ++mesh)
+            for (const int i : {0, 4, 5, 0, 5, 6, 0, 6, 7, 0, 1, 4, 1, 2, 4, 2, 3, 4})
+                put(static_cast<std::uint16_t>(i));
+        Json root =
+            Json::parse(R"({"asset": {"version": "2.0", "extras": {"kept": true}}, "meshes": [], "accessors": [],
+            "bufferViews": [], "buffers": [{}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]})");
+        for (int i = 0; i < 4; ++i) {
+            const bool indices = i >= 2;
+            root["bufferViews"].push_back({{"buffer", 0},
+                                           {"byteOffset", indices ? 192 + 36 * (i - 2) : 96 * i},
+                                           {"byteLength", indices ? 36 : 96}});
+            root["accessors"].push_back({{"bufferView", i},
+                                         {"componentType", indices ? 5123 : 5126},
+                                         {"count", indices ? 18 : 8},
+                                         {"type", indices ? "SCALAR" : "VEC3"}});
+        }
+        for (int i = 0; i < 2; ++i)
+            root["meshes"].push_back({{"name", i ? "bad" : "good"},
+                                      {"primitives", {{{"attributes", {{"POSITION", i}}}, {"indices", 2 + i}}}}});
+        root["buffers"][0] = {{"byteLength", binary.size()}, {"uri", "strips.bin"}};
+        write_contents(scratch().file("strips.bin"), binary);
+        const std::string in = scratch().file("strips.gltf"), out = scratch().file("strips.glb");
+        const auto command = "triangulate '" + in + "' --json - --out '" + out + "'";
+
+        write_contents(in, root.dump());
+        const CliRun sound = run_cli(command);
+        CHECK(sound.status == 0);
+        CHECK(sound.json()["summary"]["improved"] == 2);
+        CHECK(sound.json()["meshes"][1]["name"] == "bad");
+        for (const char* key : {"primitives", "triangles_before", "triangles_after", "patches", "weight_before",
+                                "weight_after", "left_alone", "errors"})
+            CHECK(sound.json()["meshes"][0].contains(key));
+        CHECK(contents_of(out).find("\"kept\":true") != std::string::npos);
+        CHECK(contents_of(out).find("strips.bin") == std::string::npos);
+        std::filesystem::remove(out);
+
+        root["accessors"][3]["count"] = 18'000;
+        write_contents(in, root.dump());
+        const CliRun half = run_cli(command);
+        CHECK(half.status == 2);
+        CHECK(half.err.find("mesh 1 'bad': primitive 0: indices: accessor 3") != std::string::npos);
+        CHECK(half.json()["summary"]["improved"] == 1);
+        CHECK(half.json()["meshes"][1]["errors"][0]["code"] == "out of range");
+        CHECK(std::filesystem::exists(out));
+        std::filesystem::remove(out);
+
+        for (const auto& damaged : {root.dump().substr(0, 100), std::string("{}"), std::string()}) {
+            write_contents(in, damaged);
+            const CliRun run = run_cli(command);
+            CHECK(run.status == 2);
+            CHECK(run.err.find("strips.gltf") != std::string::npos);
+            CHECK_FALSE(std::filesystem::exists(out));
+        }
+        write_contents(in, root.dump());
+        CHECK(run_cli("triangulate '" + in + "' --out '" + scratch().file("strips.obj") + "'").status == 2);
+        CHECK(run_cli("triangulate '" + in + "' --attribute-tolerance -1").status == 2);
+        CHECK(run_cli("triangulate '" + in + "' --json - --out -").status == 2);
+        CHECK_FALSE(std::filesystem::exists(scratch().file("strips.obj")));
+        // The other commands that read scenes.
+        for (const std::string& other :
+             {"bake '" + in + "' -o '" + out + "'", "frames '" + in + "' --frames 1 --no-draw --csv '" + out + "'"}) {
+            root["nodes"][0]["mesh"] = 1;
+            write_contents(in, root.dump());
+            const CliRun run = run_cli(other);
+            CHECK(run.status == 2);
+            CHECK(run.err.find("mesh 1 'bad': primitive 0") != std::string::npos);
+            CHECK_FALSE(std::filesystem::exists(out));
+        }
+    }
 }
