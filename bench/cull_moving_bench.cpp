@@ -1,8 +1,13 @@
 // Trees whose boxes move: an update and a query, and what long motion leaves behind.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <crofton/cull/cull.hpp>
+#include <cstdlib>
 #include <map>
+#include <random>
+#include <vector>
 
 #include "cull_inputs.hpp"
 
@@ -46,31 +51,106 @@ void aged_cull(benchmark::State& state, bool fresh) {
 BENCHMARK_CAPTURE(aged_cull, aged, false)->Arg(100000);
 BENCHMARK_CAPTURE(aged_cull, fresh, true)->Arg(100000);
 
-// A tenth of the boxes moves by a tenth of their spacing, chosen at random or neighbours in the tree, numbered at
-// random or in the tree's order; then the tree is refitted and asked.
-void move_and_cull(benchmark::State& state, bool scattered, bool numbered) {
-    std::vector<Obb> boxes = numbered ? boxes_in_tree_order(state.range(0)) : boxes_of(state.range(0));
-    tree::BoxTree tree = *tree::BoxTree::build(boxes);
-    const cull::View view = bench::view_of_share(boxes, 0.2);
-    std::mt19937 random(1);
+// Which tenth of the boxes moves: neighbours in the tree or any, numbered one after the other or as they come.
+enum class Tenth { scattered, numbered_together, neighbours, neighbours_numbered };
+
+struct Moving {
+    std::vector<Obb> boxes;
+    tree::BoxTree tree;
     std::vector<tree::ItemId> items;
-    for (std::size_t i = 0; i < boxes.size() / 10; ++i)
-        items.push_back(scattered ? static_cast<tree::ItemId>(random() % boxes.size()) : tree.slot_items()[i]);
-    std::vector<Obb> moved(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) moved[i] = boxes[items[i]];
-    cull::VisibleSet visible;
-    double step = 0.1;
-    for (auto _ : state) {
+    std::vector<Obb> moved;
+    double step = 0.1;  // a tenth of the spacing, to and fro
+
+    Moving(std::int64_t count, Tenth tenth)
+        : boxes(tenth == Tenth::neighbours_numbered ? boxes_in_tree_order(count) : boxes_of(count)),
+          tree(*tree::BoxTree::build(boxes)) {
+        std::mt19937 random(1);
+        for (std::size_t i = 0; i < boxes.size() / 10; ++i) {
+            const auto any = static_cast<tree::ItemId>(random() % boxes.size());
+            items.push_back(tenth == Tenth::scattered           ? any
+                            : tenth == Tenth::numbered_together ? static_cast<tree::ItemId>(i)
+                                                                : tree.slot_items()[i]);
+        }
+        for (const tree::ItemId item : items) moved.push_back(boxes[item]);
+    }
+    void move() {
         for (Obb& box : moved) box.center.x += step;
         step = -step;
-        if (!tree.move(items, moved)) state.SkipWithError("move failed");
+        if (!tree.move(items, moved)) std::abort();
         tree.refit();
-        cull::cull(tree, view, visible, {cull::Mode::conservative, cull::Order::tree});
+    }
+};
+
+// The boxes move, the tree is refitted and asked; in a tree as it was built, or after a rebuild in the background, which
+// has found out what moves.
+void move_and_cull(benchmark::State& state, Tenth tenth, bool rebuilt) {
+    Moving moving(state.range(0), tenth);
+    if (rebuilt) {
+        do moving.move();
+        while (!moving.tree.maintain(moving.boxes.size()));
+    }
+    const cull::View view = bench::view_of_share(moving.boxes, 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        moving.move();
+        cull::cull(moving.tree, view, visible, {cull::Mode::conservative, cull::Order::tree});
     }
     report(state, visible.size());
 }
-BENCHMARK_CAPTURE(move_and_cull, scattered, true, false)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(move_and_cull, neighbours, false, false)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, false, true)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, scattered, Tenth::scattered, false)
+    ->Arg(100000)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, scattered_rebuilt, Tenth::scattered, true)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, numbered_together_rebuilt, Tenth::numbered_together, true)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, neighbours, Tenth::neighbours, false)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, Tenth::neighbours_numbered, false)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+
+// What memory allows: a tenth of the boxes is changed where it lies, read, and written where it belongs.
+void move_floor(benchmark::State& state, Tenth tenth) {
+    Moving moving(state.range(0), tenth);
+    for (auto _ : state) {
+        for (Obb& box : moving.moved) box.center.x += moving.step;
+        moving.step = -moving.step;
+        for (std::size_t i = 0; i < moving.items.size(); ++i) moving.boxes[moving.items[i]] = moving.moved[i];
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK_CAPTURE(move_floor, scattered, Tenth::scattered)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_floor, numbered_together, Tenth::numbered_together)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+
+// One whole rebuild in the background while a hundredth of the boxes moves every frame: how long the longest step takes,
+// and the mean one.
+void rebuild_steps(benchmark::State& state) {
+    Moving moving(state.range(0), Tenth::numbered_together);
+    moving.items.resize(moving.items.size() / 10);
+    moving.moved.resize(moving.items.size());
+    const auto budget = static_cast<std::size_t>(state.range(1));
+    double longest = 0.0, sum = 0.0, steps = 0.0;
+    for (auto _ : state) {
+        bool done = false;
+        while (!done) {
+            moving.move();
+            const auto start = std::chrono::steady_clock::now();
+            done = moving.tree.maintain(budget);
+            const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            longest = std::max(longest, seconds);
+            sum += seconds;
+            ++steps;
+        }
+    }
+    state.counters["steps"] = steps / static_cast<double>(state.iterations());
+    state.counters["longest_us"] = 1e6 * longest;
+    state.counters["mean_us"] = 1e6 * sum / steps;
+}
+BENCHMARK(rebuild_steps)->Args({1000000, 20000})->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -114,6 +114,43 @@ TEST_SUITE("tree/box_tree changes") {
         CHECK(std::ranges::equal(tree.leaf_counts(), fresh.leaf_counts()));
     }
 
+    TEST_CASE("items that move share leaves with each other alone, whether they were named or found out") {
+        const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 7);
+        std::vector<ItemId> items;
+        std::vector<Obb> boxes;
+        for (ItemId i = 3; i < 40000; i += 8) {
+            items.push_back(i);
+            boxes.push_back(crowd.boxes[i]);
+        }
+        const auto mixed_leaves = [](const BoxTree& tree) {
+            int mixed = 0;
+            for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+                std::uint32_t moving = 0;
+                for (unsigned i = 0; i < tree.leaves()[l].count; ++i)
+                    moving += tree.slot_items()[l * tree::kWidth + i] % 8 == 3;
+                mixed += moving != 0 && moving != tree.leaves()[l].count;
+            }
+            return mixed;
+        };
+        const BoxTree named = *BoxTree::build(crowd.boxes, crowd.layers, {.moving = items});
+        CHECK(mixed_leaves(named) == 0);
+        CHECK(named.validate().has_value());
+        CHECK(holds_all(named));
+        BoxTree found = *BoxTree::build(crowd.boxes, crowd.layers);
+        CHECK(mixed_leaves(found) > 1000);
+        oracle::NearMisses random(8);
+        do {
+            for (Obb& box : boxes) box.center += 0.01 * random.direction();
+            REQUIRE(found.move(items, boxes).has_value());
+            found.refit();
+        } while (!found.maintain(20000));
+        CHECK(mixed_leaves(found) == 0);
+        CHECK(found.validate().has_value());
+        CHECK(holds_all(found));
+        const std::vector<ItemId> unknown{40000};
+        CHECK(BoxTree::build(crowd.boxes, {.moving = unknown}).error().item == 40000);
+    }
+
     TEST_CASE("many boxes moved at once are found where they went, some of them far, the same on every instruction set") {
         const oracle::Crowd crowd = oracle::random_crowd(3000, 1e5, 11);
         const BoxTree built = *BoxTree::build(crowd.boxes, crowd.layers);

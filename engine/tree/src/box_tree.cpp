@@ -2,7 +2,6 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <bit>
 #include <crofton/core/assert.hpp>
 
 #include "bounds.hpp"
@@ -44,13 +43,22 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
     tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
     Builder builder(scene, boxes.size(), options.criterion);
     for (std::size_t i = 0; i < boxes.size(); ++i) builder.add(static_cast<ItemId>(i), boxes[i]);
-    while (!builder.step(~std::size_t{0} / 4, executor)) {
+    Vector<std::uint64_t> moving((boxes.size() + 63) / 64, 0);
+    for (const ItemId item : options.moving) {
+        if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item that moves");
+        moving[item / 64] |= std::uint64_t{1} << item % 64;
+    }
+    const auto moves = [](const void* bits, ItemId item) {
+        return (static_cast<const std::uint64_t*>(bits)[item / 64] >> item % 64 & 1) != 0;
+    };
+    while (!builder.step(~std::size_t{0} / 8, {moves, moving.data()}, executor)) {
     }
     tree.adopt(tree.now_, builder.result());
     executor.parallel_for(tree.now_.leaves.size(), kGrain / kWidth, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t l = begin; l < end; ++l) tree.fill_leaf(tree.now_, static_cast<LeafId>(l), builder.result());
     });
-    tree.finish_nodes(tree.now_);
+    // Parents come before children.
+    for (auto n = static_cast<NodeId>(tree.now_.nodes.size()); n-- > 0;) tree.finish_node(tree.now_, n);
     return tree;
 }
 
@@ -61,23 +69,31 @@ void BoxTree::adopt(Structure& structure, const Topology& topology) const {
     structure.ranges.resize(topology.nodes.size());
     structure.leaves.resize(topology.leaves.size());
     structure.leaf_counts.assign(topology.leaves.size(), 0);
-    structure.dirty_lanes.assign(topology.leaves.size(), 0);
+    clear_marks(structure);
     structure.slot_items.assign(topology.leaves.size() * kWidth, kNone);
     structure.item_slots.assign(boxes_.size(), kNone);
-    for (NodeId n = 0; n < topology.nodes.size(); ++n) {
-        const Topology::NodeRecord& record = topology.nodes[n];
-        Node& node = structure.nodes[n];
-        clear(node);
-        structure.ranges[n] = record.leaves;
-        node.count = record.count;
-        node.parent = record.parent;
-        node.lane_in_parent = record.lane_in_parent;
-        node.only_leaves = 1;
-        for (std::uint32_t lane = 0; lane < record.count; ++lane) {
-            node.child[lane] = record.child[lane];
-            if (!(record.child[lane] & kLeafBit)) node.only_leaves = 0;
-        }
+    for (NodeId n = 0; n < topology.nodes.size(); ++n) adopt_node(structure, n, topology);
+}
+
+void BoxTree::adopt_node(Structure& structure, NodeId n, const Topology& topology) const {
+    const Topology::NodeRecord& record = topology.nodes[n];
+    Node& node = structure.nodes[n];
+    clear(node);
+    structure.ranges[n] = record.leaves;
+    node.count = record.count;
+    node.parent = record.parent;
+    node.lane_in_parent = record.lane_in_parent;
+    node.only_leaves = 1;
+    for (std::uint32_t lane = 0; lane < record.count; ++lane) {
+        node.child[lane] = record.child[lane];
+        if (!(record.child[lane] & kLeafBit)) node.only_leaves = 0;
     }
+}
+
+void BoxTree::clear_marks(Structure& structure) {
+    structure.dirty_lanes.assign(structure.leaves.size(), 0);
+    structure.lanes_before.assign(structure.leaves.size(), 0);
+    structure.lanes_long_before.assign(structure.leaves.size(), 0);
 }
 
 void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology) const {
@@ -151,8 +167,7 @@ void BoxTree::write_dirty_leaves(Structure& structure, std::span<const LeafId> l
     std::size_t many_count = 0;
     CROFTON_ASSERT(leaves.size() <= kRefitBatch, "too many leaves at once");
     for (const LeafId l : leaves)
-        if (std::popcount(std::exchange(structure.dirty_lanes[l], std::uint16_t{0})) > kFewLanes)
-            many[many_count++] = l;
+        if (!has_few_lanes(structure.dirty_lanes[l])) many[many_count++] = l;
     for (std::span<const LeafId> rest(many, many_count); !rest.empty(); rest = rest.subspan(1)) {
         rest = rest.subspan(write_lanes(structure.leaves.data(), rest, structure.slot_items.data(), boxes_.data()));
         if (rest.empty()) break;
@@ -160,20 +175,26 @@ void BoxTree::write_dirty_leaves(Structure& structure, std::span<const LeafId> l
     }
 }
 
-void BoxTree::finish_nodes(Structure& structure) const {
-    // After a build, parents come before children.
-    for (auto n = static_cast<NodeId>(structure.nodes.size()); n-- > 0;) {
-        refresh_node(structure, n);
-        structure.ranges[n].items = items_without_gaps(structure, structure.ranges[n]);
-    }
+// Bounds, layers and the number of items, from the children's.
+void BoxTree::finish_node(Structure& structure, NodeId n) const {
+    refresh_node(structure, n);
+    structure.ranges[n].items = items_without_gaps(structure, n);
 }
 
-std::uint32_t BoxTree::items_without_gaps(const Structure& structure, LeafRange range) {
-    if (range.count == 0) return 0;
-    const LeafId last = range.first + range.count - 1;
-    for (LeafId l = range.first; l < last; ++l)
-        if (structure.leaf_counts[l] < kWidth) return 0;
-    return (range.count - 1) * kWidth + structure.leaf_counts[last];
+// 0 where a slot is empty that is not among the last.
+std::uint32_t BoxTree::items_without_gaps(const Structure& structure, NodeId n) {
+    const Node& node = structure.nodes[n];
+    if (structure.ranges[n].count == 0) return 0;
+    std::uint32_t items = 0;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        const std::uint32_t child = node.child[lane], id = child & ~kLeafBit;
+        const LeafRange below =
+            child & kLeafBit ? LeafRange{id, 1, structure.leaf_counts[id]} : structure.ranges[child];
+        const bool has_gap = below.items == 0 || (lane + 1 < node.count && below.items < below.count * kWidth);
+        if (has_gap) return 0;
+        items += below.items;
+    }
+    return items;
 }
 
 // The items of a leaf below here are no longer as many as they were.

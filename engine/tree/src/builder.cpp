@@ -52,7 +52,7 @@ void Builder::add(ItemId id, const Obb& box) {
     items_.push_back(item);
 }
 
-bool Builder::step(std::size_t budget, Executor& executor) {
+bool Builder::step(std::size_t budget, const Movers& movers, Executor& executor) {
     if (phase_ == Phase::keys && next_ == 0 && items_.size() <= kSmallCrowd) start_assembly();
     while (phase_ != Phase::done) {
         std::size_t spent = 0;
@@ -63,14 +63,26 @@ bool Builder::step(std::size_t budget, Executor& executor) {
             case Phase::sort:
                 spent = sort_pass(budget);
                 break;
+            case Phase::crowding:
+                spent = find_crowding(budget);
+                break;
+            case Phase::gather:
+                spent = gather_items(budget, movers);
+                break;
+            case Phase::append:
+                spent = append_moving(budget);
+                break;
             case Phase::clusters:
-                make_clusters();
+                spent = make_clusters(budget);
                 break;
             case Phase::split:
                 spent = split_clusters(budget, executor);
                 break;
-            default:
+            case Phase::assemble:
                 spent = assemble(budget);
+                break;
+            default:
+                spent = list_order(budget);
                 break;
         }
         if (spent >= budget) return phase_ == Phase::done;
@@ -83,7 +95,9 @@ bool Builder::step(std::size_t budget, Executor& executor) {
 // bounds. Then a Z-order curve through the centres.
 std::size_t Builder::compute_keys(std::size_t budget) {
     const std::size_t end = std::min(items_.size(), next_ + budget), spent = end - next_;
-    keys_.resize(items_.size());
+    keys_.reserve(items_.size());
+    keys_next_.reserve(items_.size());
+    keys_next_.resize(end);
     for (; next_ < end; ++next_) {
         const BuildItem& item = items_[next_];
         std::uint64_t code = 0;
@@ -95,11 +109,11 @@ std::size_t Builder::compute_keys(std::size_t budget) {
         }
         int size_class = 0;
         for (float limit = 8.0f * cell_; extent > limit && size_class < 15; limit *= 2.0f) ++size_class;
-        keys_[next_] = {static_cast<std::uint64_t>(15 - size_class) << (3 * kAxisBits) | code, static_cast<std::uint32_t>(next_)};
+        keys_.push_back({static_cast<std::uint64_t>(15 - size_class) << (3 * kAxisBits) | code,
+                         static_cast<std::uint32_t>(next_)});
     }
     if (next_ == items_.size()) {
         next_ = 0;
-        keys_next_.resize(keys_.size());
         phase_ = Phase::sort;
     }
     return spent;
@@ -122,38 +136,82 @@ std::size_t Builder::sort_pass(std::size_t budget) {
     } else {
         histogram_.fill(0);
         keys_.swap(keys_next_);
-        if (++pass_ == kPasses) phase_ = Phase::clusters;
+        if (++pass_ == kPasses) phase_ = Phase::crowding;
     }
     counting_ = !counting_;
     return spent;
 }
 
-void Builder::make_clusters() {
-    // Centres too crowded for the curve's cells (a far outlier stretches them): split from the top after all.
-    std::size_t equal = 0;
-    for (std::size_t i = 1; i < keys_.size(); ++i) equal += keys_[i].code == keys_[i - 1].code;
-    if (equal > keys_.size() / 4) return start_assembly();
-    sorted_.resize(items_.size());
-    clusters_.assign((items_.size() + kClusterItems - 1) / kClusterItems, kNothing);
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
-        sorted_[i] = items_[keys_[i].index];
-        clusters_[i / kClusterItems].include(sorted_[i]);
+// Centres too crowded for the curve's cells (a far outlier stretches them): split from the top after all.
+std::size_t Builder::find_crowding(std::size_t budget) {
+    const std::size_t end = std::min(keys_.size(), next_ + 4 * budget), spent = (end - next_ + 3) / 4;
+    for (; next_ < end; ++next_) equal_keys_ += next_ > 0 && keys_[next_].code == keys_[next_ - 1].code;
+    if (next_ < keys_.size()) return spent;
+    next_ = 0;
+    if (equal_keys_ > keys_.size() / 4) {
+        start_assembly();
+    } else {
+        sorted_.reserve(items_.size());
+        phase_ = Phase::gather;
     }
-    for (std::uint32_t c = 0; c < clusters_.size(); ++c) clusters_[c].set_id(c);
+    return spent;
+}
+
+// Along the curve: those at rest, then those that move.
+std::size_t Builder::gather_items(std::size_t budget, const Movers& movers) {
+    const std::size_t end = std::min(keys_.size(), next_ + budget), spent = end - next_;
+    for (; next_ < end; ++next_) {
+        const BuildItem& item = items_[keys_[next_].index];
+        (movers.contain(movers.context, item.id()) ? moving_ : sorted_).push_back(item);
+    }
+    if (next_ < keys_.size()) return spent;
+    next_ = 0;
+    resting_count_ = sorted_.size();
+    phase_ = Phase::append;
+    return spent;
+}
+
+std::size_t Builder::append_moving(std::size_t budget) {
+    const std::size_t end = std::min(moving_.size(), next_ + budget), spent = end - next_;
+    for (; next_ < end; ++next_) sorted_.push_back(moving_[next_]);
+    if (next_ < moving_.size()) return spent;
+    next_ = 0;
     items_.swap(sorted_);
+    const auto clusters_for = [](std::size_t items) { return (items + kClusterItems - 1) / kClusterItems; };
+    clusters_.assign(clusters_for(resting_count_) + clusters_for(moving_.size()), kNothing);
     cluster_children_.resize(clusters_.size());
-    phase_ = Phase::split;
+    phase_ = Phase::clusters;
+    return spent;
+}
+
+std::size_t Builder::make_clusters(std::size_t budget) {
+    const std::size_t first = next_, last = std::min(clusters_.size(), first + budget / kClusterItems + 1);
+    for (; next_ < last; ++next_) {
+        const Range range = items_of_cluster(static_cast<std::uint32_t>(next_));
+        for (std::uint32_t i = range.begin; i < range.end; ++i) clusters_[next_].include(items_[i]);
+        clusters_[next_].set_id(static_cast<std::uint32_t>(next_));
+    }
+    if (next_ == clusters_.size()) {
+        next_ = 0;
+        phase_ = Phase::split;
+    }
+    return (last - first) * kClusterItems;
+}
+
+Range Builder::items_of_cluster(std::uint32_t cluster) const {
+    const std::size_t resting_clusters = (resting_count_ + kClusterItems - 1) / kClusterItems;
+    const bool rests = cluster < resting_clusters;
+    const std::size_t begin = rests ? std::size_t{cluster} * kClusterItems
+                                    : resting_count_ + (cluster - resting_clusters) * kClusterItems;
+    const std::size_t end = std::min(begin + kClusterItems, rests ? resting_count_ : items_.size());
+    return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
 }
 
 std::size_t Builder::split_clusters(std::size_t budget, Executor& executor) {
     const std::size_t first = next_, count = std::min(cluster_children_.size() - first, budget / kClusterItems / 2 + 1);
     executor.parallel_for(count, 16, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t c = first + begin; c < first + end; ++c) {
-            const std::size_t last = std::min(items_.size(), (c + 1) * kClusterItems);
-            cluster_children_[c] =
-                divide(items_, {static_cast<std::uint32_t>(c * kClusterItems), static_cast<std::uint32_t>(last)},
-                       kWidth, cost_);
-        }
+        for (std::size_t c = first + begin; c < first + end; ++c)
+            cluster_children_[c] = divide(items_, items_of_cluster(static_cast<std::uint32_t>(c)), kWidth, cost_);
     });
     next_ += count;
     if (next_ == cluster_children_.size()) start_assembly();
@@ -174,8 +232,7 @@ std::size_t Builder::assemble(std::size_t budget) {
         std::uint32_t cluster = kNone;
         if (task.of_clusters && task.range.size() == 1) {
             cluster = clusters_[task.range.begin].id();
-            task.range = {cluster * kClusterItems, static_cast<std::uint32_t>(std::min(
-                                                       items_.size(), (cluster + std::size_t{1}) * kClusterItems))};
+            task.range = items_of_cluster(cluster);
             task.of_clusters = false;
         }
         if (task.parent != kNone && !task.of_clusters && task.range.size() <= kWidth) {
@@ -201,10 +258,17 @@ std::size_t Builder::assemble(std::size_t budget) {
     }
     if (tasks_.empty()) {
         number_leaves();
-        result_.order.reserve(items_.size());
-        for (const BuildItem& item : items_) result_.order.push_back(item.id());
-        phase_ = Phase::done;
+        next_ = 0;
+        phase_ = Phase::order;
     }
+    return spent;
+}
+
+std::size_t Builder::list_order(std::size_t budget) {
+    const std::size_t end = std::min(items_.size(), next_ + 4 * budget), spent = (end - next_ + 3) / 4;
+    result_.order.reserve(items_.size());
+    for (; next_ < end; ++next_) result_.order.push_back(items_[next_].id());
+    if (next_ == items_.size()) phase_ = Phase::done;
     return spent;
 }
 

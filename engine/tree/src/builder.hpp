@@ -31,9 +31,15 @@ struct Topology {
     unsigned height = 1;
 };
 
+// Which items move so often that they are to share leaves with each other rather than with those at rest.
+struct Movers {
+    bool (*contain)(const void* context, ItemId item) = [](const void*, ItemId) { return false; };
+    const void* context = nullptr;
+};
+
 // Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
-// clusters of 4096, the clusters are split from the top, and each cluster within itself: the same work per item
-// whatever their number.
+// clusters of 4096, of items that move or of items at rest; the clusters are split from the top, and each cluster within
+// itself: the same work per item whatever their number.
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
@@ -43,11 +49,11 @@ class Builder {
 
     // After the last add: works on, about `budget` items' worth; true when result() is ready. Same result for any
     // budgets.
-    bool step(std::size_t budget, Executor& executor);
+    bool step(std::size_t budget, const Movers& movers, Executor& executor);
     [[nodiscard]] Topology& result() { return result_; }
 
   private:
-    enum class Phase : std::uint8_t { keys, sort, clusters, split, assemble, done };
+    enum class Phase : std::uint8_t { keys, sort, crowding, gather, append, clusters, split, assemble, order, done };
     struct Task {
         Range range;  // of clusters or of items
         NodeId parent;
@@ -62,17 +68,24 @@ class Builder {
 
     std::size_t compute_keys(std::size_t budget);
     std::size_t sort_pass(std::size_t budget);
-    void make_clusters();
+    std::size_t find_crowding(std::size_t budget);
+    std::size_t gather_items(std::size_t budget, const Movers& movers);
+    std::size_t append_moving(std::size_t budget);
+    std::size_t make_clusters(std::size_t budget);
+    [[nodiscard]] Range items_of_cluster(std::uint32_t cluster) const;
     std::size_t split_clusters(std::size_t budget, Executor& executor);
     void start_assembly();
     std::size_t assemble(std::size_t budget);
     void add_leaf(const Task& task);
     void number_leaves();
+    std::size_t list_order(std::size_t budget);
 
     Cost cost_;
     glm::dvec3 middle_;
     float low_[3], inverse_size_[3], cell_;
-    Vector<BuildItem> items_, sorted_;
+    Vector<BuildItem> items_, sorted_, moving_;
+    std::size_t resting_count_ = 0;  // the items that move follow these
+    std::size_t equal_keys_ = 0;
     Vector<Key> keys_, keys_next_;
     std::array<std::uint32_t, 2048> histogram_{};
     unsigned pass_ = 0;

@@ -38,7 +38,9 @@ Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> b
         if (i + kNear < items.size() && has_few_changes(moved_slots_[i + kNear] / kWidth))
             prefetch_all(now_.leaves[moved_slots_[i + kNear] / kWidth]);
         boxes_[items[i]] = boxes[i];
-        if (has_few_changes(moved_slots_[i] / kWidth)) write_item(now_, items[i]);
+        const LeafId leaf = moved_slots_[i] / kWidth;
+        if (has_few_changes(leaf) && !write_lane(now_.leaves[leaf], moved_slots_[i] % kWidth, boxes[i]))
+            rewrite_leaf(now_, leaf);
     }
     if (rebuild_)
         for (const ItemId item : items) note_change(item);
@@ -46,7 +48,7 @@ Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> b
 }
 
 bool BoxTree::has_few_changes(LeafId leaf) const {
-    return std::popcount(now_.dirty_lanes[leaf]) <= kFewLanes;
+    return has_few_lanes(now_.dirty_lanes[leaf]);
 }
 
 // The items' slots, if all is well.
@@ -165,6 +167,8 @@ LeafId BoxTree::add_leaf() {
     now_.leaf_counts.push_back(0);
     now_.slot_items.resize(now_.slot_items.size() + kWidth, kNone);
     now_.dirty_lanes.push_back(0);
+    now_.lanes_before.push_back(0);
+    now_.lanes_long_before.push_back(0);
     return fresh;
 }
 

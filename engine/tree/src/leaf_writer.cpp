@@ -134,7 +134,7 @@ std::size_t WriteLanes(Leaf* leaves, const LeafId* ids, std::size_t count, const
     const auto next = [&](std::size_t i, Sixteen& to) HWY_ATTR {
         collect(leaves[ids[i]], slot_items + std::size_t{ids[i]} * kWidth, all_boxes, to);
     };
-    constexpr std::size_t kAhead = 4;
+    constexpr std::size_t kAhead = 14;
     const auto ask = [&](std::size_t i) {
         prefetch(leaves[ids[i]], slot_items + std::size_t{ids[i]} * kWidth, all_boxes);
     };

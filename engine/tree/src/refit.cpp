@@ -1,4 +1,4 @@
-// Bringing bounds up to date after moves, and whole rebuilds in the background.
+// Bringing bounds up to date after moves.
 #include <algorithm>
 #include <bit>
 #include <crofton/core/assert.hpp>
@@ -19,7 +19,11 @@ void BoxTree::mark(std::uint32_t slot) {
 void BoxTree::note_change(ItemId item) {
     if (!rebuild_) return;
     if (rebuild_->changed.size() <= item / 64) rebuild_->changed.resize(item / 64 + 1, 0);
-    rebuild_->changed[item / 64] |= std::uint64_t{1} << (item % 64);
+    std::uint64_t& word = rebuild_->changed[item / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (item % 64);
+    rebuild_->changed_count += (word & bit) == 0;
+    ++rebuild_->new_changes;
+    word |= bit;
 }
 
 void BoxTree::refit() {
@@ -34,6 +38,15 @@ void BoxTree::refit() {
         dirty_nodes_.swap(dirty_parents_);
     }
     layers_changed_ = false;
+    forget_marks();
+}
+
+// What has changed is remembered for two refits more.
+void BoxTree::forget_marks() {
+    if (dirty_list_.empty()) return;
+    now_.lanes_long_before.swap(now_.lanes_before);
+    now_.lanes_before.swap(now_.dirty_lanes);
+    std::fill(now_.dirty_lanes.begin(), now_.dirty_lanes.end(), std::uint16_t{0});
 }
 
 void BoxTree::list_dirty_leaves() {
@@ -95,62 +108,6 @@ void BoxTree::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<Node
     if (word & bit) return;
     word |= bit;
     dirty.push_back(n);
-}
-
-bool BoxTree::maintain(std::size_t budget) {
-    if (!rebuild_) {
-        if (item_count() == 0) return false;
-        rebuild_ = std::make_unique<Rebuild>();
-        Aabb scene = bounds_of(now_.nodes[0]);
-        rebuild_->builder.emplace(scene, item_count(), criterion_);
-    }
-    Rebuild& work = *rebuild_;
-    if (work.adding) {
-        const std::size_t end = std::min(boxes_.size(), work.next + budget);
-        budget -= end - work.next;
-        for (; work.next < end; ++work.next)
-            if (now_.item_slots[work.next] != kNone)
-                work.builder->add(static_cast<ItemId>(work.next), boxes_[work.next]);
-        if (work.next < boxes_.size() || budget == 0) return false;
-        work.adding = false;
-    }
-    if (!work.filling) {
-        if (!work.builder->step(budget, serial_executor())) return false;
-        adopt(work.structure, work.builder->result());
-        work.filling = true;
-        work.next = 0;
-        return false;
-    }
-    const std::size_t leaves = work.structure.leaves.size();
-    const std::size_t end = std::min(leaves, work.next + budget / kWidth + 1);
-    for (; work.next < end; ++work.next)
-        fill_leaf(work.structure, static_cast<LeafId>(work.next), work.builder->result());
-    if (work.next < leaves) return false;
-    take_over();
-    return true;
-}
-
-// The new structure replaces the old one, after what has changed since it was begun.
-void BoxTree::take_over() {
-    const std::unique_ptr<Rebuild> work = std::move(rebuild_);
-    Structure& fresh = work->structure;
-    fresh.item_slots.resize(boxes_.size(), kNone);
-    const Vector<std::uint32_t> old_slots = std::move(now_.item_slots);
-    now_ = std::move(fresh);
-    Vector<ItemId> homeless;
-    for (std::size_t w = 0; w < work->changed.size(); ++w)
-        for (std::uint64_t word = work->changed[w]; word; word &= word - 1) {
-            const auto item = static_cast<ItemId>(64 * w + static_cast<unsigned>(std::countr_zero(word)));
-            const std::uint32_t slot = now_.item_slots[item];
-            const bool present = old_slots[item] != kNone;
-            if (present && slot == kNone) homeless.push_back(item);
-            if (present && slot != kNone)
-                write_item(now_, item);
-            if (!present && slot != kNone) vacate(item);
-        }
-    finish_nodes(now_);
-    std::fill(now_.dirty_lanes.begin(), now_.dirty_lanes.end(), std::uint16_t{0});
-    for (const ItemId item : homeless) place(item);
 }
 
 }  // namespace crofton::tree

@@ -85,7 +85,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         if (count > 0) std::memcpy(static_cast<void*>(array.data()), bytes.data() + at, count * sizeof(array[0]));
         at += count * sizeof(array[0]);
     });
-    tree.now_.dirty_lanes.assign(tree.now_.leaves.size(), 0);
+    clear_marks(tree.now_);
     if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
     if (auto valid = tree.validate(trust); !valid)
         return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);

@@ -20,6 +20,14 @@ bool lanes_agree(const Leaf& a, const Leaf& b, unsigned lane) {
     return same;
 }
 
+std::uint32_t items_without_gaps(LeafRange range, std::span<const std::uint8_t> leaf_counts) {
+    if (range.count == 0) return 0;
+    const LeafId last = range.first + range.count - 1;
+    for (LeafId l = range.first; l < last; ++l)
+        if (leaf_counts[l] < kWidth) return 0;
+    return (range.count - 1) * kWidth + leaf_counts[last];
+}
+
 bool holds(const Node& node, unsigned lane, const Aabb& child) {
     if (child.is_empty()) return true;
     const Aabb bounds = bounds_of_lane(node, lane);
@@ -80,7 +88,7 @@ Result<void> BoxTree::validate(Trust trust) const {
         if (only_leaves != (node.only_leaves != 0)) return broken(n, "a node is wrong about its children's kind");
         if (const LeafRange range = now_.ranges[n]; range.count > leaves || range.first > leaves - range.count)
             return broken(n, "a node's leaves do not exist");
-        if (const LeafRange range = now_.ranges[n]; range.items != 0 && range.items != items_without_gaps(now_, range))
+        if (const LeafRange range = now_.ranges[n]; range.items != 0 && range.items != tree::items_without_gaps(range, leaf_counts()))
             return broken(n, "a node is wrong about its items");
         // Up to the root within `height` steps: no cycles.
         NodeId up = n;

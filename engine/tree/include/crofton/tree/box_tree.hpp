@@ -16,6 +16,9 @@ struct Topology;
 
 struct BuildOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
+    // Items that will move nearly every frame, if known. In a tree of more than 32,768 items they share leaves with each
+    // other, so that frames touch few leaves besides theirs. maintain() finds such items by itself.
+    std::span<const ItemId> moving = {};
 };
 
 // What deserialise() may take on trust. `contents`: the bytes are what serialise() wrote, as a checksum has shown; then
@@ -49,9 +52,11 @@ class BoxTree {
     [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
     void refit();
 
-    // Rebuilds in the background, about `budget` items' worth of work a call (a build is worth about 8 per item; the
-    // last step of a rebuild costs as much as refitting everything). Call it once a frame where items move for long.
-    // True when a rebuild has just been completed. Needs refit() before and leaves nothing to refit.
+    // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up to
+    // date twice as many items' more as have changed since the call before (a build is worth about 8 per item). Call it
+    // once a frame where items move for long. True when a rebuild has just been completed. Items that moved before both
+    // of the last two refits are taken for such as move all the time (see BuildOptions). Needs refit() before and leaves
+    // nothing to refit.
     bool maintain(std::size_t budget);
 
     // Checks every invariant: links, counts, slots, bounds. Errors name the node, leaf or item.
@@ -88,17 +93,23 @@ class BoxTree {
         Vector<std::uint8_t> leaf_counts;
         Vector<ItemId> slot_items;
         Vector<std::uint32_t> item_slots;
-        Vector<std::uint16_t> dirty_lanes;  // by leaf, one bit a lane: what has changed since the last refit
+        // By leaf, one bit a lane: what has changed since the last refit, and what had before it and the one before.
+        Vector<std::uint16_t> dirty_lanes, lanes_before, lanes_long_before;
         unsigned height = 1;
     };
     struct Rebuild;
     // Where no more of a leaf's boxes have changed, move() writes each into its lane; where more have, refit() writes them
     // all.
-    static constexpr int kFewLanes = 3;
+    [[nodiscard]] static constexpr bool has_few_lanes(unsigned lanes) {
+        for (int few = 3; few > 0; --few) lanes &= lanes - 1;
+        return lanes == 0;
+    }
     static constexpr std::size_t kRefitBatch = 256;  // leaves that stay in the cache from their boxes to their bounds
 
     BoxTree();
     void adopt(Structure& structure, const Topology& topology) const;
+    void adopt_node(Structure& structure, NodeId node, const Topology& topology) const;
+    static void clear_marks(Structure& structure);
     void fill_leaf(Structure& structure, LeafId leaf, const Topology& topology) const;
     void rewrite_leaf(Structure& structure, LeafId leaf) const;
     void write_leaf_layers(Structure& structure, LeafId leaf) const;
@@ -106,13 +117,14 @@ class BoxTree {
     void prefetch_item(ItemId item) const;
     void write_dirty_leaves(Structure& structure, std::span<const LeafId> leaves) const;
     void refresh_node(Structure& structure, NodeId node) const;
-    void finish_nodes(Structure& structure) const;
-    [[nodiscard]] static std::uint32_t items_without_gaps(const Structure& structure, LeafRange range);
+    void finish_node(Structure& structure, NodeId node) const;
+    [[nodiscard]] static std::uint32_t items_without_gaps(const Structure& structure, NodeId node);
     void forget_run(NodeId node);
     void refresh_layers(Structure& structure, NodeId node, unsigned lane) const;
     void refresh_path(NodeId node);
     void refit_leaves();
     void list_dirty_leaves();
+    void forget_marks();
     void refit_node(NodeId node);
     void set_child(NodeId node, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty);
     void mark(std::uint32_t slot);
@@ -127,7 +139,11 @@ class BoxTree {
     void add_child(NodeId parent, std::uint32_t child);
     void link(NodeId parent, unsigned lane, std::uint32_t child);
     NodeId split_node(NodeId node);
-    void take_over();
+    std::size_t work_on(Rebuild& work, std::size_t budget);
+    std::size_t add_items(Rebuild& work, std::size_t budget) const;
+    std::size_t fill_leaves(Rebuild& work, std::size_t budget) const;
+    std::size_t catch_up(Rebuild& work, std::size_t budget);
+    void follow(ItemId item, bool present);
     [[nodiscard]] Result<void> validate(Trust trust) const;
     [[nodiscard]] Result<void> validate_leaves(Trust trust) const;
     [[nodiscard]] bool is_present(ItemId item) const {
