@@ -14,15 +14,20 @@ class CountingMemory {
     CountingMemory& operator=(const CountingMemory&) = delete;
 
     [[nodiscard]] std::size_t allocations() const { return allocations_; }
+    [[nodiscard]] std::size_t bytes_in_use() const { return bytes_in_use_; }
 
   private:
     static void* allocate(void* self, std::size_t bytes, std::size_t alignment) {
         ++static_cast<CountingMemory*>(self)->allocations_;
+        static_cast<CountingMemory*>(self)->bytes_in_use_ += bytes;
         return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
     }
-    static void release(void*, void* memory, std::size_t, std::size_t) { std::free(memory); }
+    static void release(void* self, void* memory, std::size_t bytes, std::size_t) {
+        static_cast<CountingMemory*>(self)->bytes_in_use_ -= bytes;
+        std::free(memory);
+    }
 
-    std::size_t allocations_ = 0;
+    std::size_t allocations_ = 0, bytes_in_use_ = 0;
 };
 
 }  // namespace crofton::testing

@@ -159,7 +159,8 @@ std::size_t Builder::find_crowding(std::size_t budget) {
 
 // Along the curve: those at rest, then those that move.
 std::size_t Builder::gather_items(std::size_t budget, const Movers& movers) {
-    const std::size_t end = std::min(keys_.size(), next_ + budget), spent = end - next_;
+    // From all over memory: worth two of what comes in order.
+    const std::size_t end = std::min(keys_.size(), next_ + (budget + 1) / 2), spent = 2 * (end - next_);
     for (; next_ < end; ++next_) {
         const BuildItem& item = items_[keys_[next_].index];
         (movers.contain(movers.context, item.id()) ? moving_ : sorted_).push_back(item);

@@ -12,7 +12,7 @@ namespace {
 
 // What things cost, in items' worth: adding one to a builder is worth 1.
 constexpr std::size_t kSlotsPerItem = 16;  // cleared
-constexpr std::size_t kNodeLinked = 8, kLeafFilled = 16, kNodeBounded = 32;
+constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
 constexpr std::size_t kItemMoved = 2, kItemPlaced = 64, kWordsPerItem = 16;
 
 std::size_t steps(std::size_t budget, std::size_t cost) {

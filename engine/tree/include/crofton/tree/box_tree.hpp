@@ -53,7 +53,7 @@ class BoxTree {
     void refit();
 
     // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up to
-    // date twice as many items' more as have changed since the call before (a build is worth about 8 per item). Call it
+    // date twice as many items' more as have changed since the call before (a build is worth about 10 per item). Call it
     // once a frame where items move for long. True when a rebuild has just been completed. Items that moved before both
     // of the last two refits are taken for such as move all the time (see BuildOptions). Needs refit() before and leaves
     // nothing to refit.
