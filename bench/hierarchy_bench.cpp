@@ -75,7 +75,7 @@ World scene_world(const std::string& source, std::uint32_t instances, const std:
     enclose(world);
     const auto cameras =
         pipeline::make_camera_path({.kind = path, .frames = 100}, pipeline::focus_of(loaded->scene), loaded->walk);
-    if (cameras) world.views = *cameras;
+    if (cameras) world.views = cameras->cameras;
     return world;
 }
 

@@ -16,7 +16,7 @@ packages=(
     # samples
     libglfw3-dev libimgui-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev
     # tests
-    doctest-dev libgmp-dev xvfb xauth
+    doctest-dev libgmp-dev xvfb xauth xdotool libx11-dev
 )
 test_packages=(chromium)
 engine_packages=(libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)

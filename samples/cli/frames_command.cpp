@@ -31,7 +31,8 @@ using Clock = std::chrono::steady_clock;
 
 struct FramesOptions {
     std::string scene = "town", map, camera = "orbit", size = "1280x720", bounds = "obb-perimeter", cull = "tree";
-    std::uint32_t frames = 120, instances = 0;
+    std::optional<std::uint32_t> frames;  // absent: pipeline::kBuiltInFrames, or all of a recorded path
+    std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
     bool draw = false, no_draw = false, verify = false;
@@ -79,8 +80,9 @@ class FramesRun {
         if (options_.verify) verification.emplace();
         std::vector<FrameStatistics> frames;
         {
-            ProgressBar bar("frames", cameras_.size());
-            for (std::uint32_t index = 0; index < cameras_.size(); ++index) {
+            const auto count = static_cast<std::uint32_t>(path_.cameras.size());
+            ProgressBar bar("frames", count);
+            for (std::uint32_t index = 0; index < count; ++index) {
                 auto frame = run_frame(index);
                 if (!frame)
                     return fail(frame.error().code, frame.error().item,
@@ -117,7 +119,7 @@ class FramesRun {
         const auto mode = pipeline::cull_mode_from(options_.cull);
         if (!mode) return tl::unexpected(mode.error());
         const double aspect = static_cast<double>(size->width) / size->height;
-        if (options_.frames == 0) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
+        if (options_.frames == 0u) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
         if (auto writable = check_writable(options_.output); !writable) return writable;
         if (options_.threads != 1) pool_.emplace(options_.threads);
 
@@ -138,10 +140,10 @@ class FramesRun {
         focus_ = pipeline::focus_of(source_->scene);
         if (source_->walk.empty() && options_.camera == "street")
             source_->walk = pipeline::find_walk(source_->scene, focus_);
-        auto cameras = pipeline::make_camera_path({options_.camera, options_.frames, options_.seed, aspect}, focus_,
-                                                  source_->walk);
-        if (!cameras) return tl::unexpected(cameras.error());
-        cameras_ = std::move(*cameras);
+        auto path = pipeline::make_camera_path({options_.camera, options_.frames.value_or(0), options_.seed, aspect},
+                                               focus_, source_->walk);
+        if (!path) return tl::unexpected(path.error());
+        path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
         auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
         if (!frames) return tl::unexpected(frames.error());
@@ -168,10 +170,10 @@ class FramesRun {
 
     Result<FrameStatistics> run_frame(std::uint32_t index) {
         const auto start = Clock::now();
-        source_->animate(index);
+        source_->animate(path_.scene_frames[index]);
         source_->scene.update(executor());
         const double scene_us = microseconds_since(start);
-        auto frame = pipeline_->run(cameras_[index]);
+        auto frame = pipeline_->run(path_.cameras[index]);
         if (!frame) return frame;
         frame->index = index;
         frame->update_us += scene_us;
@@ -200,7 +202,8 @@ class FramesRun {
     }
 
     Result<void> save_picture(std::uint32_t index) {
-        const std::uint32_t step = std::max<std::uint32_t>(1, options_.frames / kReportPictures);
+        const auto count = static_cast<std::uint32_t>(path_.cameras.size());
+        const std::uint32_t step = std::max<std::uint32_t>(1, count / kReportPictures);
         const bool report = !options_.report.empty() && index % step == 0 && report_pictures_.size() < kReportPictures;
         if (!drawing_ || (options_.output.png.empty() && !report)) return {};
         if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return read;
@@ -232,7 +235,7 @@ class FramesRun {
     std::optional<ThreadPool> pool_;
     std::optional<assets::SceneSource> source_;
     Aabb focus_;
-    std::vector<Camera> cameras_;
+    pipeline::CameraPath path_;
     std::optional<pipeline::Pipeline> pipeline_;
     std::optional<pipeline::DrawList> list_;
     std::unique_ptr<Drawing> drawing_;
@@ -257,7 +260,7 @@ void add_frames_command(CLI::App& app, Outcome& outcome) {
         app.add_subcommand("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
     command->footer(kExamples);
     command->add_option("scene", options->scene, "town, or a .glb, .gltf, .obj or .wad file")->capture_default_str();
-    command->add_option("--frames", options->frames, "How many frames")->capture_default_str();
+    command->add_option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command->add_option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras")
         ->capture_default_str();
     command->add_option("--seed", options->seed, "Seed of the town and of random cameras")->capture_default_str();

@@ -1,5 +1,7 @@
 #include "html_report.hpp"
 
+#include <algorithm>
+
 #include "../pipeline/png.hpp"
 #include "html_chart.hpp"
 
@@ -31,6 +33,7 @@ polyline.s3 { stroke: var(--s3); } polyline.s4 { stroke: var(--s4); }
 .chart i { display: inline-block; width: .9rem; height: .2rem; vertical-align: middle; margin-right: .35rem; }
 li.s0 i { background: var(--s0); } li.s1 i { background: var(--s1); } li.s2 i { background: var(--s2); }
 li.s3 i { background: var(--s3); } li.s4 i { background: var(--s4); }
+@media (max-width: 34rem) { svg text { font-size: 22px; } .tiles b { font-size: 1.15rem; } body { padding: .8rem; } }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 td, th { text-align: right; padding: .2rem .7rem; border-bottom: 1px solid var(--rule); white-space: nowrap; }
 td:first-child, th:first-child { text-align: left; } .bad { color: #d22; } .good { color: var(--s2); }
@@ -119,14 +122,34 @@ std::string charts(std::span<const FrameStatistics> frames) {
     return html + "</div>\n";
 }
 
-std::string pictures(const std::vector<ReportPicture>& list) {
+// Every number of a frame: its least, middle, mean and most.
+std::string numbers(std::span<const FrameStatistics> frames) {
+    std::string html =
+        "<h2>All numbers</h2><div class=\"scroll\"><table id=\"numbers\">\n<tr><th>per frame</th><th>least</th>"
+        "<th>median</th><th>mean</th><th>most</th></tr>\n";
+    for (const pipeline::StatisticsColumn& column : pipeline::statistics_columns()) {
+        const std::string name = column.name;
+        if (name.rfind("gpu_", 0) == 0 && !frames.front().gpu) continue;
+        std::vector<double> values;
+        for (const FrameStatistics& frame : frames) values.push_back(column.value(frame));
+        std::sort(values.begin(), values.end());
+        html += "<tr><td>" + name + "</td><td>" + readable(values.front()) + "</td><td>" +
+                readable(values[values.size() / 2]) + "</td><td>" + readable(mean_of(frames, column.value)) +
+                "</td><td>" + readable(values.back()) + "</td></tr>\n";
+    }
+    return html + "</table></div>\n";
+}
+
+std::string pictures(const std::vector<ReportPicture>& list, std::span<const FrameStatistics> frames) {
     if (list.empty()) return {};
     std::string html = "<h2>Pictures</h2><div class=\"pictures\">\n";
     for (const ReportPicture& picture : list) {
         const std::string name = "frame " + std::to_string(picture.frame);
         html += "<figure><img alt=\"" + name + "\" src=\"data:image/png;base64," +
-                base64(pipeline::encode_png(picture.image)) + "\"><figcaption class=\"quiet\">" + name +
-                "</figcaption></figure>\n";
+                base64(pipeline::encode_png(picture.image)) + "\"><figcaption class=\"quiet\">" + name + ": " +
+                readable(static_cast<double>(frames[picture.frame].visible)) + " visible, " +
+                readable(static_cast<double>(frames[picture.frame].triangles_passed)) +
+                " triangles in view</figcaption></figure>\n";
     }
     return html + "</div>\n";
 }
@@ -146,7 +169,7 @@ std::string html_report(const ReportContents& c) {
            "</title>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" + kStyle +
            "</head><body>\n<h1>" + title + "</h1><p class=\"quiet\">" + readable(static_cast<double>(c.frames.size())) +
            " frames, each culled, collided, drawn and counted.</p>\n" + summary(c) + "<h2>Frame by frame</h2>\n" +
-           charts(c.frames) + pictures(c.pictures) + settings(c) + "</body></html>\n";
+           charts(c.frames) + pictures(c.pictures, c.frames) + numbers(c.frames) + settings(c) + "</body></html>\n";
 }
 
 }  // namespace crofton::cli

@@ -57,10 +57,10 @@ Result<Camera> camera_for(const assets::SceneSource& source, std::uint64_t seed)
         camera.near = 0.05;
         return camera;
     }
-    auto cameras =
+    auto path =
         pipeline::make_camera_path({"orbit", 8, seed, 16.0 / 9.0}, pipeline::focus_of(source.scene), source.walk);
-    if (!cameras) return tl::unexpected(cameras.error());
-    return cameras->front();
+    if (!path) return tl::unexpected(path.error());
+    return path->cameras.front();
 }
 
 Result<void> save_checkpoint(const std::string& path, const radiosity::Solver& solver) {

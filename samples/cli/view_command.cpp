@@ -7,6 +7,7 @@
 #include "pipeline/bounds.hpp"
 #include "pipeline/pipeline.hpp"
 #include "report.hpp"
+#include "viewer/keys.hpp"
 #include "viewer/viewer.hpp"
 
 namespace crofton::cli {
@@ -38,16 +39,16 @@ Result<void> run(ViewArguments arguments) {
     return viewer::run_viewer(options);
 }
 
-constexpr const char* kHelp =
-    "Keys: W A S D Q E fly, right mouse turns, wheel changes speed, Tab orbits, Home frames all, 1-9 go to a "
-    "bookmark,\n"
-    "Ctrl+1-9 set it; F freeze culling, I inset from outside, C next colouring, B bounds, O boxes of what is culled,\n"
-    "T tree level, X wireframe, V number of views, N bounds kind, M culling mode, Y triangulation, L exact or planes "
-    "only, K "
-    "collisions,\n"
-    "G compare two methods, P pause, . step, + - time scale, R record the camera path, F2 screenshot, F5 export, H "
-    "panels,\n"
-    "left mouse picks, a file dropped on the window is opened, Escape quits.\n\n"
+constexpr const char* kScriptHelp =
+    "Script: {\"events\": [{\"frame\": 1, \"key\": \"F\"}, ...]}, frames in order, one action for each event:\n"
+    "  key, key_down, key_up \"W\"       a key by its name above\n"
+    "  set {\"coloring\": \"verdict\"}    switches by name; docs/viewer.md lists them\n"
+    "  camera {\"position\": [0, 2, 9], \"forward\": [0, 0, -1]}\n"
+    "  click [640, 360], resize [800, 600]   in pixels\n"
+    "  drop \"scene.glb\"                a file opened as if dropped on the window\n"
+    "  screenshot \"a.png\"              the picture of this frame, with panels\n"
+    "  lose_device true, quit true\n";
+constexpr const char* kExamples =
     "Examples:\n"
     "  crofton view                                        the town\n"
     "  crofton view level.wad --map MAP07\n"
@@ -62,7 +63,7 @@ void add_view_command(CLI::App& app, Outcome& outcome) {
     viewer::ViewerOptions& options = arguments->options;
     CLI::App* command =
         app.add_subcommand("view", "Fly through a scene and see what is culled, why, and what it costs");
-    command->footer(kHelp);
+    command->footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kExamples);
     command->add_option("SCENE", options.scene.source, "town, or a .glb, .gltf, .obj or .wad file")
         ->capture_default_str();
     command->add_option("--map", options.scene.map, "which level of a WAD");

@@ -140,18 +140,22 @@ Aabb focus_of(const scene::Scene& scene) {
     return focus;
 }
 
-Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const Aabb& bounds,
-                                             std::span<const glm::dvec3> walk) {
+Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds, std::span<const glm::dvec3> walk) {
     const bool built_in = options.kind == "orbit" || options.kind == "street" || options.kind == "random";
     if (!built_in) {
         if (!std::filesystem::exists(options.kind))
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "camera: '" + options.kind + "' is neither orbit, street, random nor a file");
         auto recorded = load_camera_path(options.kind);
-        if (!recorded) return recorded;
-        std::vector<Camera> cameras(options.frames);
-        for (std::size_t i = 0; i < cameras.size(); ++i) cameras[i] = (*recorded)[i % recorded->size()];
-        return cameras;
+        if (!recorded || options.frames == 0) return recorded;
+        const std::size_t length = recorded->cameras.size();
+        recorded->cameras.resize(options.frames);
+        recorded->scene_frames.resize(options.frames);
+        for (std::size_t i = length; i < options.frames; ++i) {
+            recorded->cameras[i] = recorded->cameras[i % length];
+            recorded->scene_frames[i] = static_cast<std::uint32_t>(i);
+        }
+        return recorded;
     }
     if (bounds.is_empty())
         return fail(ErrorCode::empty, kNoItem, "camera: the scene is empty, there is nothing to look at");
@@ -168,17 +172,19 @@ Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const A
         }
     }
     std::mt19937_64 random(options.seed);
-    std::vector<Camera> cameras;
-    for (std::uint32_t i = 0; i < options.frames; ++i) {
-        const double t = static_cast<double>(i) / static_cast<double>(options.frames);
+    const std::uint32_t frames = options.frames > 0 ? options.frames : kBuiltInFrames;
+    CameraPath result;
+    for (std::uint32_t i = 0; i < frames; ++i) {
+        const double t = static_cast<double>(i) / static_cast<double>(frames);
+        result.scene_frames.push_back(i);
         if (options.kind == "orbit")
-            cameras.push_back(orbit(base, frame, t));
+            result.cameras.push_back(orbit(base, frame, t));
         else if (options.kind == "street")
-            cameras.push_back(street(base, path, t));
+            result.cameras.push_back(street(base, path, t));
         else
-            cameras.push_back(random_camera(base, bounds, random));
+            result.cameras.push_back(random_camera(base, bounds, random));
     }
-    return cameras;
+    return result;
 }
 
 json to_json(const Camera& camera) {
@@ -211,7 +217,7 @@ Result<Camera> camera_from_json(const json& entry, std::uint64_t item) {
     return camera;
 }
 
-Result<std::vector<Camera>> load_camera_path(const std::string& path) {
+Result<CameraPath> load_camera_path(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return fail(ErrorCode::io, kNoItem, path + ": cannot open");
     const json document = json::parse(file, nullptr, false);
@@ -224,14 +230,20 @@ Result<std::vector<Camera>> load_camera_path(const std::string& path) {
     if (!list->is_array() || list->empty())
         return fail(ErrorCode::parse, kNoItem,
                     path + ": no cameras; expected an array, {\"cameras\": […]} or the JSON of 'crofton frames'");
-    std::vector<Camera> cameras;
+    CameraPath result;
     for (const json& entry : *list) {
+        const std::size_t number = result.cameras.size();
         const bool wrapped = entry.is_object() && entry.contains("camera");
-        auto camera = camera_from_json(wrapped ? entry["camera"] : entry, cameras.size());
+        auto camera = camera_from_json(wrapped ? entry["camera"] : entry, number);
         if (!camera) return fail(camera.error().code, camera.error().item, path + ": " + camera.error().message);
-        cameras.push_back(*camera);
+        result.cameras.push_back(*camera);
+        result.scene_frames.push_back(static_cast<std::uint32_t>(number));
+        if (!entry.contains("scene_frame")) continue;
+        if (!entry["scene_frame"].is_number_unsigned())
+            return fail(ErrorCode::parse, number, path + ": scene_frame must be a whole number");
+        result.scene_frames.back() = entry["scene_frame"].get<std::uint32_t>();
     }
-    return cameras;
+    return result;
 }
 
 }  // namespace crofton::pipeline

@@ -18,16 +18,23 @@ namespace crofton::pipeline {
 
 struct PathOptions {
     std::string kind = "orbit";  // orbit, street, random, or the path of a JSON file
-    std::uint32_t frames = 120;
+    std::uint32_t frames = 0;    // 0: as many as the file has; kBuiltInFrames of the others
     std::uint64_t seed = 1;
     double aspect = 16.0 / 9.0;
 };
+inline constexpr std::uint32_t kBuiltInFrames = 120;
+
+// A camera for each frame, and what the scene shows then: its movers stand as they do in scene_frames[i].
+struct CameraPath {
+    std::vector<Camera> cameras;
+    std::vector<std::uint32_t> scene_frames;
+};
 
 // `bounds` frames the scene (y up); `walk` is where a pedestrian may go, for `street`, and may be empty: then the path
-// leads along the longer side of the bounds, low above the ground. Errors: an unknown kind, an unreadable or invalid
-// file, empty bounds.
-[[nodiscard]] Result<std::vector<Camera>> make_camera_path(const PathOptions& options, const Aabb& bounds,
-                                                           std::span<const glm::dvec3> walk);
+// leads along the longer side of the bounds, low above the ground. A recording shorter than `frames` starts over.
+// Errors: an unknown kind, an unreadable or invalid file, empty bounds.
+[[nodiscard]] Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds,
+                                                  std::span<const glm::dvec3> walk);
 
 // {position, forward, up, fov_y, aspect, near, far}; far is the string "infinity" where it is infinite.
 [[nodiscard]] nlohmann::json to_json(const Camera& camera);
@@ -35,7 +42,8 @@ struct PathOptions {
 // number as item.
 [[nodiscard]] Result<Camera> camera_from_json(const nlohmann::json& entry, std::uint64_t item);
 
-// A recorded path: an array of cameras, {"cameras": […]}, or the output of `crofton frames --json`.
-[[nodiscard]] Result<std::vector<Camera>> load_camera_path(const std::string& path);
+// A recorded path: an array of cameras, {"cameras": […]}, or the output of `crofton frames --json`. An entry may have
+// "scene_frame"; where it has none, it shows the scene frame of its own number.
+[[nodiscard]] Result<CameraPath> load_camera_path(const std::string& path);
 
 }  // namespace crofton::pipeline

@@ -11,11 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// The numbers of a frame under their names, once, for CSV and means alike.
-struct Column {
-    const char* name;
-    double (*value)(const FrameStatistics&);
-};
+using Column = StatisticsColumn;
 
 #define CROFTON_COLUMN(field)                                                         \
     Column {                                                                          \
@@ -72,6 +68,10 @@ std::string number(double value) {
 }
 
 }  // namespace
+
+std::span<const StatisticsColumn> statistics_columns() {
+    return kColumns;
+}
 
 json to_json(const FrameStatistics& f, bool with_ids) {
     json gpu = nullptr;

@@ -59,6 +59,14 @@ struct Verification {
     }
 };
 
+// The numbers of a frame under the names that CSV and means give them, in that order; GPU counts begin with "gpu_", and
+// are 0 where nothing was drawn.
+struct StatisticsColumn {
+    const char* name;
+    double (*value)(const FrameStatistics&);
+};
+[[nodiscard]] std::span<const StatisticsColumn> statistics_columns();
+
 [[nodiscard]] nlohmann::json to_json(const FrameStatistics& frame, bool with_ids);
 [[nodiscard]] nlohmann::json summary_json(std::span<const FrameStatistics> frames,
                                           const std::optional<Verification>& verification);

@@ -15,6 +15,21 @@ glm::dvec3 direction(double yaw, double pitch) {
     return {std::cos(pitch) * std::sin(yaw), std::sin(pitch), -std::cos(pitch) * std::cos(yaw)};
 }
 
+// From how far before the box's centre, looking at it, all of its corners are just in view.
+double distance_for_all(const Camera& camera, const Aabb& box) {
+    const glm::dmat3 to_view = world_to_view_rotation(camera);
+    const glm::dvec3 half = box.half_extents();
+    const double tangent_y = std::tan(0.5 * camera.fov_y), tangent_x = tangent_y * camera.aspect;
+    double distance = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p =
+            to_view * glm::dvec3((corner & 1) != 0 ? half.x : -half.x, (corner & 2) != 0 ? half.y : -half.y,
+                                 (corner & 4) != 0 ? half.z : -half.z);
+        distance = std::max({distance, p.z + std::fabs(p.x) / tangent_x, p.z + std::fabs(p.y) / tangent_y});
+    }
+    return distance;
+}
+
 }  // namespace
 
 void Eye::look(const Camera& view) {
@@ -28,9 +43,9 @@ void Eye::frame_all(const Aabb& focus, const Aabb& extent) {
     if (focus.is_empty()) return;
     const double radius = std::max(glm::length(focus.half_extents()), 1e-3);
     target_ = focus.center();
-    distance_ = 0.75 * radius / std::sin(0.5 * camera.fov_y);
     camera.forward = glm::normalize(glm::dvec3(-0.6, -0.45, -0.6));
     camera.up = kUp;
+    distance_ = 1.04 * distance_for_all(camera, focus);
     camera.position = target_ - camera.forward * distance_;
     camera.near = std::max(radius * 5e-4, 0.02);
     camera.far = 2.0 * (glm::length(extent.half_extents()) + distance_);

@@ -2,6 +2,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "assets/file.hpp"
@@ -16,8 +18,12 @@ void Session::handle_events() {
     for (const Event& event : window_->take_events()) {
         const bool key = event.kind == Event::Kind::key_down;
         const bool mouse = event.kind == Event::Kind::button_down || event.kind == Event::Kind::scroll;
-        // What the panels want is theirs; letting go is for both.
-        if ((key && io.WantCaptureKeyboard) || (mouse && io.WantCaptureMouse)) continue;
+        // What the panels want is theirs; letting go is for both. ImGui knows the mouse of its last frame only: a
+        // click may come with the motion that led it onto a panel.
+        if (event.kind == Event::Kind::cursor) cursor_ = event.at;
+        if (settings_.panels &&
+            ((key && io.WantCaptureKeyboard) || (mouse && (io.WantCaptureMouse || on_panel(cursor_)))))
+            continue;
         handle(event);
     }
 }
@@ -27,7 +33,10 @@ void Session::handle(const Event& event) {
     if (event.kind == Event::Kind::drop) {
         SceneRequest request;
         request.source = event.text;
-        if (auto loaded = load(request); !loaded) report(loaded.error());
+        if (auto loaded = load(request); !loaded) {
+            report(loaded.error());
+            note("the scene stays: " + stage_->source().name);
+        }
         return;
     }
     if (event.kind == Event::Kind::key_down && handle_key(event.text)) return;
@@ -35,80 +44,92 @@ void Session::handle(const Event& event) {
     eye_.handle(event);
 }
 
+// The switches that a key flips.
+constexpr std::array<std::pair<const char*, bool Settings::*>, 12> kFlips{{{"F", &Settings::freeze},
+                                                                           {"I", &Settings::inset},
+                                                                           {"O", &Settings::outside},
+                                                                           {"B", &Settings::bounds},
+                                                                           {"X", &Settings::wireframe},
+                                                                           {"K", &Settings::collisions},
+                                                                           {"L", &Settings::exact},
+                                                                           {"G", &Settings::compare},
+                                                                           {"P", &Settings::paused},
+                                                                           {"Space", &Settings::paused},
+                                                                           {"H", &Settings::panels},
+                                                                           {"F1", &Settings::help}}};
+
+template <class Enum>
+void next(Enum& value, std::size_t count) {
+    value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % count);
+}
+
 bool Session::handle_key(const std::string& key) {
+    for (const auto& [name, flag] : kFlips)
+        if (key == name) {
+            settings_.*flag = !(settings_.*flag);
+            return true;
+        }
+    return cycle_setting(key) || handle_bookmark(key) || handle_command(key);
+}
+
+bool Session::cycle_setting(const std::string& key) {
     Settings& s = settings_;
-    const auto flip = [](bool& flag) {
-        flag = !flag;
-        return true;
-    };
-    if (key.size() == 1 && key[0] >= '1' && key[0] <= '9') return eye_.recall_bookmark(key[0] - '0') || true;
-    if (key.size() == 6 && key.rfind("Ctrl+", 0) == 0 && key[5] >= '1' && key[5] <= '9') {
-        eye_.store_bookmark(key[5] - '0');
-        return true;
-    }
-    if (key == "F") return flip(s.freeze);
-    if (key == "I") return flip(s.inset);
-    if (key == "O") return flip(s.outside);
-    if (key == "B") return flip(s.bounds);
-    if (key == "X") return flip(s.wireframe);
-    if (key == "K") return flip(s.collisions);
-    if (key == "L") return flip(s.exact);
-    if (key == "G") return flip(s.compare);
-    if (key == "P" || key == "Space") return flip(s.paused);
-    if (key == "H") return flip(s.panels);
-    if (key == ".") return step_ = true;
     if (key == "C") {
-        s.coloring = static_cast<Coloring>((static_cast<std::size_t>(s.coloring) + 1) % std::size(kColoringNames));
-        return true;
-    }
-    if (key == "N") {
-        s.method.bounds = static_cast<pipeline::BoundsKind>((static_cast<int>(s.method.bounds) + 1) % 6);
-        return true;
-    }
-    if (key == "M") {
-        s.method.cull = static_cast<pipeline::CullMode>((static_cast<int>(s.method.cull) + 1) % 3);
-        return true;
-    }
-    if (key == "Y") {
-        Triangulation& t = s.method.triangulation;
-        t = static_cast<Triangulation>((static_cast<std::size_t>(t) + 1) % std::size(kTriangulationNames));
-        return true;
-    }
-    if (key == "T") {
+        next(s.coloring, std::size(kColoringNames));
+    } else if (key == "N") {
+        next(s.method.bounds, 6);
+    } else if (key == "M") {
+        next(s.method.cull, 3);
+    } else if (key == "Y") {
+        next(s.method.triangulation, std::size(kTriangulationNames));
+    } else if (key == "T") {
         const int height = static_cast<int>(stage_->pipeline().tree().height());
         s.tree_level = s.tree_level + 1 >= height ? -1 : s.tree_level + 1;
-        return true;
-    }
-    if (key == "V") {
+    } else if (key == "V") {
         s.cascades = s.cascades % 8 + 1;
-        return true;
-    }
-    if (key == "-" || key == "+") {
+    } else if (key == "-" || key == "+") {
         s.time_scale = std::clamp(s.time_scale * (key == "+" ? 2.0 : 0.5), 1.0 / 64.0, 64.0);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool Session::handle_bookmark(const std::string& key) {
+    const char last = key.empty() ? '0' : key.back();
+    if (last < '1' || last > '9') return false;
+    if (key == std::string("Ctrl+") + last) {
+        eye_.store_bookmark(last - '0');
+        note("bookmark " + std::string(1, last) + " set");
         return true;
     }
+    if (key.size() != 1) return false;
+    if (!eye_.recall_bookmark(last - '0')) note("bookmark " + key + " is not set: Ctrl+" + key + " sets it");
+    return true;
+}
+
+bool Session::handle_command(const std::string& key) {
     if (key == "Tab") {
         eye_.mode = eye_.mode == EyeMode::fly ? EyeMode::orbit : EyeMode::fly;
-        return true;
-    }
-    if (key == "Home") {
+    } else if (key == "Home") {
         eye_.frame_all(stage_->focus(), stage_->extent());
-        return true;
-    }
-    if (key == "R") {
+    } else if (key == ".") {
+        step_ = true;
+    } else if (key == "R") {
         toggle_recording();
-        return true;
-    }
-    if (key == "F5") {
+    } else if (key == "F6") {
+        toggle_replay();
+    } else if (key == "F5") {
         export_files();
-        return true;
-    }
-    if (key == "F2") {
+    } else if (key == "F2") {
         screenshots_.push_back(options_.output_folder + "/crofton_" + std::to_string(frame_index_) + ".png");
-        return true;
+        note("saving " + screenshots_.back());
+    } else if (key == "Ctrl+Q" || key == "Escape") {
+        quit_ = true;
+    } else {
+        return false;
     }
-    if (key == "Ctrl+Q" || key == "Escape") return quit_ = true;
-    return false;
+    return true;
 }
 
 void Session::run_script() {
@@ -161,15 +182,19 @@ void Session::click(const glm::dvec2& pixel) {
 void Session::toggle_recording() {
     is_recording_ = !is_recording_;
     if (is_recording_) {
-        recording_.clear();
-        return;
+        recording_ = {};
+        return note("recording the camera's path: R stops and saves it");
     }
     nlohmann::json cameras = nlohmann::json::array();
-    for (const Camera& camera : recording_) cameras.push_back(pipeline::to_json(camera));
+    for (std::size_t i = 0; i < recording_.cameras.size(); ++i) {
+        cameras.push_back(pipeline::to_json(recording_.cameras[i]));
+        cameras.back()["scene_frame"] = recording_.scene_frames[i];
+    }
     const std::string file = options_.output_folder + "/camera_path.json";
     const auto written = assets::write_file(file, nlohmann::json{{"cameras", std::move(cameras)}}.dump(1) + "\n");
     if (!written) return report(written.error());
-    replay_ = recording_;
+    note("saved " + file + ": " + std::to_string(recording_.cameras.size()) + " cameras");
+    path_ = recording_;
 }
 
 void Session::export_files() {
@@ -178,13 +203,26 @@ void Session::export_files() {
          {std::pair<std::string, std::string>{base + ".json", journal_.json().dump(1) + "\n"},
           {base + ".csv", journal_.csv()},
           {base + "_trace.json", journal_.chrome_trace()}})
-        if (auto written = assets::write_file(file, text); !written) report(written.error());
+        if (auto written = assets::write_file(file, text); !written) return report(written.error());
+    note("saved " + base + ".json, .csv and _trace.json");
+}
+
+void Session::toggle_replay() {
+    if (path_.cameras.empty()) return note("nothing to replay: R records a path, --camera FILE loads one");
+    replaying_ = !replaying_;
+    replayed_ = 0;
+}
+
+bool Session::on_panel(const glm::dvec2& at) const {
+    return std::any_of(wish_.covered.begin(), wish_.covered.end(), [&](const PanelWish::Area& area) {
+        return at.x >= area.left && at.x < area.right && at.y >= area.top && at.y < area.bottom;
+    });
 }
 
 void Session::grant(const PanelWish& wish) {
     if (wish.frame_all) eye_.frame_all(stage_->focus(), stage_->extent());
     if (wish.record) toggle_recording();
-    if (wish.replay) replaying_ = !replaying_ && !replay_.empty();
+    if (wish.replay) toggle_replay();
     if (wish.export_files) export_files();
     if (wish.screenshot) handle_key("F2");
     if (wish.step) step_ = true;

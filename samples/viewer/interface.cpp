@@ -2,6 +2,8 @@
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>
 
+#include <utility>
+
 #include "assets/file.hpp"
 #include "session.hpp"
 
@@ -14,12 +16,18 @@ Result<void> Session::build_interface() {
     if (!settings_.panels) return {};
     const auto start = Clock::now();
     ImGuiIO& io = ImGui::GetIO();
+    io.DeltaTime = 1.0f / 60.0f;
+    const glm::uvec2 size(rasterizer_->width(), rasterizer_->height());
+    const ImVec2 pixels(static_cast<float>(size.x), static_cast<float>(size.y));
     if (imgui_window_) {
         ImGui_ImplGlfw_NewFrame();
-    } else {
-        io.DisplaySize = ImVec2(static_cast<float>(rasterizer_->width()), static_cast<float>(rasterizer_->height()));
-        io.DeltaTime = 1.0f / 60.0f;
+        // The window system may speak in larger units than pixels; panels are laid out in pixels.
+        if (io.DisplaySize.x > 0.0f && io.DisplaySize.y > 0.0f && io.MousePos.x > -1e6f)
+            io.MousePos =
+                ImVec2(io.MousePos.x * pixels.x / io.DisplaySize.x, io.MousePos.y * pixels.y / io.DisplaySize.y);
+        io.DisplayFramebufferScale = ImVec2(1.0f, 1.0f);
     }
+    io.DisplaySize = pixels;
     ImGui::NewFrame();
     const render::ImageResource* inset = settings_.inset ? rasterizer_->native_image(1) : nullptr;
     const ImTextureID shown = inset != nullptr ? ui_->show(inset->view) : nullptr;
@@ -27,9 +35,26 @@ Result<void> Session::build_interface() {
         inset != nullptr ? ImVec2(static_cast<float>(rasterizer_->width(1)), static_cast<float>(rasterizer_->height(1)))
                          : ImVec2(0.0f, 0.0f);
     const pipeline::FrameStatistics* drawn = journal_.entries().empty() ? nullptr : &journal_.entries().back().frame;
-    wish_ = draw_panels({settings_, eye_, *stage_, nodes_, frame_, drawn, other_ ? &other_frame_ : nullptr, journal_,
-                         painter_, overlay_, cascades_, pick_, selected_, shown, inset_size, device_->name(),
-                         is_recording_, replaying_});
+    wish_ = draw_panels({settings_,
+                         eye_,
+                         *stage_,
+                         nodes_,
+                         frame_,
+                         drawn,
+                         other_ ? &other_frame_ : nullptr,
+                         journal_,
+                         painter_,
+                         overlay_,
+                         cascades_,
+                         pick_,
+                         selected_,
+                         shown,
+                         inset_size,
+                         device_->name(),
+                         is_recording_,
+                         replaying_,
+                         notices_,
+                         std::exchange(laid_out_, size) != size});
     ImGui::Render();
     if (auto begun = ui_commands_.begin(); !begun) return begun;
     if (auto recorded = ui_->record(ui_commands_.handle, *ImGui::GetDrawData()); !recorded) return recorded;

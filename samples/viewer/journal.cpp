@@ -18,11 +18,24 @@ std::vector<float> Journal::history(double (*value)(const JournalEntry&)) const 
     return result;
 }
 
-double Journal::mean(double (*value)(const JournalEntry&), std::size_t last) const {
-    const std::size_t count = std::min(entries_.size(), last);
+namespace {
+
+template <class Value>
+double mean_of_last(const std::vector<JournalEntry>& entries, std::size_t last, Value value) {
+    const std::size_t count = std::min(entries.size(), last);
     double sum = 0.0;
-    for (std::size_t i = entries_.size() - count; i < entries_.size(); ++i) sum += value(entries_[i]);
+    for (std::size_t i = entries.size() - count; i < entries.size(); ++i) sum += value(entries[i]);
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+}  // namespace
+
+double Journal::mean(double (*value)(const JournalEntry&), std::size_t last) const {
+    return mean_of_last(entries_, last, value);
+}
+
+double Journal::mean_of_frames(double (*value)(const pipeline::FrameStatistics&), std::size_t last) const {
+    return mean_of_last(entries_, last, [value](const JournalEntry& entry) { return value(entry.frame); });
 }
 
 std::array<float, 20> Journal::frame_time_histogram() const {
@@ -39,6 +52,7 @@ nlohmann::json Journal::json() const {
         nlohmann::json row = pipeline::to_json(entry.frame, false);
         row["frame_us"] = entry.frame_us;
         row["ui_us"] = entry.ui_us;
+        row["scene_frame"] = entry.scene_frame;
         frames.push_back(std::move(row));
         plain.push_back(entry.frame);
     }

@@ -13,6 +13,7 @@ struct JournalEntry {
     pipeline::FrameStatistics frame;  // without ids
     double frame_us = 0.0;            // the whole turn, drawing included
     double ui_us = 0.0;               // building and recording the user interface
+    std::uint32_t scene_frame = 0;    // where the movers were: what to replay this frame with
 };
 
 class Journal {
@@ -25,6 +26,7 @@ class Journal {
     // The last kHistory values of one quantity, oldest first, for a plot.
     [[nodiscard]] std::vector<float> history(double (*value)(const JournalEntry&)) const;
     [[nodiscard]] double mean(double (*value)(const JournalEntry&), std::size_t last) const;
+    [[nodiscard]] double mean_of_frames(double (*value)(const pipeline::FrameStatistics&), std::size_t last) const;
     // How many of the last kHistory frames took 0–5, 5–10, … ms; the last bin holds all beyond.
     [[nodiscard]] std::array<float, 20> frame_time_histogram() const;
 

@@ -4,6 +4,7 @@
 
 #include <crofton/geometry/clip_space.hpp>
 #include <crofton/render/vertex.hpp>
+#include <filesystem>
 
 #include "pipeline/camera_path.hpp"
 #include "pipeline/walk.hpp"
@@ -122,7 +123,7 @@ Result<void> Session::load(const SceneRequest& request) {
         const std::vector<glm::dvec3>& walk = stage_->source().walk;
         if (walk.size() > 1) eye_.stand(walk[0], walk[1]);
         culling_camera_ = eye_.camera;
-        if (window_) window_->set_title("Crofton: " + stage_->source().name);
+        if (window_) window_->set_title("Crofton: " + stage_->source().name + " (F1: help)");
     }
     std::vector<std::uint8_t> is_mover(stage_->scene().instance_count(), 0);
     for (const scene::InstanceId mover : stage_->source().movers) is_mover[mover] = 1;
@@ -140,8 +141,12 @@ Result<void> Session::upload_geometry() {
 }
 
 Result<void> Session::follow_settings() {
+    // A file may have gone or changed since: what is on stage stays, with the method that it has.
     if (stage_->needs_reload(settings_.method)) {
-        if (auto loaded = load(request_); !loaded) return loaded;
+        if (auto loaded = load(request_); !loaded) {
+            report(loaded.error());
+            settings_.method = stage_->method();
+        }
     } else if (auto configured = stage_->configure(settings_.method, settings_); !configured) {
         return configured;
     }
@@ -149,8 +154,12 @@ Result<void> Session::follow_settings() {
         other_.reset();
     } else if (!other_ || other_->needs_reload(settings_.other)) {
         auto other = Stage::load(request_, settings_.other, settings_);
-        if (!other) return tl::unexpected(std::move(other.error()));
-        other_ = std::move(*other);
+        if (other) {
+            other_ = std::move(*other);
+        } else {
+            report(other.error());
+            settings_.compare = false;
+        }
     } else if (auto configured = other_->configure(settings_.other, settings_); !configured) {
         return configured;
     }
@@ -162,13 +171,14 @@ Result<void> Session::load_replay() {
     if (options_.camera.empty()) return {};
     pipeline::PathOptions path;
     path.kind = options_.camera;
-    path.frames = options_.frames > 0 ? options_.frames : 600;
+    const bool built_in = !std::filesystem::exists(path.kind);
+    path.frames = options_.frames > 0 ? options_.frames : built_in ? 600 : 0;
     path.aspect = static_cast<double>(options_.width) / options_.height;
     std::vector<glm::dvec3> walk = stage_->source().walk;
     if (walk.empty() && path.kind == "street") walk = pipeline::find_walk(stage_->scene(), stage_->focus());
-    auto cameras = pipeline::make_camera_path(path, stage_->focus(), walk);
-    if (!cameras) return tl::unexpected(std::move(cameras.error()));
-    replay_ = std::move(*cameras);
+    auto made = pipeline::make_camera_path(path, stage_->focus(), walk);
+    if (!made) return tl::unexpected(std::move(made.error()));
+    path_ = std::move(*made);
     replaying_ = true;
     return {};
 }

@@ -66,8 +66,13 @@ void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage
 }
 
 void Overlay::draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const {
+    if (tree.nodes().empty()) return;
+    Aabb all;
+    for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) all.include(tree.child_bounds(0, lane));
+    if (level == 0 && !all.is_empty()) lines.box(obb_of(all), kTree);
+    if (level == 0) return;
     std::vector<tree::NodeId> nodes{0}, next;
-    for (int depth = 0; depth < level && !nodes.empty(); ++depth) {
+    for (int depth = 1; depth < level && !nodes.empty(); ++depth) {
         next.clear();
         for (const tree::NodeId node : nodes)
             for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane)

@@ -27,6 +27,7 @@ class Overlay {
     [[nodiscard]] std::uint64_t separation_count() const { return separations_; }
 
   private:
+    // The root is level 0.
     void draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const;
     void draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
     void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);

@@ -3,7 +3,9 @@
 #include <imgui.h>
 
 #include <crofton/scene/scene.hpp>
+#include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "eye.hpp"
@@ -29,6 +31,13 @@ class NodeTree {
     std::vector<scene::InstanceId> instances_;
 };
 
+// A message in the window, until the session is so many seconds old.
+struct Notice {
+    std::string text;
+    bool bad = false;
+    double until = 0.0;
+};
+
 // What the panels show, and what they may change.
 struct PanelInput {
     Settings& settings;
@@ -48,15 +57,22 @@ struct PanelInput {
     ImVec2 inset_size;
     const std::string& device;
     bool recording, replaying;
+    const std::deque<Notice>& notices;
+    bool relayout;  // the window has another size: every panel goes back to its place
 };
 
-// What the user asked for with a button.
+// What the user asked for with a button, and where the panels lie.
 struct PanelWish {
+    struct Area {
+        float left, top, right, bottom;
+    };
+    std::vector<Area> covered;
     bool frame_all = false, record = false, replay = false, export_files = false, screenshot = false, step = false;
     std::optional<scene::InstanceId> select;
 };
 
 void apply_style(float scale);
+[[nodiscard]] float main_panel_width();
 [[nodiscard]] PanelWish draw_panels(const PanelInput& input);
 
 }  // namespace crofton::viewer

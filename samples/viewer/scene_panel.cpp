@@ -61,17 +61,19 @@ void show_selection(const PanelInput& input) {
     }
     const scene::MeshId mesh = scene.mesh_of(instance);
     const Obb& box = scene.world_boxes()[instance];
-    ImGui::Text("instance %u, node %u, mesh %u %s", instance, scene.node_of(instance), mesh,
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("instance %u of node %u, mesh %u %s", instance, scene.node_of(instance), mesh,
                 scene.mesh_name(mesh).c_str());
-    ImGui::Text("%zu triangles, %s", scene.mesh(mesh).triangle_count(),
+    ImGui::Text("%zu triangles, bound %s", scene.mesh(mesh).triangle_count(),
                 verdict_name(input.stage.pipeline().verdicts()[instance]));
-    ImGui::Text("centre %.2f %.2f %.2f m", box.center.x, box.center.y, box.center.z);
     const glm::vec3 edge = 2.0f * box.half_extents;
-    ImGui::Text("box %.2f x %.2f x %.2f m, V %.3g F %.3g E %.3g", static_cast<double>(edge.x),
-                static_cast<double>(edge.y), static_cast<double>(edge.z), volume(box), surface_area(box),
+    ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m at %.2f %.2f %.2f m", static_cast<double>(edge.x),
+                static_cast<double>(edge.y), static_cast<double>(edge.z), box.center.x, box.center.y, box.center.z);
+    ImGui::Text("volume %.3g m\u00b3, surface %.3g m\u00b2, edges a+b+c %.3g m", volume(box), surface_area(box),
                 edge_sum(box));
     if (input.pick && input.pick->instance == instance)
-        ImGui::Text("triangle %u, %.2f m away", input.pick->triangle, input.pick->distance);
+        ImGui::Text("picked: triangle %u, %.2f m away", input.pick->triangle, input.pick->distance);
+    ImGui::PopTextWrapPos();
 }
 
 }  // namespace
@@ -109,17 +111,21 @@ std::span<const scene::InstanceId> NodeTree::instances(scene::NodeId node) const
 
 void scene_panel(const PanelInput& input, PanelWish& wish) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float font = ImGui::GetFontSize(), width = std::min(26.0f * font, 0.5f * display.x);
-    ImGui::SetNextWindowPos(ImVec2(display.x - width - 8.0f, 8.0f), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(width, 14.0f * font), ImGuiCond_FirstUseEver);
+    const ImGuiCond when = input.relayout ? ImGuiCond_Always : ImGuiCond_FirstUseEver;
+    const float font = ImGui::GetFontSize(), free = display.x - main_panel_width() - 24.0f;
+    const float width = std::min(26.0f * font, std::max(free, 8.0f * font));
+    ImGui::SetNextWindowPos(ImVec2(display.x - width - 8.0f, 8.0f), when);
+    ImGui::SetNextWindowSize(ImVec2(width, std::min(18.0f * font, 0.45f * display.y)), when);
     if (ImGui::Begin("Scene")) {
-        ImGui::Text("%zu nodes, %zu instances, %" PRIu64 " triangles", input.stage.scene().node_count(),
-                    input.stage.scene().instance_count(), input.stage.triangle_count());
+        ImGui::TextWrapped("%zu nodes, %zu instances, %" PRIu64 " triangles", input.stage.scene().node_count(),
+                           input.stage.scene().instance_count(), input.stage.triangle_count());
         show_selection(input);
         ImGui::Separator();
         if (ImGui::BeginChild("nodes")) show_children(input, wish, scene::kNone, 0);
         ImGui::EndChild();
     }
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    wish.covered.push_back({at.x, at.y, at.x + size.x, at.y + size.y});
     ImGui::End();
 }
 

@@ -23,7 +23,7 @@ struct Action {
 //  {"frame": 6, "screenshot": "a.png"}, {"frame": 7, "click": [640, 360]}, {"frame": 8, "resize": [800, 600]},
 //  {"frame": 9, "drop": "scene.glb"}, {"frame": 10, "key_down": "W"}, {"frame": 20, "key_up": "W"}, {"frame": 30,
 //  "quit": true}]} and {"frame": 12, "lose_device": true}, which goes on as after a lost Vulkan device.
-// Frames never decrease. Errors name the event by its number.
+// Frames never decrease. Errors name the line and the event by its number.
 [[nodiscard]] Result<std::vector<Action>> parse_script(const std::string& text);
 [[nodiscard]] Result<std::vector<Action>> load_script(const std::string& path);
 

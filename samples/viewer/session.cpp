@@ -19,6 +19,8 @@ namespace {
 constexpr VkExtent2D kInsetSize{400, 225};
 // A driver that loses its device again and again is given up on.
 constexpr int kMaxRecoveries = 5;
+// How long a message stays.
+constexpr double kErrorSeconds = 12.0, kNoteSeconds = 4.0;
 
 double microseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
@@ -59,14 +61,13 @@ Result<void> Session::turn() {
 }
 
 Result<void> Session::try_turn() {
-    const auto start = Clock::now();
     if (window_) {
         window_->wait_while_minimised();
         window_->poll();
     }
+    const auto start = Clock::now();
     // Unattended runs must not depend on the machine's speed.
-    const bool unattended = options_.frames > 0 || !options_.script.empty();
-    const double seconds = unattended ? 1.0 / 60.0 : std::min(microseconds_since(last_turn_) * 1e-6, 0.25);
+    const double seconds = unattended() ? 1.0 / 60.0 : std::min(microseconds_since(last_turn_) * 1e-6, 0.25);
     last_turn_ = start;
     handle_events();
     run_script();
@@ -88,9 +89,9 @@ Result<void> Session::try_turn() {
         if (auto shown = window_->present(rasterizer_->native_image()->handle, size); !shown) return shown;
     }
     frame_.index = frame_index_++;
-    journal_.add({frame_, microseconds_since(start), ui_us_});
+    journal_.add({frame_, microseconds_since(start), ui_us_, static_cast<std::uint32_t>(scene_time_)});
     // Presenting does not pace on every device: no more than 60 pictures a second.
-    if (window_ && !unattended) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
+    if (window_ && !unattended()) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
     return {};
 }
 
@@ -108,14 +109,22 @@ Result<void> Session::resize() {
 }
 
 void Session::advance(double seconds) {
-    if (replaying_ && !replay_.empty()) eye_.look(replay_[frame_index_ % replay_.size()]);
-    eye_.advance(seconds);
-    if (is_recording_) recording_.push_back(eye_.camera);
-    if (!settings_.freeze) culling_camera_ = eye_.camera;
+    seconds_ += seconds;
+    while (!notices_.empty() && (notices_.size() > 8 || notices_.front().until <= seconds_)) notices_.pop_front();
     if (!settings_.paused) scene_time_ += seconds * 60.0 * settings_.time_scale;
-    if (step_) scene_time_ += 1.0;
-    step_ = false;
+    if (std::exchange(step_, false)) scene_time_ += 1.0;
+    if (replaying_ && !path_.cameras.empty()) {
+        const std::size_t now = replayed_++ % path_.cameras.size();
+        eye_.look(path_.cameras[now]);
+        if (!settings_.paused) scene_time_ = path_.scene_frames[now];
+    }
+    eye_.advance(seconds);
+    if (!settings_.freeze) culling_camera_ = eye_.camera;
     const auto scene_frame = static_cast<std::uint32_t>(scene_time_);
+    if (is_recording_) {
+        recording_.cameras.push_back(eye_.camera);
+        recording_.scene_frames.push_back(scene_frame);
+    }
     stage_->animate(scene_frame);
     if (other_) other_->animate(scene_frame);
 }
@@ -192,7 +201,11 @@ Result<void> Session::save_screenshots() {
     if (screenshots_.empty()) return {};
     if (auto read = rasterizer_->read_pixels(image_); !read) return read;
     for (const std::string& file : screenshots_) {
-        if (auto written = assets::write_file(file, pipeline::encode_png(image_)); !written) return written;
+        if (auto written = assets::write_file(file, pipeline::encode_png(image_)); !written) {
+            if (unattended()) return written;
+            report(written.error());
+            continue;
+        }
         nlohmann::json tints = nlohmann::json::array();
         for (const Painter::Count& tint : painter_.counts())
             tints.push_back({{"name", tint.name}, {"instances", tint.instances}});
@@ -205,7 +218,10 @@ Result<void> Session::save_screenshots() {
                              {"scene", stage_->source().name},
                              {"settings", to_json(settings_)},
                              {"statistics", pipeline::to_json(frame_, false)},
+                             {"scene_frame", static_cast<std::uint32_t>(scene_time_)},
                              {"eye", pipeline::to_json(eye_.camera)},
+                             {"speed", eye_.speed},
+                             {"orbit", eye_.mode == EyeMode::orbit},
                              {"tints", std::move(tints)},
                              {"views", std::move(views)},
                              {"contacts", overlay_.contact_count()},
@@ -213,13 +229,20 @@ Result<void> Session::save_screenshots() {
                              {"lines", lines_.vertices().size() / 2}});
         if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
         if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;
+        pictures_.back()["messages"] = nlohmann::json::array();
+        for (const Notice& notice : notices_) pictures_.back()["messages"].push_back(notice.text);
     }
     screenshots_.clear();
     return {};
 }
 
-void Session::report(const Error& error) const {
+void Session::report(const Error& error) {
     std::fprintf(stderr, "crofton: %s\n", error.message.c_str());
+    notices_.push_back({error.message, true, seconds_ + kErrorSeconds});
+}
+
+void Session::note(const std::string& text) {
+    notices_.push_back({text, false, seconds_ + kNoteSeconds});
 }
 
 }  // namespace crofton::viewer

@@ -11,6 +11,7 @@
 #include "overlay.hpp"
 #include "painter.hpp"
 #include "panels.hpp"
+#include "pipeline/camera_path.hpp"
 #include "script.hpp"
 #include "ui_renderer.hpp"
 #include "viewer.hpp"
@@ -49,14 +50,20 @@ class Session {
     void handle_events();
     void handle(const Event& event);
     bool handle_key(const std::string& key);
+    bool cycle_setting(const std::string& key);
+    bool handle_bookmark(const std::string& key);
+    bool handle_command(const std::string& key);
+    [[nodiscard]] bool on_panel(const glm::dvec2& at) const;
     void run_script();
     void perform(const Action& action);
     void click(const glm::dvec2& pixel);
     void toggle_recording();
+    void toggle_replay();
     void export_files();
     void grant(const PanelWish& wish);
 
     // One turn (session.cpp)
+    [[nodiscard]] bool unattended() const { return options_.frames > 0 || !options_.script.empty(); }
     [[nodiscard]] Result<void> try_turn();
     [[nodiscard]] Result<void> resize();
     void advance(double seconds);
@@ -67,7 +74,10 @@ class Session {
     [[nodiscard]] Result<void> build_interface();
     [[nodiscard]] Result<void> draw_interface();
     [[nodiscard]] Result<void> save_screenshots();
-    void report(const Error& error) const;
+    // To stderr and into the window.
+    void report(const Error& error);
+    // Into the window.
+    void note(const std::string& text);
 
     ViewerOptions options_;
     Settings settings_;
@@ -96,17 +106,21 @@ class Session {
     scene::InstanceId selected_ = scene::kNone;
 
     std::deque<Action> script_;
-    std::vector<Camera> replay_, recording_;
+    pipeline::CameraPath path_, recording_;  // to be replayed, being recorded
+    std::size_t replayed_ = 0;
     bool replaying_ = false, is_recording_ = false, quit_ = false, step_ = false, stale_size_ = true;
     bool lose_device_ = false;
     int recoveries_ = 0;
     std::vector<std::string> lost_messages_;  // validation's, of devices that are gone
     std::uint32_t frame_index_ = 0, exports_ = 0;
     double scene_time_ = 0.0;  // in frames of 1/60 s
+    double seconds_ = 0.0;     // that the session has run
+    std::deque<Notice> notices_;
     VkExtent2D wanted_size_{};
     Clock::time_point last_turn_ = Clock::now(), draw_start_;
     double ui_us_ = 0.0;
     PanelWish wish_;
+    glm::uvec2 laid_out_{0};  // the picture's size that the panels lie in
     glm::dvec2 cursor_{0.0};
     std::vector<std::string> screenshots_;  // to be taken this turn
     nlohmann::json pictures_ = nlohmann::json::array();

@@ -7,7 +7,7 @@
 namespace crofton::viewer {
 namespace {
 
-constexpr std::array<std::pair<const char*, bool Settings::*>, 10> kFlags{{{"compare", &Settings::compare},
+constexpr std::array<std::pair<const char*, bool Settings::*>, 13> kFlags{{{"compare", &Settings::compare},
                                                                            {"exact", &Settings::exact},
                                                                            {"collisions", &Settings::collisions},
                                                                            {"freeze", &Settings::freeze},
@@ -16,6 +16,9 @@ constexpr std::array<std::pair<const char*, bool Settings::*>, 10> kFlags{{{"com
                                                                            {"bounds", &Settings::bounds},
                                                                            {"wireframe", &Settings::wireframe},
                                                                            {"panels", &Settings::panels},
+                                                                           {"help", &Settings::help},
+                                                                           {"more", &Settings::more},
+                                                                           {"history", &Settings::history},
                                                                            {"paused", &Settings::paused}}};
 
 tl::unexpected<Error> bad_value(const std::string& name, const char* wanted) {

@@ -47,6 +47,8 @@ struct Settings {
     bool wireframe = false;
     int cascades = 1;  // views: the camera's depth range split into so many
     bool panels = true;
+    bool help = false;                   // the list of keys
+    bool more = false, history = false;  // the panel's lower parts, unfolded
     bool paused = false;
     double time_scale = 1.0;
 };

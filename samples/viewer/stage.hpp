@@ -22,6 +22,7 @@ class Stage {
     // Loads the scene, fits its boxes and cuts its triangles as the method asks. Errors: as assets::load_scene.
     [[nodiscard]] static Result<std::unique_ptr<Stage>> load(const SceneRequest& request, const Method& method,
                                                              const Settings& settings);
+    [[nodiscard]] const Method& method() const { return method_; }
     // True where `method` needs other boxes or triangles than the scene was loaded with: then load() anew.
     [[nodiscard]] bool needs_reload(const Method& method) const;
     // Takes over switches that need no reload; rebuilds the tree only where one changed.

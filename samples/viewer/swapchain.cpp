@@ -39,7 +39,10 @@ Result<void> Window::attach(const render::VulkanContext& context) {
     VkBool32 supported = VK_FALSE;
     vkGetPhysicalDeviceSurfaceSupportKHR(context.physical_device, context.queue_family, surface_, &supported);
     if (supported != VK_TRUE)
-        return fail(ErrorCode::unsupported, kNoItem, context.name + ": the device cannot show pictures in this window");
+        return fail(ErrorCode::unsupported, kNoItem,
+                    context.name +
+                        ": the device cannot show pictures in this window; --device NAME takes another, --no-window "
+                        "needs none");
     const auto& vk = context.vk;
     VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     commands.commandPool = context.command_pool;

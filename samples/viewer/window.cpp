@@ -17,7 +17,7 @@ std::string glfw_reason() {
 }
 
 std::string key_name(int key, int modifiers) {
-    static constexpr std::array<std::pair<int, const char*>, 16> kNamed{{{GLFW_KEY_SPACE, "Space"},
+    static constexpr std::array<std::pair<int, const char*>, 19> kNamed{{{GLFW_KEY_SPACE, "Space"},
                                                                          {GLFW_KEY_ESCAPE, "Escape"},
                                                                          {GLFW_KEY_ENTER, "Enter"},
                                                                          {GLFW_KEY_TAB, "Tab"},
@@ -30,7 +30,10 @@ std::string key_name(int key, int modifiers) {
                                                                          {GLFW_KEY_COMMA, ","},
                                                                          {GLFW_KEY_MINUS, "-"},
                                                                          {GLFW_KEY_EQUAL, "+"},
+                                                                         {GLFW_KEY_KP_SUBTRACT, "-"},
+                                                                         {GLFW_KEY_KP_ADD, "+"},
                                                                          {GLFW_KEY_LEFT_SHIFT, "Shift"},
+                                                                         {GLFW_KEY_RIGHT_SHIFT, "Shift"},
                                                                          {GLFW_KEY_PAGE_UP, "PageUp"},
                                                                          {GLFW_KEY_PAGE_DOWN, "PageDown"}}};
     std::string name;

@@ -38,9 +38,10 @@ TEST_SUITE("pipeline/camera_path") {
                 const PathOptions options{.kind = kind, .frames = 37, .seed = 3};
                 const auto path = make_camera_path(options, bounds, {});
                 REQUIRE(path.has_value());
-                CHECK(path->size() == 37);
-                for (const Camera& camera : *path) CHECK(validate(camera).has_value());
-                CHECK(make_camera_path(options, bounds, {})->back().position == path->back().position);
+                CHECK(path->cameras.size() == 37);
+                CHECK(path->scene_frames.back() == 36);
+                for (const Camera& camera : path->cameras) CHECK(validate(camera).has_value());
+                CHECK(make_camera_path(options, bounds, {})->cameras.back().position == path->cameras.back().position);
             }
     }
 }

@@ -254,6 +254,19 @@ TEST_SUITE("viewer/eye") {
         const glm::dvec3 to_center = box.center() - eye.camera.position;
         CHECK(glm::length(glm::cross(glm::normalize(to_center), eye.camera.forward)) < 1e-12);
         CHECK(eye.camera.far > glm::length(to_center));
+        // All corners are in view, and one of them is near its edge.
+        double widest = 0.0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                               (corner & 4) != 0 ? box.max.z : box.min.z);
+            const glm::dvec3 view = world_to_view_rotation(eye.camera) * (p - eye.camera.position);
+            const double tangent = std::tan(0.5 * eye.camera.fov_y);
+            REQUIRE(view.z < 0.0);
+            widest = std::max({widest, std::fabs(view.y / view.z) / tangent,
+                               std::fabs(view.x / view.z) / (tangent * eye.camera.aspect)});
+        }
+        CHECK(widest < 1.0);
+        CHECK(widest > 0.9);
         const glm::dvec3 before = eye.camera.position;
         eye.handle({Event::Kind::key_down, "W", 0, {}});
         eye.advance(0.5);

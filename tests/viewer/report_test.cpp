@@ -6,6 +6,7 @@
 
 #include "../cli/run_cli.hpp"
 #include "cli/html_chart.hpp"
+#include "pipeline/frame_statistics.hpp"
 
 using namespace crofton::test;
 
@@ -41,6 +42,11 @@ TEST_SUITE("cli/html_report") {
         CHECK(page.find("0 mismatches") != std::string::npos);
         CHECK(count_of(page, "http://") + count_of(page, "https://") + count_of(page, "<script") == 0);
         CHECK(page.find("nan") == std::string::npos);
+        // Every number of the CSV has a row.
+        for (const auto& column : crofton::pipeline::statistics_columns())
+            if (std::string(column.name).rfind("gpu_", 0) != 0)
+                CHECK_MESSAGE(page.find("<tr><td>" + std::string(column.name) + "</td>") != std::string::npos,
+                              column.name);
         if (run.err.find("not drawing") == std::string::npos) CHECK(count_of(page, "data:image/png;base64,") >= 1);
         if (std::system("command -v chromium >/dev/null 2>&1") != 0) {
             MESSAGE("skipped in part: chromium is not installed");
@@ -58,27 +64,30 @@ TEST_SUITE("cli/html_report") {
         CHECK(count_of(parsed, "<polyline") == count_of(page, "<polyline"));
         // Laid out: nothing is wider than the screen, charts have a size, and the page follows the reader's colours.
         const std::string probe =
-            "<script>document.title = JSON.stringify({screen: document.documentElement.clientWidth, "
+            "<script>parent.document.title = JSON.stringify({screen: document.documentElement.clientWidth, "
             "page: document.documentElement.scrollWidth, charts: [...document.querySelectorAll('svg')].map(e => "
             "e.getBoundingClientRect().width), pictures: [...document.images].map(e => e.naturalWidth), "
             "ground: getComputedStyle(document.body).backgroundColor})</script>";
         const std::string probed = scratch().file("probed.html");
-        write_contents(probed, page + probe);
         std::string grounds[2];
         for (const int light : {0, 1})
-            for (const int width : {500, 1280}) {
+            for (const int width : {390, 1280}) {
                 CAPTURE(width);
-                const std::string layout = "chromium --headless --no-sandbox --disable-gpu --user-data-dir='" +
-                                           scratch().file("chromium") +
-                                           "' --blink-settings=preferredColorScheme=" + std::to_string(light) +
-                                           " --window-size=" + std::to_string(width) + ",900 --dump-dom 'file://" +
-                                           probed + "' >'" + dom + "' 2>/dev/null";
+                // Windows are not as narrow as a phone: the page is shown in a frame of the width.
+                write_contents(probed, "<title></title><iframe style=\"border:0\" height=\"4000\" width=\"" +
+                                           std::to_string(width) + "\" srcdoc=\"" +
+                                           crofton::cli::html_escape(page + probe) + "\"></iframe>");
+                const std::string layout =
+                    "chromium --headless --no-sandbox --disable-gpu --user-data-dir='" + scratch().file("chromium") +
+                    "' --blink-settings=preferredColorScheme=" + std::to_string(light) +
+                    " --window-size=1400,900 --dump-dom 'file://" + probed + "' >'" + dom + "' 2>/dev/null";
                 REQUIRE(std::system(layout.c_str()) == 0);
                 const std::string laid_out = contents_of(dom);
                 const std::size_t begin = laid_out.find("<title>") + 7, end = laid_out.find("</title>");
                 REQUIRE(end > begin);
                 const auto found = nlohmann::json::parse(laid_out.substr(begin, end - begin), nullptr, false);
                 REQUIRE(found.is_object());
+                CHECK(found["screen"] <= width);
                 CHECK(found["page"] <= found["screen"]);
                 for (const auto& chart : found["charts"]) CHECK(chart.get<double>() > 200.0);
                 for (const auto& picture : found["pictures"]) CHECK(picture == 160);

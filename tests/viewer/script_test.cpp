@@ -29,8 +29,22 @@ TEST_SUITE("viewer/script") {
             CHECK(refused.error().item == 1);
             CHECK(refused.error().message.find("event 1") != std::string::npos);
         }
+        CHECK(parse_script(R"({"events": [{"frame": 1, "key": "Foo"}]})").error().message.find("'Foo'") !=
+              std::string::npos);
         CHECK_FALSE(parse_script(R"({"events": [{"frame": 5, "key": "H"}, {"frame": 4, "key": "H"}]})"));
         CHECK(load_script("no/such/file.json").error().message.find("no/such/file.json") != std::string::npos);
+    }
+    TEST_CASE("errors name the line: of the event, or where the text stops being JSON") {
+        const auto message = [](const std::string& text) { return parse_script(text).error().message; };
+        CHECK(message("{\n\"note\": [\"]{\\\"\", {\"events\": [1]}],\n\"events\": [\n  {\"frame\": 1, \"key\": \"F\"}, "
+                      "{\"frame\": 2,\n\"key\": \"F\"},\n\n {\"frame\":\n3, \"jump\": 1}]}")
+                  .find("line 7, event 2: unknown action 'jump'") != std::string::npos);
+        CHECK(message("{\"events\": [\n 3 ]}").find("line 2, event 0") != std::string::npos);
+        CHECK(message("{\"events\": [\n{\"frame\": 1,\n\"key\" \"F\"}]}").find("line 3: not valid JSON") !=
+              std::string::npos);
+        CHECK(message("").find("line 1") != std::string::npos);
+        CHECK(message("{\"events\": [\n\n").find("line 3") != std::string::npos);
+        CHECK(parse_script("{\"events\": []}")->empty());
     }
     TEST_CASE("a key is pressed and let go, held keys are held") {
         const auto actions = parse_script(R"({"events": [{"frame": 2, "key": "F"}, {"frame": 3, "key_down": "W"}]})");
