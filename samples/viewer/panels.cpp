@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "help_panel.hpp"
 #include "scene_panel.hpp"
@@ -50,11 +52,17 @@ void heading(const PanelInput& input) {
     const glm::dvec3& eye = input.eye.camera.position;
     ImGui::Text("eye %.1f %.1f %.1f m, %s %.3g m/s", eye.x, eye.y, eye.z,
                 input.eye.mode == EyeMode::orbit ? "in orbit," : "flying at", input.eye.speed);
-    const ImVec4 warm(1.0f, 0.85f, 0.3f, 1.0f);
-    if (input.settings.freeze) ImGui::TextColored(warm, "FROZEN: culling keeps its camera (F)");
-    if (input.recording) ImGui::TextColored(warm, "recording the camera's path (R stops)");
-    if (input.replaying) ImGui::TextColored(warm, "replaying a path (F6 stops)");
-    if (input.settings.paused) ImGui::TextColored(warm, "paused (P)");
+    // One line, always there: nothing below it jumps.
+    std::string state;
+    for (const auto& [is, name] : {std::pair<bool, const char*>{input.settings.freeze, "FROZEN"},
+                                   {input.recording, "recording"},
+                                   {input.replaying, "replaying"},
+                                   {input.settings.paused, "paused"}})
+        if (is) state += (state.empty() ? "" : ", ") + std::string(name);
+    if (state.empty())
+        ImGui::TextDisabled("culling with the eye's camera");
+    else
+        ImGui::TextColored(ImVec4(1.0f, 0.85f, 0.3f, 1.0f), "%s", state.c_str());
 }
 
 // Remembers where the panel being built lies.

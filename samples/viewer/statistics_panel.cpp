@@ -1,6 +1,7 @@
 #include "statistics_panel.hpp"
 
 #include <array>
+#include <cfloat>
 #include <cinttypes>
 #include <cstdio>
 #include <map>
@@ -150,7 +151,7 @@ void history_plots(const Journal& journal) {
         if (history.empty()) return;
         char now[64];
         std::snprintf(now, sizeof now, format, static_cast<double>(history.back()));
-        ImGui::PlotLines(name, history.data(), static_cast<int>(history.size()), 0, now, 0.0f, 3.4e38f,
+        ImGui::PlotLines(name, history.data(), static_cast<int>(history.size()), 0, now, 0.0f, FLT_MAX,
                          ImVec2(0.0f, 3.0f * unit));
     };
     ImGui::TextDisabled("last %zu frames, each from 0 up", Journal::kHistory);
@@ -164,7 +165,7 @@ void history_plots(const Journal& journal) {
     plot("pairs", "%.0f colliding", [](const JournalEntry& e) { return static_cast<double>(e.frame.colliding_pairs); });
     const auto bins = journal.frame_time_histogram();
     ImGui::PlotHistogram("frame ms", bins.data(), static_cast<int>(bins.size()), 0, "0 to 100 ms in steps of 5", 0.0f,
-                         3.4e38f, ImVec2(0.0f, 4.0f * unit));
+                         FLT_MAX, ImVec2(0.0f, 4.0f * unit));
     ImGui::PopItemWidth();
 }
 

@@ -62,13 +62,12 @@ struct WindowCallbacks {
         of(window).events_.push_back({kind, key_name(code, kind == Event::Kind::key_down ? modifiers : 0), 0, {}});
     }
     static void button(GLFWwindow* window, int which, int action, int) {
-        double x = 0.0, y = 0.0;
-        glfwGetCursorPos(window, &x, &y);
         const auto kind = action == GLFW_PRESS ? Event::Kind::button_down : Event::Kind::button_up;
-        of(window).events_.push_back({kind, {}, which, in_pixels(window, x, y)});
+        of(window).events_.push_back({kind, {}, which, of(window).cursor_});
     }
     static void cursor(GLFWwindow* window, double x, double y) {
-        of(window).events_.push_back({Event::Kind::cursor, {}, 0, in_pixels(window, x, y)});
+        of(window).cursor_ = in_pixels(window, x, y);
+        of(window).events_.push_back({Event::Kind::cursor, {}, 0, of(window).cursor_});
     }
     static void scroll(GLFWwindow* window, double x, double y) {
         of(window).events_.push_back({Event::Kind::scroll, {}, 0, {x, y}});
@@ -100,6 +99,9 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, int wid
     glfwSetCursorPosCallback(window->window_, WindowCallbacks::cursor);
     glfwSetScrollCallback(window->window_, WindowCallbacks::scroll);
     glfwSetDropCallback(window->window_, WindowCallbacks::drop);
+    double x = 0.0, y = 0.0;
+    glfwGetCursorPos(window->window_, &x, &y);
+    window->cursor_ = WindowCallbacks::in_pixels(window->window_, x, y);
     return window;
 }
 

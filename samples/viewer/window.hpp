@@ -60,6 +60,7 @@ class Window {
 
     GLFWwindow* window_ = nullptr;
     std::vector<Event> events_;
+    glm::dvec2 cursor_{0.0};  // where the last event saw it: by now it may be elsewhere
     const render::VulkanContext* context_ = nullptr;
     VkSurfaceKHR surface_ = VK_NULL_HANDLE;
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;

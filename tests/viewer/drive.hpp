@@ -26,7 +26,7 @@ pictures() { ls crofton_*.png 2>/dev/null | wc -l; }
 shoot() {
     before=$(pictures)
     xdotool key F2
-    for try in $(seq 2400); do
+    for try in $(seq 6000); do
         [ "$(pictures)" -gt "$before" ] && return
         kill -0 $viewer 2>/dev/null || exit 8
         sleep 0.05

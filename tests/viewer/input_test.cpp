@@ -117,7 +117,7 @@ xdotool key 3; shoot
         const std::string click = "xdotool mousemove " + std::to_string(static_cast<int>(at.x)) + " " +
                                   std::to_string(static_cast<int>(at.y)) + " click 1\n";
         // The click must be seen by two frames: one for each way of the button.
-        const ViewRun clicked = drive(click + "shoot\nshoot\n" + click + "shoot\nshoot\n");
+        const ViewRun clicked = drive("xdotool key p\n" + click + "shoot\nshoot\n" + click + "shoot\nshoot\n");
         check_clean(clicked);
         const json& p = clicked.document["pictures"];
         REQUIRE(p.size() == 5);

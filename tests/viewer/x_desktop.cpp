@@ -61,7 +61,7 @@ class Desktop {
             XNextEvent(display_, &event);
             if (event.type == SelectionRequest) hand_over(event.xselectionrequest);
             if (event.type == ClientMessage && event.xclient.message_type == atom(message))
-                return (event.xclient.data.l[1] & 1) != 0;
+                return event.xclient.data.l[1] != 0;
         }
     }
 
