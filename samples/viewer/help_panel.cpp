@@ -9,11 +9,11 @@ namespace crofton::viewer {
 namespace {
 
 void show_group(const KeyGroup& group) {
-    const float column = 9.0f * ImGui::GetFontSize(), left = ImGui::GetCursorPosX();
+    const float column = 9.0f * ImGui::GetFontSize();
     ImGui::TextColored(ImVec4(0.55f, 0.78f, 1.0f, 1.0f), "%s", group.title);
     for (const KeyHelp& key : group.keys) {
         ImGui::TextUnformatted(key.shown);
-        ImGui::SameLine(left + column);
+        ImGui::SameLine(column);
         ImGui::PushTextWrapPos(0.0f);
         ImGui::TextUnformatted(key.does);
         ImGui::PopTextWrapPos();
