@@ -29,7 +29,7 @@ void help_panel(Settings& settings, PanelWish& wish) {
     const bool two_columns = display.x > 78.0f * font;
     ImGui::SetNextWindowPos(ImVec2(0.5f * display.x, 0.5f * display.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     const ImVec2 size(std::min((two_columns ? 84.0f : 44.0f) * font, display.x - 16.0f),
-                      std::min((two_columns ? 30.0f : 56.0f) * font, display.y - 16.0f));
+                      std::min((two_columns ? 34.0f : 56.0f) * font, display.y - 16.0f));
     ImGui::SetNextWindowSize(size, ImGuiCond_Always);
     ImGui::SetNextWindowBgAlpha(0.97f);
     if (ImGui::Begin("Help (F1)", &settings.help, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoResize) &&
