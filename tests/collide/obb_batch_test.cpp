@@ -92,6 +92,27 @@ TEST_SUITE("collide/obb_batch") {
         }
     }
 
+    TEST_CASE("boxes with parallel edges that overlap clearly are decided in float") {
+        std::mt19937_64 random(6);
+        std::vector<Obb> a, b;
+        for (int i = 0; i < 20000; ++i) {
+            Obb box = random_box(random);
+            if (i % 2 == 0) {  // upright, and turned about the vertical
+                box.axes =
+                    glm::mat3(glm::mat3_cast(glm::angleAxis(random_vector(random).x, glm::dvec3(0.0, 0.0, 1.0))));
+            }
+            a.push_back(box);
+            const glm::dmat3 turn = glm::mat3_cast(glm::angleAxis(random_vector(random).y, glm::dvec3(box.axes[2])));
+            box.axes = glm::mat3(turn * glm::dmat3(box.axes));
+            box.center += 0.1 * random_vector(random);
+            b.push_back(box);
+        }
+        std::vector<std::uint8_t> hits(a.size());
+        const BatchStatistics statistics = intersects(a, b, hits);
+        CHECK(statistics.hits == a.size());
+        CHECK(statistics.refined < a.size() / 500);
+    }
+
     TEST_CASE("float decides nearly all random pairs") {
         std::mt19937_64 random(4);
         std::vector<Obb> a, b;

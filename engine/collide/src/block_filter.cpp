@@ -14,6 +14,18 @@
 // the third by at most 7.5 δ. Both the directions tested and the radii used therefore differ from the exact test's by
 // less than 32 (δa + δb) in each coefficient: a gap beyond ± (32 u + 32 (δa + δb)) S has its sign for certain. Centres
 // rounded to float add 4 u (|center a| + |center b|). What underflows is below 1e-36.
+//
+// Nearly parallel edges a and b, of sine s: their cross product is short, and its gap is lost in the error. But it
+// cannot separate boxes that overlap along all face normals by more than 2.5 s S, gaps taken along unit vectors. Let n
+// be the unit vector along a × b. Project to the plane across a, which holds n, all edges but a and b. The gap along n
+// is that of the offset and the zonogon Z of these four, for n·a = n·b = 0. If the offset lies in Z, at least g within
+// each of its sides' lines, it is at least g within along every direction, n too. The normals of Z's sides are m = a ×
+// c for the four edges c. For an edge c of a's box m is its face normal, and leaving b out costs at most s · half of b.
+// For an edge c of b's box the face normal f = b × c is within 2.05 s of m (|a − b| ≤ s / cos(angle / 2); where the
+// angle is not small the bound says nothing), which changes the gap by at most 2.05 s for each half length and the
+// offset; a, which is left out, counts |f·a| ≤ s, and f·b = 0. s is at most the sum of b's components along the other
+// two axes of a's box, + 3 δa + rounding: two entries of R. The rest of 2.5, and that the error's share of S is added
+// to s, cover that axes and normals are of unit length within 8 (δa + δb) only.
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -61,7 +73,8 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
     }
     size = hn::Add(size,
                    hn::Add(sum_abs(cx, cy, cz), hn::Add(sum_abs(ha[0], ha[1], ha[2]), sum_abs(hb[0], hb[1], hb[2]))));
-    const V share = hn::MulAdd(hn::Add(at(a.deviation), at(b.deviation)), hn::Set(d, 32.0f), hn::Set(d, 0x1p-19f));
+    const V share =
+        hn::MulAdd(hn::Add(at(a.deviation), at(b.deviation)), hn::Set(d, kPerDeviation), hn::Set(d, kRounding));
     const V error = hn::MulAdd(size, share, hn::Set(d, 1e-36f));
 
     V face_a = hn::Set(d, -1e38f), face_b = face_a, edges = face_a;
@@ -77,6 +90,9 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
     put_bits(d, hn::AndNot(by_a, by_b), l, verdict.face_b);
     const hn::Mask<D> by_faces = hn::Or(by_a, by_b);
     if (hn::AllTrue(d, by_faces)) return;
+    const V shallow = hn::Max(face_a, face_b), per_sine = hn::Mul(size, hn::Set(d, kPerSine));
+    const V least = hn::MulAdd(share, per_sine, shallow);
+    V worst = shallow;
     for (int i = 0; i < 3; ++i) {
         const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (int j = 0; j < 3; ++j) {
@@ -85,10 +101,12 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
             const V reach =
                 hn::MulAdd(ha[i1], m[i2][j],
                            hn::MulAdd(ha[i2], m[i1][j], hn::MulAdd(hb[j1], m[i][j2], hn::Mul(hb[j2], m[i][j1]))));
-            edges = hn::Max(edges, hn::Sub(along, reach));
+            const V gap = hn::Sub(along, reach);
+            edges = hn::Max(edges, gap);
+            const V parallel = hn::MulAdd(hn::Add(m[i1][j], m[i2][j]), per_sine, least);
+            worst = hn::Max(worst, hn::Min(gap, parallel));
         }
     }
-    const V worst = hn::Max(edges, hn::Max(face_a, face_b));
     put_bits(d, hn::AndNot(by_faces, hn::Gt(edges, error)), l, verdict.edges);
     put_bits(d, hn::Lt(worst, hn::Neg(error)), l, verdict.hit);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/geometry/expansion.hpp>
@@ -6,6 +7,7 @@
 #include <limits>
 
 #include "box_pair.hpp"
+#include "float_pair.hpp"
 
 // Why fifteen axes suffice, for stored axes that are only nearly orthonormal and extents that may be zero.
 // The boxes meet iff T = center_b − center_a lies in the zonotope Z = { Σ t_k h_k g_k : |t_k| ≤ 1 } of the six
@@ -75,50 +77,33 @@ bool separated_exactly(const BoxPair& pair, const GeneratorPair axis) {
 
 constexpr int kUndecided = -2;
 
-// The test on R = AᵀB, which shares most of its work between axes. With axes within δ = kMaxAxisDeviation of
-// orthonormal each gap is off by less than 32 · 2δ of the boxes' size (derived in block_filter.cpp, whose rounding is
-// far below that here): enough for boxes that are clearly apart or clearly meet.
-int decide_roughly(const Obb& a, const Obb& b) {
-    double t[3], r[3][3], m[3][3], ha[3], hb[3], size = 0.0, sum = 0.0;
-    const double x = b.center.x - a.center.x, y = b.center.y - a.center.y, z = b.center.z - a.center.z;
-    for (int i = 0; i < 3; ++i) {
-        const double ax = static_cast<double>(a.axes[i].x), ay = static_cast<double>(a.axes[i].y),
-                     az = static_cast<double>(a.axes[i].z);
-        t[i] = ax * x + ay * y + az * z;
-        for (int j = 0; j < 3; ++j) {
-            r[i][j] = ax * static_cast<double>(b.axes[j].x) + ay * static_cast<double>(b.axes[j].y) +
-                      az * static_cast<double>(b.axes[j].z);
-            m[i][j] = std::abs(r[i][j]);
-            sum += m[i][j];
-        }
-        ha[i] = static_cast<double>(a.half_extents[i]);
-        hb[i] = static_cast<double>(b.half_extents[i]);
-        size += ha[i] + hb[i];
-    }
-    size += std::abs(x) + std::abs(y) + std::abs(z);
-    const double error = 64.0 * kMaxAxisDeviation * size + 1e-290;
-    double worst = -std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 3; ++i) {
-        const double gap = std::abs(t[i]) - (ha[i] + hb[0] * m[i][0] + hb[1] * m[i][1] + hb[2] * m[i][2]);
-        if (gap > error) return i;
-        worst = std::max(worst, gap);
-    }
-    for (int j = 0; j < 3; ++j) {
-        const double gap = std::abs(t[0] * r[0][j] + t[1] * r[1][j] + t[2] * r[2][j]) -
-                           (hb[j] + ha[0] * m[0][j] + ha[1] * m[1][j] + ha[2] * m[2][j]);
-        if (gap > error) return 3 + j;
-        worst = std::max(worst, gap);
-    }
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-            const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            const double gap = std::abs(t[i2] * r[i1][j] - t[i1] * r[i2][j]) -
-                               (ha[i1] * m[i2][j] + ha[i2] * m[i1][j] + hb[j1] * m[i][j2] + hb[j2] * m[i][j1]);
-            if (gap > error) return 6 + 3 * i + j;
-            worst = std::max(worst, gap);
-        }
-    // A NaN hides from max(): the sum shows it, whose terms are at most 1 + δ each.
-    return worst < -error && sum < 10.0 ? kNotSeparated : kUndecided;
+// Clear cases only: the first axis that surely separates them (some such axis unless kWhich), or none; else `open` has
+// a bit for every axis that may separate.
+template <bool kWhich>
+int decide_roughly(const Obb& first, const Obb& second, std::uint32_t& open) {
+    FloatPair pair(first, second);
+    const auto separates = [&](Lanes4 gap, int at, float error) {
+        if (!(largest3(gap) > error)) return kUndecided;
+        if constexpr (!kWhich) return at;
+        return at + (gap[0] > error ? 0 : gap[1] > error ? 1 : 2);
+    };
+    const float most = pair.size * (kRounding + 2.0f * kPerDeviation * static_cast<float>(kMaxAxisDeviation)) + 1e-36f;
+    if (const int axis = separates(pair.face_a, 0, most); axis != kUndecided) return axis;
+    pair.face_normals_of_b();
+    if (const int axis = separates(pair.face_b, 3, most); axis != kUndecided) return axis;
+    pair.edges();
+    const float error = pair.size * pair.share + 1e-36f;
+    const Lanes4 gap[] = {pair.face_a, pair.face_b, pair.edge[0], pair.edge[1], pair.edge[2]};
+    Lanes4 doubtful[] = {pair.face_a, pair.face_b, {}, {}, {}};
+    for (int i = 0; i < 3; ++i) doubtful[2 + i] = smaller(pair.edge[i], pair.parallel[i]);
+    const Lanes4 worst =
+        larger(larger(larger(doubtful[0], doubtful[1]), larger(doubtful[2], doubtful[3])), doubtful[4]);
+    if (largest3(worst) < -error) return kNotSeparated;
+    for (int i = 0; i < 5; ++i)
+        if (const int axis = separates(gap[i], 3 * i, error); axis != kUndecided) return axis;
+    for (int i = 0; i < kAxisCount; ++i)
+        if (!(doubtful[i / 3][i % 3] < -error)) open |= 1u << i;
+    return kUndecided;
 }
 
 }  // namespace
@@ -133,26 +118,37 @@ BoxPair::BoxPair(const Obb& a, const Obb& b) : center_a(a.center), center_b(b.ce
     }
 }
 
-int separating_axis(const Obb& a, const Obb& b, int hint) {
-    const bool has_hint = hint >= 0 && hint < kAxisCount;
-    if (!has_hint)
-        if (const int rough = decide_roughly(a, b); rough != kUndecided) return rough;
+namespace {
+
+// The first of the axes in `open` that separates, those that double can tell before those that it cannot.
+int decide_carefully(const Obb& a, const Obb& b, std::uint32_t open) {
     const BoxPair pair(a, b);
     if (!(pair.magnitude.x + pair.magnitude.y + pair.magnitude.z < std::numeric_limits<double>::infinity())) return 0;
     std::uint32_t unknown = 0;
-    if (has_hint && filter(pair, kAxes[hint]) == Answer::separated) return hint;
-    for (int i = 0; i < kAxisCount; ++i) {
+    for (; open != 0; open &= open - 1) {
+        const int i = std::countr_zero(open);
         const Answer answer = filter(pair, kAxes[i]);
         if (answer == Answer::separated) return i;
         if (answer == Answer::unknown) unknown |= 1u << i;
     }
-    for (int i = 0; unknown != 0; ++i, unknown >>= 1)
-        if ((unknown & 1u) && separated_exactly(pair, kAxes[i])) return i;
+    for (; unknown != 0; unknown &= unknown - 1)
+        if (const int i = std::countr_zero(unknown); separated_exactly(pair, kAxes[i])) return i;
     return kNotSeparated;
 }
 
+}  // namespace
+
+int separating_axis(const Obb& a, const Obb& b, int hint) {
+    if (hint >= 0 && hint < kAxisCount && filter(BoxPair(a, b), kAxes[hint]) == Answer::separated) return hint;
+    std::uint32_t open = 0;
+    const int axis = decide_roughly<true>(a, b, open);
+    return axis == kUndecided ? decide_carefully(a, b, open) : axis;
+}
+
 bool intersects(const Obb& a, const Obb& b) {
-    return separating_axis(a, b) == kNotSeparated;
+    std::uint32_t open = 0;
+    const int axis = decide_roughly<false>(a, b, open);
+    return (axis == kUndecided ? decide_carefully(a, b, open) : axis) == kNotSeparated;
 }
 
 }  // namespace crofton::collide
