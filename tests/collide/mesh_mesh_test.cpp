@@ -230,6 +230,59 @@ TEST_SUITE("collide/mesh_mesh") {
         }
     }
 
+    TEST_CASE("beside triangles larger than itself a mesh is not opened: few pairs of triangles are looked at") {
+        TriangleMesh small = wavy_torus(1.0, 0.3, 0.2, 96, 64);
+        for (glm::vec3& p : small.positions) p *= 0.001f;
+        const TriangleMesh large = wavy_torus(1.0, 0.3, 0.2, 10, 8);
+        const auto tree_small = tree_of(small), tree_large = tree_of(large);
+        std::mt19937_64 random(15);
+        MeshStatistics statistics;
+        for (int trial = 0; trial < 20; ++trial) {
+            Pose pose = random_pose(random, 0.0);
+            pose.translation = (trial % 2 == 0 ? 1.4 : 3.0) * glm::normalize(random_vector(random));
+            const double there =
+                distance(tree_large, tree_small, pose, std::numeric_limits<double>::infinity(), &statistics).distance;
+            const double back =
+                distance(tree_small, tree_large, inverse(pose), std::numeric_limits<double>::infinity(), &statistics)
+                    .distance;
+            CHECK(there == doctest::Approx(back).epsilon(1e-12));
+            if (trial >= 4) continue;
+            ClosestPoints best;
+            for (std::size_t i = 0; i < large.triangle_count(); ++i)
+                for (std::size_t j = 0; j < small.triangle_count(); ++j)
+                    closest_of_triangles(triangle(large, i, {}), triangle(small, j, pose), best);
+            CHECK(there == std::sqrt(best.squared));
+        }
+        CHECK(statistics.triangle_tests / 40 < 20'000);  // of 2 million pairs
+    }
+
+    TEST_CASE("flat, sharp and empty triangles among large ones keep the exact distance") {
+        std::mt19937_64 random(16);
+        for (int trial = 0; trial < 60; ++trial) {
+            TriangleMesh large;
+            for (int t = 0; t < 7; ++t) {
+                const glm::vec3 p(random_vector(random)), along(random_vector(random));
+                const float sharp[] = {0.0f, 1e-30f, 1e-9f, 1e-4f, 1.0f};
+                const glm::vec3 off = sharp[(trial + t) % 5] * glm::vec3(random_vector(random));
+                for (const glm::vec3 corner : {p, t % 3 == 0 ? p : p + along, p + 0.3f * along + off}) {
+                    large.indices.push_back(static_cast<std::uint32_t>(large.positions.size()));
+                    large.positions.push_back(corner);
+                }
+            }
+            TriangleMesh small = wavy_torus(1.0, 0.3, 0.2, 10, 8);
+            for (glm::vec3& p : small.positions) p *= 0.01f;
+            Pose pose = random_pose(random, 0.0);
+            pose.translation = 1.5 * random_vector(random);
+            const auto tree_large = tree_of(large), tree_small = tree_of(small);
+            if (intersects(tree_large, tree_small, pose)) continue;
+            ClosestPoints best;
+            for (std::size_t i = 0; i < large.triangle_count(); ++i)
+                for (std::size_t j = 0; j < small.triangle_count(); ++j)
+                    closest_of_triangles(triangle(large, i, {}), triangle(small, j, pose), best);
+            CHECK(distance(tree_large, tree_small, pose).distance == std::sqrt(best.squared));
+        }
+    }
+
     TEST_CASE("far meshes are told apart along the way between them: few triangles are measured") {
         const auto ring = tree_of(wavy_torus(1.0, 0.3, 0.2, 96, 64));
         TriangleMesh large = wavy_torus(1.0, 0.3, 0.2, 96, 64);

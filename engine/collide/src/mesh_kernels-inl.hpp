@@ -69,11 +69,15 @@ HWY_INLINE void turn(const MeshPair::Motion& motion, const float* v, float* out)
     }
 }
 
+HWY_INLINE void carry_point(const MeshPair::Motion& motion, const float* p, float* out) {
+    turn(motion, p, out);
+    for (int i = 0; i < 3; ++i) out[i] += motion.offset[i];
+}
+
 // The box in the other mesh's frame.
 HWY_INLINE QueryBox carried(const MeshPair::Motion& motion, const QueryBox& from) {
     QueryBox box;
-    turn(motion, from.center, box.center);
-    for (int i = 0; i < 3; ++i) box.center[i] += motion.offset[i];
+    carry_point(motion, from.center, box.center);
     for (int k = 0; k < 3; ++k) {
         turn(motion, from.axes[k], box.axes[k]);
         box.half[k] = from.half[k];
@@ -160,32 +164,66 @@ HWY_INLINE std::uint32_t overlap_mask(const tree::MeshNode& node, const QueryBox
     return ~apart & ((1u << node.count) - 1u);
 }
 
+// A unit vector, or zero, in the frame of a node, and how far what is tested against its lanes reaches along it, from
+// its box's centre.
+struct Direction {
+    alignas(16) float way[4];
+    float low, high;
+};
+
+HWY_INLINE float along(const float* a, const float* b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+HWY_INLINE void direction_between(const float* from, const float* to, float* way) {
+    float squared = 0.0f;
+    for (int i = 0; i < 3; ++i) squared += (to[i] - from[i]) * (to[i] - from[i]);
+    const float per_length = squared > 1e-30f ? 1.0f / __builtin_sqrtf(squared) : 0.0f;
+    for (int i = 0; i < 3; ++i) way[i] = (to[i] - from[i]) * per_length;
+}
+
+HWY_INLINE void measure(const QueryBox& q, Direction& direction) {
+    direction.high = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        const float reach = q.half[k] * along(q.axes[k], direction.way);
+        direction.high += reach < 0.0f ? -reach : reach;
+    }
+    direction.low = -direction.high;
+}
+
+HWY_INLINE void measure(const QueryBox& q, const float (&corner)[3][4], Direction& direction) {
+    for (int v = 0; v < 3; ++v) {
+        const float offset[3] = {corner[v][0] - q.center[0], corner[v][1] - q.center[1], corner[v][2] - q.center[2]};
+        const float at = along(offset, direction.way);
+        direction.low = v == 0 ? at : HWY_MIN(direction.low, at);
+        direction.high = v == 0 ? at : HWY_MAX(direction.high, at);
+    }
+}
+
 // The gap along any unit direction bounds the distance from below; along that of the nearest points found so far hardly
 // anything far from them remains. Rounding of the projection scales with the offset, which may be long: 2^-20 of it.
 HWY_INLINE V gap_along(D d, const tree::MeshNode& node, std::size_t l, const Lanes& s, const QueryBox& q,
-                       const float* direction) {
+                       const Direction& direction) {
     V shift = hn::Zero(d), length = hn::Zero(d), reach = s.error;
     for (int i = 0; i < 3; ++i) {
         const V offset = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, q.center[i]));
-        shift = hn::MulAdd(offset, hn::Set(d, direction[i]), shift);
+        shift = hn::MulAdd(offset, hn::Set(d, direction.way[i]), shift);
         length = hn::Add(length, hn::Abs(offset));
     }
     for (int k = 0; k < 3; ++k) {
-        V along = hn::Zero(d);
+        V axis_along = hn::Zero(d);
         for (int i = 0; i < 3; ++i)
-            along = hn::MulAdd(hn::Load(d, node.axes[k][i] + l), hn::Set(d, direction[i]), along);
-        reach = hn::MulAdd(s.half[k], hn::Abs(along), reach);
-        const float* const axis = q.axes[k];
-        const float along_q = axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2];
-        reach = hn::Add(reach, hn::Set(d, q.half[k] * (along_q < 0.0f ? -along_q : along_q)));
+            axis_along = hn::MulAdd(hn::Load(d, node.axes[k][i] + l), hn::Set(d, direction.way[i]), axis_along);
+        reach = hn::MulAdd(s.half[k], hn::Abs(axis_along), reach);
     }
-    return hn::Sub(hn::Abs(shift), hn::MulAdd(length, hn::Set(d, 0x1p-20f), reach));
+    const V ahead = hn::Sub(shift, hn::Set(d, direction.high)), behind = hn::Sub(hn::Set(d, direction.low), shift);
+    return hn::Sub(hn::Max(ahead, behind), hn::MulAdd(length, hn::Set(d, 0x1p-20f), reach));
 }
 
 // A lower bound of the squared distance of q to each lane's box: in either frame the gaps along the three perpendicular
 // face normals add up by Pythagoras. The last factor covers the rounding of the squares.
-HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, float slop, const float* direction,
-                                float* bounds) {
+HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, float slop, const Direction& first,
+                                const Direction& second, float* bounds) {
     const D d;
     const V zero = hn::Zero(d);
     for (std::size_t l = 0; l < tree::kMeshNodeWidth; l += hn::Lanes(d)) {
@@ -196,7 +234,7 @@ HWY_INLINE void distance_bounds(const tree::MeshNode& node, const QueryBox& q, f
             in_query = hn::MulAdd(a, a, in_query);
             in_lane = hn::MulAdd(b, b, in_lane);
         }
-        const V gap = hn::Max(zero, gap_along(d, node, l, s, q, direction));
+        const V gap = hn::Max(zero, hn::Max(gap_along(d, node, l, s, q, first), gap_along(d, node, l, s, q, second)));
         const V squared = hn::Max(hn::Mul(gap, gap), hn::Max(in_query, in_lane));
         hn::Store(hn::Mul(squared, hn::Set(d, 0.99999f)), d, bounds + l);
     }

@@ -51,7 +51,7 @@ struct Nearest {
 void visit_nearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts);
 
 // A stack this deep is never exceeded: at most 7 levels of nodes in each tree (2^25 leaves, sixteen to a node that is
-// full), each step down leaves at most fifteen siblings.
+// full), each step down leaves at most fifteen siblings, and a leaf seven of its triangles.
 inline constexpr std::uint32_t kMeshStackSize = 512;
 
 }  // namespace crofton::collide

@@ -9,18 +9,21 @@
 #include "leaf_kernels-inl.hpp"
 #include "mesh_kernels-inl.hpp"
 #include "mesh_pair.hpp"
+#include "triangle_box.hpp"
 #include "triangle_distance-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 
-// Lane `lane` of node `node`, the root having no lane; with what the descent asks of it at once.
+// Lane `lane` of node `node`, the root having no lane, or one triangle of the leaf that is its child; with what the
+// descent asks of it at once.
 struct Reference {
     std::uint32_t node, lane;
     std::uint32_t child;
     float size;  // sum of the half extents
+    std::uint32_t triangle;
 };
-constexpr std::uint32_t kRoot = ~std::uint32_t{0};
+constexpr std::uint32_t kRoot = ~std::uint32_t{0}, kAllTriangles = ~std::uint32_t{0};
 
 struct Step {
     Reference a, b;
@@ -28,12 +31,16 @@ struct Step {
 };
 
 HWY_INLINE Reference root_of(const MeshPair& pair, int side) {
-    return {kRoot, 0, 0, half_sum(box_of(*pair.root[side]))};
+    return {kRoot, 0, 0, half_sum(box_of(*pair.root[side])), kAllTriangles};
 }
 HWY_INLINE Reference lane_of(const tree::MeshNode& node, std::uint32_t index, std::uint32_t lane) {
-    return {index, lane, node.child[lane], node.half[0][lane] + node.half[1][lane] + node.half[2][lane]};
+    return {index, lane, node.child[lane], node.half[0][lane] + node.half[1][lane] + node.half[2][lane], kAllTriangles};
 }
-HWY_INLINE QueryBox box_at(const MeshPair& pair, int side, Reference r) {
+HWY_INLINE const tree::MeshLeaf& leaf_of(const MeshPair& pair, int side, const Reference& r) {
+    return pair.leaves[side][r.child & ~tree::kMeshLeaf];
+}
+HWY_INLINE QueryBox box_at(const MeshPair& pair, int side, const Reference& r) {
+    if (r.triangle != kAllTriangles) return box_of(triangle_box(leaf_of(pair, side, r), r.triangle));
     return r.node == kRoot ? box_of(*pair.root[side]) : box_of(pair.nodes[side][r.node], r.lane);
 }
 // The box of one mesh as the other's nodes see it.
@@ -49,6 +56,9 @@ HWY_INLINE Step below(const Step& step, bool into_a, const tree::MeshNode& node,
 
 HWY_INLINE std::uint32_t all_lanes(const tree::MeshLeaf& leaf) {
     return (1u << leaf.count) - 1u;
+}
+HWY_INLINE std::uint32_t lanes_of(const tree::MeshLeaf& leaf, const Reference& r) {
+    return r.triangle == kAllTriangles ? all_lanes(leaf) : 1u << r.triangle;
 }
 
 // One leaf of each mesh, kept while the next pair shares it.
@@ -164,16 +174,18 @@ HWY_INLINE bool settle_near(TrianglePairs& gathered, const Nearest& nearest, Pai
     return false;
 }
 
-bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, LeafPair& leaves,
-                       TrianglePairs& gathered, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
-    load_pair(pair, a, b, leaves);
-    const tree::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
-    counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
+bool visit_near_leaves(const MeshPair& pair, const Step& step, LeafPair& leaves, TrianglePairs& gathered,
+                       const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
+    load_pair(pair, step.a.child & ~tree::kMeshLeaf, step.b.child & ~tree::kMeshLeaf, leaves);
+    const std::uint32_t of_a = lanes_of(leaf_of(pair, 0, step.a), step.a),
+                        of_b = lanes_of(leaf_of(pair, 1, step.b), step.b);
+    counts.triangle_tests += std::uint64_t{hwy::PopCount(of_a)} * hwy::PopCount(of_b);
     alignas(64) double end_of_a[tree::kMeshLeafWidth], begin_of_b[tree::kMeshLeafWidth];
     extents_along(leaves.a, leaves.b, nearest.direction, end_of_a, begin_of_b);
     const double doubt = 0x1p-48 * magnitude_of(leaves.a, leaves.b);
-    for (std::uint32_t lane = 0; lane < leaf_a.count; ++lane) {
-        std::uint32_t near = lanes_before(begin_of_b, end_of_a[lane], doubt, nearest.squared) & all_lanes(leaf_b);
+    for (std::uint32_t mask = of_a; mask != 0; mask &= mask - 1) {
+        const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
+        std::uint32_t near = lanes_before(begin_of_b, end_of_a[lane], doubt, nearest.squared) & of_b;
         if (near == 0) continue;
         near &= near_mask(leaves.a, lane, leaves.b, nearest.squared);
         for (; near != 0; near &= near - 1) {
@@ -183,6 +195,48 @@ bool visit_near_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_t b, L
         }
     }
     return gathered.count > 0 && settle_near(gathered, nearest, visit);
+}
+
+// A leaf's box that is larger than what it is compared with says little of where its triangles are.
+HWY_INLINE bool is_coarse(const Reference& leaf, const Reference& node) {
+    return (leaf.child & tree::kMeshLeaf) && leaf.triangle == kAllTriangles && leaf.size > node.size;
+}
+
+HWY_INLINE std::uint32_t push_triangles(const MeshPair& pair, const Step& step, int side, Step* stack,
+                                        std::uint32_t height) {
+    const Reference& whole = side == 0 ? step.a : step.b;
+    for (std::uint32_t lane = 0; lane < leaf_of(pair, side, whole).count; ++lane) {
+        Step& one = stack[height++] = step;
+        (side == 0 ? one.a : one.b).triangle = lane;
+    }
+    return height;
+}
+
+// In the frame of the mesh that is descended: between the nearest points so far, and where one triangle is compared,
+// from it to the middle of what is descended.
+HWY_INLINE void choose_directions(const MeshPair& pair, const Step& step, bool into_a, const QueryBox& box,
+                                  const Nearest& nearest, Direction& global, Direction& own) {
+    for (int i = 0; i < 3; ++i) global.way[i] = nearest.direction[i];
+    global.way[3] = 0.0f;
+    if (!into_a) turn(pair.to_b, nearest.direction, global.way);
+    const int side = into_a ? 1 : 0;
+    const Reference &moved = into_a ? step.b : step.a, &still = into_a ? step.a : step.b;
+    if (moved.triangle == kAllTriangles) {
+        direction_between(box.center, box_at(pair, 1 - side, still).center, own.way);
+        measure(box, global);
+        measure(box, own);
+        return;
+    }
+    const tree::MeshLeaf& leaf = leaf_of(pair, side, moved);
+    alignas(16) float corner[3][4];
+    for (int v = 0; v < 3; ++v) {
+        const float from[3] = {leaf.vertex[v][0][moved.triangle], leaf.vertex[v][1][moved.triangle],
+                               leaf.vertex[v][2][moved.triangle]};
+        carry_point(into_a ? pair.to_a : pair.to_b, from, corner[v]);
+    }
+    direction_from_triangle(corner, box_at(pair, 1 - side, still).center, own.way);
+    measure(box, corner, global);
+    measure(box, corner, own);
 }
 
 void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts) {
@@ -196,20 +250,22 @@ void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visi
         if (static_cast<double>(step.bound) > nearest.squared) continue;
         const std::uint32_t a = step.a.child, b = step.b.child;
         if (a & b & tree::kMeshLeaf) {
-            if (visit_near_leaves(pair, a & ~tree::kMeshLeaf, b & ~tree::kMeshLeaf, leaves, gathered, nearest, visit,
-                                  counts))
-                return;
+            if (visit_near_leaves(pair, step, leaves, gathered, nearest, visit, counts)) return;
             continue;
         }
         const bool into_a = descends_a(step);
+        if (is_coarse(into_a ? step.b : step.a, into_a ? step.a : step.b)) {
+            height = push_triangles(pair, step, into_a ? 1 : 0, stack, height);
+            continue;
+        }
         const std::uint32_t index = into_a ? a : b;
         const tree::MeshNode& node = pair.nodes[into_a ? 0 : 1][index];
         const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
         HWY_ALIGN float bounds[tree::kMeshNodeWidth];
-        alignas(16) float direction[4] = {nearest.direction[0], nearest.direction[1], nearest.direction[2]};
-        if (!into_a) turn(pair.to_b, nearest.direction, direction);
-        distance_bounds(node, box, pair.slop, direction, bounds);
+        Direction global, own;
+        choose_directions(pair, step, into_a, box, nearest, global, own);
+        distance_bounds(node, box, pair.slop, global, own, bounds);
         // The nearest child goes on top; insertion keeps equal ones in lane order.
         const std::uint32_t base = height;
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
