@@ -32,8 +32,8 @@ void packed_pairs(benchmark::State& state, std::size_t count) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.size()));
 }
 
-void single_pairs(benchmark::State& state) {
-    const BoxPairs pairs = random_pairs(4096);
+void single_pairs(benchmark::State& state, BoxPairs (*pairs_of)(std::size_t)) {
+    const BoxPairs pairs = pairs_of(4096);
     for (auto _ : state) {
         int hits = 0;
         for (std::size_t i = 0; i < pairs.a.size(); ++i) hits += collide::intersects(pairs.a[i], pairs.b[i]);
@@ -145,7 +145,12 @@ BENCHMARK_CAPTURE(packed_pairs, streaming, 1'000'000)
     ->Name("sat/1M pairs packed/crofton")
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(packed_pairs, cached, 4096)->Name("sat/4096 pairs packed/crofton")->Unit(benchmark::kMicrosecond);
-BENCHMARK(single_pairs)->Name("sat/4096 pairs one by one/crofton")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(single_pairs, random, random_pairs)
+    ->Name("sat/4096 pairs one by one/crofton")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(single_pairs, stacked, stacked_pairs)
+    ->Name("sat/4096 stacked crates one by one/crofton")
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(all_pairs, bounds, false)
     ->Name("broadphase/bounds/crofton")
     ->Arg(1000)

@@ -41,6 +41,26 @@ BoxPairs random_pairs(std::size_t count) {
     return pairs;
 }
 
+BoxPairs stacked_pairs(std::size_t count) {
+    Random random(5);
+    BoxPairs pairs;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dquat q = rotation(random);
+        const glm::dmat3 frame = glm::mat3_cast(q);
+        Obb a = box_at(random, uniform_vector(random, -10.0, 10.0)), b = a;
+        a.axes = glm::mat3(frame);
+        b.axes = glm::mat3(glm::mat3_cast(glm::normalize(q + 1e-7 * rotation(random))));
+        b.half_extents = glm::vec3(uniform_vector(random, 0.2, 1.0));
+        glm::dvec3 offset = uniform_vector(random, -0.3, 0.3);
+        const int up = static_cast<int>(i % 3);
+        offset[up] = static_cast<double>(a.half_extents[up]) + static_cast<double>(b.half_extents[up]);
+        b.center = a.center + frame * offset;
+        pairs.a.push_back(a);
+        pairs.b.push_back(b);
+    }
+    return pairs;
+}
+
 std::vector<Obb> crowd(std::size_t count) {
     Random random(7);
     const double side = 2.71 * std::cbrt(static_cast<double>(count));

@@ -15,6 +15,9 @@ struct BoxPairs {
 // Random frames and sizes; the spread of the centres makes about 30 % of the pairs meet.
 [[nodiscard]] BoxPairs random_pairs(std::size_t count);
 
+// Neighbours in stacks: the same random frame but for rounding to float, face on face but for rounding.
+[[nodiscard]] BoxPairs stacked_pairs(std::size_t count);
+
 // Boxes of random frames in a cube so large that a box meets, by its axis-aligned bound, about 1.2 pairs' worth of
 // others.
 [[nodiscard]] std::vector<Obb> crowd(std::size_t count);
