@@ -44,6 +44,19 @@ const char* name_of(collide::Containment containment) {
     }
 }
 
+const char* sentence_of(collide::Containment containment) {
+    switch (containment) {
+        case collide::Containment::a_inside_b:
+            return "A lies inside B";
+        case collide::Containment::b_inside_a:
+            return "B lies inside A";
+        case collide::Containment::partly:
+            return "some pieces of one lie inside the other";
+        default:
+            return "neither lies inside the other";
+    }
+}
+
 // Seven numbers, apart by commas or blanks, given as such or in a file: tx ty tz qw qx qy qz.
 Result<collide::Pose> pose_of(const std::string& argument) {
     collide::Pose pose;
@@ -157,7 +170,8 @@ int run(const Request& request) {
     if (answer.hit && request.mode == "all") answer.depth = collide::penetration(*a, *b, *pose, answer.contacts).depth;
     if (request.json_path != "-") {
         std::printf("%s", answer.hit ? "hit" : "no hit");
-        if (answer.contained != collide::Containment::none) std::printf(", %s", name_of(answer.contained));
+        if (answer.contained != collide::Containment::none || request.mode == "contain")
+            std::printf(", %s", sentence_of(answer.contained));
         if (request.mode == "all")
             std::printf(", %zu pairs of triangles, depth %.6g", answer.contacts.size(), answer.depth);
         if (request.mode == "distance") std::printf(", distance %.9g", answer.distance);
@@ -190,10 +204,14 @@ void add_collide_command(CLI::App& app, Outcome& outcome) {
         ->capture_default_str();
     command->add_option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output");
     command->footer(
-        "A closed mesh inside the other counts as a hit and is reported in `contained`; `partly` where some of its pieces\n"
-        "are inside, but not all. Depth is an upper bound: the "
-        "shortest\n"
-        "way out of those along the axes of both frames and boxes, the mean contact normal and the line of centres.\n"
+        "A mesh inside the other, which is to be closed, counts as a hit and is reported in `contained`. Each piece "
+        "is\n"
+        "asked, and triangles make a piece where they share vertices, by index or by position: of loose triangles "
+        "every\n"
+        "one. `partly`: some pieces are inside, but not all. Where surfaces meet, `contained` is `none`.\n"
+        "Depth is an upper bound: the shortest way out of those along the axes of both frames and boxes, the mean "
+        "contact\n"
+        "normal and the line of centres. Distance is between the surfaces, also of a mesh inside the other.\n"
         "Exit status: 0 answered, 2 bad usage or input.\n\n"
         "Examples:\n"
         "  crofton collide bunny.obj cow.obj\n"

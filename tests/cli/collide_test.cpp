@@ -72,7 +72,8 @@ TEST_SUITE("cli/collide") {
     }
 
     TEST_CASE("any: hit or not, with the pose inline or in a file") {
-        const std::string cube = cube_file("cube.obj", 1.0), pair = cube + " " + cube, file = scratch().file("pose.txt");
+        const std::string cube = cube_file("cube.obj", 1.0), pair = cube + " " + cube,
+                          file = scratch().file("pose.txt");
         const json hit = answer(pair + " --pose 1.5,0.25,0,1,0,0,0");
         CHECK(hit["hit"] == true);
         CHECK(hit["distance"].is_null());
@@ -85,7 +86,7 @@ TEST_SUITE("cli/collide") {
             CHECK(hit.contains(key));
         CHECK(answer(pair + " --pose 2,0,0,1,0,0,0")["hit"] == true);  // touching
         CHECK(answer(pair + " --pose 2.0000001,0,0,1,0,0,0")["hit"] == false);
-        CHECK(answer(pair)["hit"] == true);  // no pose: as the files have them
+        CHECK(answer(pair)["hit"] == true);                            // no pose: as the files have them
         write_contents(file, "2.5 0 0\n0.92387953 0 0 0.38268343\n");  // an eighth of a turn brings the corner nearer
         CHECK(answer(pair + " --pose " + file)["hit"] == false);
         write_contents(file, "2.4 0 0\n0.92387953 0 0 0.38268343\n");
@@ -112,8 +113,7 @@ TEST_SUITE("cli/collide") {
             for (const char* end : {"begin", "end", "position"}) {
                 const auto p = contact[end].get<std::vector<double>>();
                 const double in_a = std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
-                const double in_b =
-                    std::max({std::fabs(p[0] - 1.5), std::fabs(p[1] - 0.25), std::fabs(p[2] - 0.125)});
+                const double in_b = std::max({std::fabs(p[0] - 1.5), std::fabs(p[1] - 0.25), std::fabs(p[2] - 0.125)});
                 CHECK(in_a <= 1.0 + 1e-9);
                 CHECK(in_b <= 1.0 + 1e-9);
             }
@@ -134,6 +134,26 @@ TEST_SUITE("cli/collide") {
         CHECK(apart["nearest"]["on_a"][0].get<double>() == doctest::Approx(1.0));
         CHECK(apart["nearest"]["on_b"][0].get<double>() == doctest::Approx(4.0));
         CHECK(answer(cube + " " + cube + " --pose 1,1,0,1,0,0,0 --mode distance")["distance"] == 0.0);
+    }
+
+    TEST_CASE("contain: of loose triangles each is a piece, and the text says what lies where") {
+        const std::string cube = cube_file("cube.obj", 1.0), soup = scratch().file("soup.obj");
+        const auto text = [](const std::string& arguments) { return run_cli("collide " + arguments).out; };
+        const std::string first = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n";
+        write_contents(soup, first + "v 0.5 0 0\nv 0.6 0 0\nv 0.5 0.1 0\nf 4 5 6\n");
+        CHECK(answer(cube + " " + soup)["contained"] == "b_inside_a");
+        CHECK(text(cube + " " + soup).find("hit, B lies inside A") == 0);
+        CHECK(text(soup + " " + cube).find("hit, A lies inside B") == 0);
+        write_contents(soup, first + "v 5 0 0\nv 6 0 0\nv 5 0.1 0\nf 4 5 6\n");
+        CHECK(answer(cube + " " + soup)["contained"] == "partly");
+        CHECK(answer(soup + " " + cube + " --mode distance")["contained"] == "partly");
+        CHECK(text(cube + " " + soup).find("hit, some pieces of one lie inside the other") == 0);
+        write_contents(soup, "v 5 0 0\nv 6 0 0\nv 5 0.1 0\nf 1 2 3\n");
+        CHECK(answer(cube + " " + soup)["contained"] == "none");
+        CHECK(text(cube + " " + soup + " --mode contain").find("no hit, neither lies inside the other") == 0);
+        write_contents(soup, "v 0 0 0\nv 6 0 0\nv 5 0.1 0\nf 1 2 3\n");  // through the wall
+        CHECK(answer(cube + " " + soup + " --mode contain")["contained"] == "none");
+        CHECK(text(cube + " " + soup + " --mode contain").find("hit, neither lies inside the other") == 0);
     }
 
     TEST_CASE("contain: a mesh inside the other is a hit, and which is inside is said") {

@@ -170,7 +170,8 @@ TEST_SUITE("collide/obb_obb") {
     TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15, turned by 1e-1 to 1e-12, in double: none wrong") {
         check_class({.parallel = true});
     }
-    TEST_CASE("60,000 pairs with gaps of 1e-1 to 1e-15, turned by 1e-1 to 1e-12, centres rounded to float: none wrong") {
+    TEST_CASE(
+        "60,000 pairs with gaps of 1e-1 to 1e-15, turned by 1e-1 to 1e-12, centres rounded to float: none wrong") {
         check_class({.parallel = true, .float_centers = true});
     }
 }

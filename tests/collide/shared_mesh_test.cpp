@@ -1,8 +1,8 @@
 // Scanned and modelled meshes of the shared data, against brute force.
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <cstdio>
 #include <crofton/collide/mesh_mesh.hpp>
+#include <cstdio>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <string>
@@ -89,7 +89,8 @@ Pose close_pose(std::mt19937_64& random, const tree::MeshTree& a, const tree::Me
         const float(&c)[3] = tree.root_box().center;
         return glm::dvec3(double(c[0]), double(c[1]), double(c[2]));
     };
-    const glm::dvec3 together = center(a) - pose.rotation * center(b), direction = glm::normalize(random_vector(random));
+    const glm::dvec3 together = center(a) - pose.rotation * center(b),
+                     direction = glm::normalize(random_vector(random));
     double meeting = 0.0, apart = 4.0 * (double(a.extent()) + double(b.extent()));
     for (int step = 0; step < 30; ++step) {
         const double middle = 0.5 * (meeting + apart);
@@ -114,9 +115,9 @@ TEST_SUITE("collide/shared_mesh") {
         };
         std::mt19937_64 random(21);
         int checked = 0;
-        for (const Case& c : {Case{"cow", "cow", 2}, Case{"teapot", "cow", 1}, Case{"suzanne", "bunny", 2},
-                              Case{"spider", "woody", 3}, Case{"fandisk", "suzanne", 2}, Case{"homer", "wuson", 1},
-                              Case{"spider", "armadillo", 1}}) {
+        for (const Case& c :
+             {Case{"cow", "cow", 2}, Case{"teapot", "cow", 1}, Case{"suzanne", "bunny", 2}, Case{"spider", "woody", 3},
+              Case{"fandisk", "suzanne", 2}, Case{"homer", "wuson", 1}, Case{"spider", "armadillo", 1}}) {
             CAPTURE(std::string(c.a) + " and " + c.b);
             const TriangleMesh a = shared_mesh(c.a), b = shared_mesh(c.b);
             const auto tree_a = tree::MeshTree::build(a), tree_b = tree::MeshTree::build(b);
@@ -132,7 +133,8 @@ TEST_SUITE("collide/shared_mesh") {
                 CHECK(intersects(*tree_a, *tree_b, pose) == !expected.empty());
                 // What brute force goes by, against rational arithmetic.
                 for (std::size_t i = 0; i < std::min<std::size_t>(10, expected.size()); ++i, ++checked)
-                    CHECK(oracle::triangles_meet(in_a.triangles[expected[i].first], in_b.triangles[expected[i].second]));
+                    CHECK(
+                        oracle::triangles_meet(in_a.triangles[expected[i].first], in_b.triangles[expected[i].second]));
                 for (std::size_t i = 0; i < std::min<std::size_t>(10, near_misses.size()); ++i, ++checked)
                     CHECK_FALSE(oracle::triangles_meet(in_a.triangles[near_misses[i].first],
                                                        in_b.triangles[near_misses[i].second]));

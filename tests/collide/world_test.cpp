@@ -141,11 +141,20 @@ TEST_SUITE("collide/world") {
         World world, reference;
         REQUIRE(reference.update(clean.scene).has_value());
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        (void)stage.scene.set_local(stage.nodes[2], at({nan, 0.0, 0.0}));
+        for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
+            const auto refused = stage.scene.set_local(stage.nodes[2], at({bad, 0.0, 0.0}));
+            REQUIRE_FALSE(refused.has_value());
+            CHECK(refused.error().code == ErrorCode::non_finite);
+            CHECK(refused.error().item == stage.nodes[2]);
+            scene::Transform turned;
+            turned.linear[1][2] = bad;
+            CHECK(stage.scene.set_local(stage.nodes[1], turned).error().item == stage.nodes[1]);
+        }
         stage.scene.update();
         REQUIRE(world.update(stage.scene).has_value());
         CHECK(same(world.pairs(), reference.pairs()));
         CHECK(world.pairs().size() == 1);
+        CHECK(world.rejected().empty());
     }
 
     TEST_CASE("once warm a moving scene is collided without allocation") {
