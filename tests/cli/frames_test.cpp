@@ -27,6 +27,8 @@ TEST_SUITE("cli/frames") {
         write_contents(scratch().file("index.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
         write_contents(scratch().file("empty.obj"), "# nothing\n");
         write_contents(scratch().file("cameras.json"), "[{\"position\": [0, 0, \"x\"]}]");
+        write_contents(scratch().file("far.gltf"), R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"translation": [1e39, 0, 0], "name": "runaway"}]})");
         struct Case {
             std::string arguments, culprit;
         };
@@ -43,6 +45,7 @@ TEST_SUITE("cli/frames") {
             {scratch().file("nan.obj"), "nan.obj"},
             {scratch().file("index.obj"), "index.obj"},
             {scratch().file("empty.obj"), "empty.obj"},
+            {scratch().file("far.gltf"), "node 0 'runaway': transform"},
             {"town --draw --no-draw", "draw"},
         };
         for (const Case& wrong : cases) {
