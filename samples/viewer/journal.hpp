@@ -12,7 +12,7 @@ namespace crofton::viewer {
 struct JournalEntry {
     pipeline::FrameStatistics frame;  // without ids
     double frame_us = 0.0;            // the whole turn, drawing included
-    double ui_us = 0.0;               // building and recording the user interface
+    double ui_us = 0.0;               // building and recording the user interface, CPU time
     std::uint32_t scene_frame = 0;    // where the movers were: what to replay this frame with
 };
 
