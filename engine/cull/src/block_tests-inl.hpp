@@ -39,7 +39,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
     IntegerPlane rows[KernelView::kMaxPlanes];
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-        rows[i] = integer_plane(view.planes[i], at, inverse_quantum(node.unit), 0.0);
+        rows[i] = integer_plane(view.planes[i], at, inverse_quantum(node.unit));
     }
     for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
         const VU middle_xy = hn::Load(du, node.middle_xy + l), half_xy = hn::Load(du, node.half_xy + l),

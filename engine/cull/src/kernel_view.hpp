@@ -70,27 +70,23 @@ inline double inverse_quantum(float unit) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + 127 + 14 - exponent_of(unit)) << 52);
 }
 
-// A plane as seen from the origin of a block whose coordinates are integers x of 16 bits, a quantum each: in units of
-// 2^-14 quanta, the exact value at x is within `slack` of offset + pair_plane · x. With every coordinate's error of
-// half a unit of the normal, 2^-15 · reach; the double offset's as in local_plane; what the block adds, in world units;
-// and 1 for the offset's truncation, 1 for whatever the caller truncates, 1 for the slack's own. Offsets are cut off
-// where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits: they are too small there, so that what is
-// certainly inside is so rightly, and likewise what is certainly outside.
+// A plane as seen from a node, whose children's bounds are integers of 16 bits, a quantum each: in units of 2^-14
+// quanta, the exact value at x is within `slack` of offset + pair_plane · x, plus or minus the bound's reach if that is
+// wanted. Every coordinate costs half a unit of the normal, 2^-15 · reach in all; the double offset as in local_plane;
+// 1 is for the offset's truncation, 1 for the slack's own. Offsets are cut off where the sums, |offset| + 2^14 · 1.0005
+// · √3 · 32767, would leave 32 bits: they are too small there, so that what is certainly inside is so rightly, and
+// likewise what is certainly outside.
 struct IntegerPlane {
     std::int32_t offset, slack;
-    bool clamped;
 };
 
-inline IntegerPlane integer_plane(const KernelPlane& plane, const LocalOrigin& at, double per_quantum,
-                                  double roundings) {
+inline IntegerPlane integer_plane(const KernelPlane& plane, const LocalOrigin& at, double per_quantum) {
     constexpr double kMost = 1.2e9;
     const double value =
         plane.normal[0] * at.d[0] + plane.normal[1] * at.d[1] + plane.normal[2] * at.d[2] + plane.offset;
-    const double offset = value * per_quantum;
-    const double world = 0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.01p-15 * at.reach + roundings;
-    const double slack = world * per_quantum * (1.0 + 0x1p-20) + 3.0;
-    return {static_cast<std::int32_t>(std::clamp(offset, -kMost, kMost)),
-            static_cast<std::int32_t>(std::min(slack, 0x7fffffff * 1.0)), !(std::fabs(offset) <= kMost)};
+    const double slack = 0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.01p-15 * at.reach;
+    return {static_cast<std::int32_t>(std::clamp(value * per_quantum, -kMost, kMost)),
+            static_cast<std::int32_t>(std::min(slack * per_quantum + 3.0, 0x7fffffff * 1.0))};
 }
 
 }  // namespace crofton::cull

@@ -11,33 +11,49 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-// A plane before a leaf: in units of 2^-14 of a position_unit, a box's centre is `offset` + normal · (x, y, z) inside
-// of it, and `slack` bounds what that and the box's reach together may be off by.
-//   The position's rounding, half a unit along each axis: 2^13 · Σ|normal| ≤ 2^13 · √3 · 1.0005 < 2^14.
-//   The normal's, half a unit of 2^-14 each: half of Σ|x|, Σ|y|, Σ|z|, which integer_plane covers.
+// A plane before a leaf: in units of 2^-14 of a position_unit, a box's centre is offset + normal · (x, y, z) inside of
+// it, and `slack` bounds what that and the box's reach together may be off by.
+//   The position's rounding, half a unit along each axis: 2^13 · Σ|normal| ≤ 2^13 · √3 · 1.0005 < 0.87 · 2^14.
+//   The normal's, half a unit of 2^-14 each: half of |x| + |y| + |z|, 2^-15 · reach in world units.
 //   Three edges, no component of which is beyond 2^15: their rounding, 0.502 of a unit, as the position's; and the
-//   normal's, half of the nine components' sum. In all less than 12 · 2^14 units of 2^-14 of an edge_unit. The shift
-//   from the edges' units to the position's: 1, which integer_plane leaves room for.
-// Where the offset is out of range a plane says nothing.
+//   normal's, half of the nine components' sum. In all less than 12 · 2^14 units of 2^-14 of an edge_unit. The
+//   offset's, seven roundings of 2^-53 of Σ|origin − view| + |plane offset| as in local_plane; `far` says how much for
+//   any leaf whose boxes lie in the root's bounds, but for the leaf's own reach, which the reach's share above has room
+//   for. 1 each for the offset's truncation, the shift from the edges' units to the position's and the slack's own
+//   truncation.
+// Where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits, a plane says nothing.
 struct LeafPlane {
     const PairPlane* normal;
     std::int32_t offset, slack;
 };
 
-HWY_INLINE LeafPlane leaf_plane(const KernelView& view, std::size_t i, const LocalOrigin& at, const tree::Leaf& leaf) {
-    const double roundings = static_cast<double>(leaf.position_unit) + 12.0 * static_cast<double>(leaf.edge_unit);
-    const IntegerPlane plane = integer_plane(view.planes[i], at, inverse_quantum(leaf.position_unit), roundings);
-    return {&view.pair_planes[i], plane.offset, HWY_UNLIKELY(plane.clamped) ? 0x7fffffff : plane.slack};
-}
-
-struct LeafPlanes {
-    LeafPlane planes[KernelView::kMaxPlanes];
-    unsigned count = 0;
-
-    HWY_INLINE LeafPlanes(const KernelView& view, std::uint32_t which, const LocalOrigin& at, const tree::Leaf& leaf) {
-        for (; which; which &= which - 1)
-            planes[count++] = leaf_plane(view, hwy::Num0BitsBelowLS1Bit_Nonzero32(which), at, leaf);
+class LeafPlaneMaker {
+  public:
+    HWY_INLINE LeafPlaneMaker(const KernelView& view, const tree::Node& root) : view_(view) {
+        const LocalOrigin at = local_origin(view, root.origin, root.reach);
+        for (std::uint32_t i = 0; i < view.plane_count; ++i)
+            far_[i] = 0x1p-49 * (at.size + at.reach + std::fabs(view.planes[i].offset));
     }
+
+    HWY_INLINE LeafPlane operator()(std::size_t i, const tree::Leaf& leaf) const {
+        constexpr double kMost = 1.2e9;
+        const KernelPlane& plane = view_.planes[i];
+        const double per_quantum = inverse_quantum(leaf.position_unit);
+        const double x = leaf.origin[0] - view_.origin[0], y = leaf.origin[1] - view_.origin[1],
+                     z = leaf.origin[2] - view_.origin[2];
+        const double value = plane.normal[0] * x + plane.normal[1] * y + plane.normal[2] * z + plane.offset;
+        const double offset = value * per_quantum;
+        // A float's roundings of five sums and products: 2^-21.
+        const float roundings = leaf.position_unit + 12.0f * leaf.edge_unit + 0x1.01p-15f * leaf.reach;
+        const double slack = (static_cast<double>(roundings) * (1.0 + 0x1p-20) + far_[i]) * per_quantum + 3.0;
+        if (HWY_UNLIKELY(!(std::fabs(offset) <= kMost && slack <= kMost)))
+            return {&view_.pair_planes[i], 0, 0x7fffffff};
+        return {&view_.pair_planes[i], static_cast<std::int32_t>(offset), static_cast<std::int32_t>(slack)};
+    }
+
+  private:
+    const KernelView& view_;
+    double far_[KernelView::kMaxPlanes];
 };
 
 // Lanes l on of a leaf.
@@ -123,6 +139,10 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
     return result;
 }
 
+HWY_NOINLINE void settle_leaf(const LeafRows& boxes, const LeafPlane* planes, unsigned count, BoxTest& test) {
+    settle(box_rows(boxes, planes, count), test);
+}
+
 // In the exact mode a box that crosses two planes or more is asked for a common point, unless its centre is one.
 HWY_INLINE BoxTest test_leaf(const LeafRows& rows, const LeafPlane* planes, unsigned count, bool exact) {
     const DF d;
@@ -148,7 +168,7 @@ HWY_INLINE BoxTest test_leaf(const LeafRows& rows, const LeafPlane* planes, unsi
     result.unsettled = hn::AndNot(center, hn::And(twice, sure));
     if (hn::AllFalse(d, result.unsettled)) return result;
     result.straddling = hn::AndNot(result.unsettled, result.straddling);
-    settle(box_rows(rows, planes, count), result);
+    settle_leaf(rows, planes, count, result);
     return result;
 }
 

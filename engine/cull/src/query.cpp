@@ -45,6 +45,19 @@ KernelView kernel_view_of(const View& view) {
     return result;
 }
 
+// A large tree is asked for subtree by subtree, two levels down, whether they are shared among threads or not: so the
+// answer comes in the same order.
+Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
+    const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
+    std::uint64_t level[tree::kWidth];
+    entries[0] = root;
+    count = 1;
+    if (!many) return;
+    count = 0;
+    const std::size_t first_count = expand_tree_kernel(input, root, level);
+    for (std::size_t i = 0; i < first_count; ++i) count += expand_tree_kernel(input, level[i], entries + count);
+}
+
 void Query::start(std::size_t items) {
     visible_.size_ = visible_.inside_ = 0;
     visible_.statistics_ = {};
@@ -73,18 +86,16 @@ void Query::run(const tree::BoxTree& tree, Executor& executor) {
     const TreeKernelInput input{tree.nodes().data(),         tree.leaves().data(),     tree.leaf_ranges().data(),
                                 tree.leaf_counts().data(),   tree.slot_items().data(), &view,
                                 options_.mode == Mode::exact};
-    if (executor.concurrency() > 1 && tree.item_count() >= kParallelItems) return run_parallel(tree, input, executor);
-    grow(visible_.stack_, (tree.height() + 1) * tree::kWidth);
+    const Tasks tasks(input, tree.item_count() >= kParallelItems);
+    if (executor.concurrency() > 1 && tasks.count > 1) return run_parallel(tree, input, tasks, executor);
     TreeKernelOutput output{};
     output.inside = visible_.ids_.data();
     output.straddling = visible_.straddling_.data();
     output.undecided = visible_.undecided_.data();
-    output.stack = visible_.stack_.data();
-    grow(visible_.open_leaves_, 2 * (tree.leaves().size() + kPadding));
-    output.open_leaves = visible_.open_leaves_.data();
-    output.open_planes = output.open_leaves + tree.leaves().size() + kPadding;
-    output.stack[0] = (1u << view.plane_count) - 1;
-    run_tree_kernel(input, 1, output);
+    output.work_size = tree.nodes().size() + tree.leaves().size() + kPadding;
+    grow(visible_.work_, kWorkLists * output.work_size);
+    output.work = visible_.work_.data();
+    run_tree_kernel(input, tasks.entries, tasks.count, output);
     std::size_t inside = output.inside_count, straddling = output.straddling_count;
     append_decided(output, decide(tree, output), inside, straddling);
     finish(inside, straddling, tree.boxes().size());
@@ -114,51 +125,44 @@ void Query::run(const tree::VisitTree& tree) {
 
 // The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers; the parts are
 // then put together in order, so that the answer does not depend on who did what.
-void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, Executor& executor) {
-    constexpr std::size_t kTasks = std::size_t{tree::kWidth} * tree::kWidth, kGrain = 8, kParts = kTasks / kGrain;
-    std::uint64_t level[tree::kWidth], tasks[kTasks];
-    std::size_t task_count = 0;
-    const std::size_t first_count = expand_tree_kernel(input, (1u << input.view->plane_count) - 1, level);
-    for (std::size_t i = 0; i < first_count; ++i) task_count += expand_tree_kernel(input, level[i], tasks + task_count);
+void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
+                         Executor& executor) {
+    constexpr std::size_t kGrain = kTreeGroup, kParts = Tasks::kMost / kGrain;
     // What each part can hold at most; 16 more for what vectors write past the end.
     const auto most = [&](std::uint64_t entry) {
         const auto child = static_cast<std::uint32_t>(entry >> 32);
         if (child & tree::kLeafBit) return std::size_t{tree::kWidth};
         const std::size_t leaves = tree.leaf_ranges()[child].count;
-        return tree::kWidth * (leaves > 0 ? leaves : tree.leaves().size());
+        return tree::kWidth * (leaves > 0 ? leaves : std::max(tree.leaves().size(), tree.nodes().size()));
     };
     std::size_t starts[kParts + 1] = {};
-    const std::size_t parts = (task_count + kGrain - 1) / kGrain;
+    const std::size_t parts = (tasks.count + kGrain - 1) / kGrain;
     for (std::size_t p = 0; p < parts; ++p) {
         starts[p + 1] = starts[p] + kPadding;
-        for (std::size_t i = p * kGrain; i < std::min(task_count, (p + 1) * kGrain); ++i)
-            starts[p + 1] += most(tasks[i]);
+        for (std::size_t i = p * kGrain; i < std::min(tasks.count, (p + 1) * kGrain); ++i)
+            starts[p + 1] += most(tasks.entries[i]);
     }
-    const std::size_t stack = (tree.height() + 1) * tree::kWidth + kGrain;
     grow(visible_.part_inside_, starts[parts]);
     grow(visible_.part_straddling_, starts[parts]);
     grow(visible_.undecided_, starts[parts]);
-    grow(visible_.stack_, stack * kParts);
-    grow(visible_.open_leaves_, 2 * (starts[parts] / tree::kWidth + kPadding * parts));
+    // Below an entry there are no more nodes than leaves, if the builder made it; otherwise room for all of them is
+    // kept.
+    const auto work_size = [&](std::size_t p) { return (starts[p + 1] - starts[p]) / tree::kWidth * 2 + kPadding; };
+    grow(visible_.work_, kWorkLists * (starts[parts] / tree::kWidth * 2 + kPadding * parts));
     static_assert(sizeof(SlotRun) == sizeof(visible_.runs_[0]));
     grow(visible_.runs_, starts[parts] / tree::kWidth + parts);
     TreeKernelOutput outputs[kParts] = {};
     std::size_t kept[kParts] = {};
-    executor.parallel_for(task_count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
+    executor.parallel_for(tasks.count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
         const std::size_t p = begin / kGrain;
         TreeKernelOutput& output = outputs[p];
         output.inside = visible_.part_inside_.data() + starts[p];
         output.straddling = visible_.part_straddling_.data() + starts[p];
         output.undecided = visible_.undecided_.data() + starts[p];
-        output.stack = visible_.stack_.data() + stack * p;
-        // 16 more for what vectors write past the end, here too.
-        const std::size_t leaves = (starts[p + 1] - starts[p]) / tree::kWidth + kPadding;
-        output.open_leaves = visible_.open_leaves_.data() + 2 * (starts[p] / tree::kWidth + kPadding * p);
-        output.open_planes = output.open_leaves + leaves;
+        output.work = visible_.work_.data() + kWorkLists * (starts[p] / tree::kWidth * 2 + kPadding * p);
+        output.work_size = work_size(p);
         output.runs = reinterpret_cast<SlotRun*>(visible_.runs_.data()) + starts[p] / tree::kWidth + p;
-        // Last in, first out.
-        for (std::size_t i = begin; i < end; ++i) output.stack[end - 1 - i] = tasks[i];
-        run_tree_kernel(input, end - begin, output);
+        run_tree_kernel(input, tasks.entries + begin, end - begin, output);
         kept[p] = decide(tree, output);
     });
     std::size_t whole = 0, inside = 0, straddling = 0, whole_at[kParts], inside_at[kParts], straddling_at[kParts];

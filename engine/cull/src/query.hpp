@@ -20,7 +20,14 @@ class Query {
   private:
     void start(std::size_t items);
     void run_all(const tree::BoxTree& tree);
-    void run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, Executor& executor);
+    struct Tasks {
+        static constexpr std::size_t kMost = std::size_t{tree::kWidth} * tree::kWidth;
+        std::uint64_t entries[kMost];
+        std::size_t count = 0;
+
+        Tasks(const TreeKernelInput& input, bool many);
+    };
+    void run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks, Executor& executor);
     [[nodiscard]] std::size_t decide(const tree::BoxTree& tree, TreeKernelOutput& output) const;
     void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);

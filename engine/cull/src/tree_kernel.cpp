@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <crofton/cull/statistics.hpp>
 #include <cstddef>
+#include <utility>
 
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
@@ -22,8 +23,19 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 namespace {
 
-// In a stack entry's planes: everything below is inside, and in a layer that the view sees.
+// In an entry's planes: everything below is inside, and in a layer that the view sees.
 constexpr std::uint32_t kWhole = 1u << 31;
+
+// Lanes of `lanes` below which everything is in a layer that the view sees.
+HWY_INLINE std::uint32_t seen(const KernelView& view, const tree::Node& node, std::uint32_t lanes) {
+    if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
+    std::uint32_t result = 0;
+    for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
+        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+        if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
+    }
+    return result;
+}
 
 class Walk {
   public:
@@ -32,91 +44,100 @@ class Walk {
     // A copy of the output travels with the walk, so that the compiler keeps it in registers.
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
 
-    // One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
-    HWY_INLINE std::size_t expand(std::uint64_t entry, std::uint64_t* entries) {
-        const auto child = static_cast<std::uint32_t>(entry >> 32);
-        const auto planes = static_cast<std::uint32_t>(entry);
-        if (child & tree::kLeafBit || planes & kWhole) {
-            entries[0] = entry;
-            return 1;
-        }
-        const tree::Node& node = in_.nodes[child];
-        const NodeTest test = test_node(*in_.view, node, planes);
-        std::size_t count = 0;
-        const std::uint32_t whole = seen(node, test.alive & test.settled);
-        for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
-            const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
-            entries[count++] = std::uint64_t{node.child[lane]} << 32 | (whole >> lane & 1 ? kWhole : test.planes[lane]);
-        }
-        return count;
-    }
-
-    // First all nodes, then the leaves that they leave open: in one long loop, whose memory is asked for ahead.
-    HWY_INLINE void run(std::size_t stack_size) {
-        while (stack_size > 0) {
-            const std::uint64_t entry = out_.stack[--stack_size];
-            const auto child = static_cast<std::uint32_t>(entry >> 32);
-            const auto planes = static_cast<std::uint32_t>(entry);
-            if (planes & kWhole && accept_whole(child)) continue;
-            if (child & tree::kLeafBit) {
-                out_.open_leaves[open_] = child;
-                out_.open_planes[open_++] = planes & ~kWhole;
-            } else {
-                stack_size = visit_node(child, planes & ~kWhole, stack_size);
-            }
+    // Group after group of entries through the nodes, what lies inside as a whole copied and the leaves that stay open
+    // noted; these follow when all nodes are done. The groups settle the order of the answer.
+    HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
+        constexpr std::size_t kMaxGroups = tree::kWidth * tree::kWidth / kTreeGroup;
+        std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
+        for (std::size_t first = 0; first < entry_count; first += kTreeGroup, ++groups) {
+            descend(entries + first, std::min(kTreeGroup, entry_count - first));
+            accept_all();
+            part(crossing_ends[groups]);
+            crossing_ends[groups + 1] = leaves_.count;
+            cornered_ends[groups + 1] = cornered_.count;
         }
         if (out_.runs == nullptr) out_.whole_count = out_.inside_count;
-        constexpr std::size_t kAhead = 4;
-        for (std::size_t i = 0; i < std::min(kAhead, open_); ++i) prefetch_leaf(out_.open_leaves[i]);
-        for (std::size_t i = 0; i < open_; ++i) {
-            if (i + kAhead < open_) prefetch_leaf(out_.open_leaves[i + kAhead]);
-            visit_leaf(out_.open_leaves[i] & ~tree::kLeafBit, out_.open_planes[i]);
+        for (std::size_t g = 0; g < groups; ++g) {
+            visit_crossing(leaves_.from(crossing_ends[g], crossing_ends[g + 1]));
+            visit_cornered(cornered_.from(cornered_ends[g], cornered_ends[g + 1]));
         }
     }
 
   private:
-    // Lanes of `lanes` below which everything is in a layer that the view sees.
-    HWY_INLINE std::uint32_t seen(const tree::Node& node, std::uint32_t lanes) const {
-        if (HWY_LIKELY(node.layers_every & in_.view->layer_mask)) return lanes;
-        std::uint32_t result = 0;
-        for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
-            const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-            if (node.layers_all[lane] & in_.view->layer_mask) result |= 1u << lane;
+    // Children and the planes that they straddle.
+    struct List {
+        std::uint32_t* children;
+        std::uint32_t* planes;
+        std::size_t count = 0;
+
+        [[nodiscard]] HWY_INLINE List from(std::size_t begin, std::size_t end) const {
+            return {children + begin, planes + begin, end - begin};
         }
-        return result;
+        HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
+            const DU du;
+            hn::StoreU(hn::Compress(which, mask), du, children + count);
+            hn::StoreU(hn::Compress(their_planes, mask), du, planes + count);
+            count += hn::CountTrue(du, mask);
+        }
+        HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
+            children[count] = child;
+            planes[count++] = child_planes;
+        }
+    };
+
+    // Level by level; memory is asked for ahead, and lists grow without a branch on what is found.
+    HWY_INLINE void descend(const std::uint64_t* entries, std::size_t count) {
+        nodes_.count = whole_count_ = 0;
+        for (std::size_t i = 0; i < count; ++i) start(entries[i]);
+        constexpr std::size_t kAhead = 4;
+        for (std::size_t head = 0; head < nodes_.count; ++head) {
+            if (head + kAhead < nodes_.count) prefetch_node(nodes_.children[head + kAhead]);
+            visit_node(nodes_.children[head], nodes_.planes[head]);
+        }
     }
 
-    HWY_INLINE std::size_t visit_node(std::uint32_t id, std::uint32_t planes, std::size_t stack_size) {
+    HWY_INLINE void start(std::uint64_t entry) {
+        const auto child = static_cast<std::uint32_t>(entry >> 32);
+        const auto planes = static_cast<std::uint32_t>(entry);
+        if (planes & kWhole)
+            whole_[whole_count_++] = child;
+        else
+            (child & tree::kLeafBit ? leaves_ : nodes_).append(child, planes);
+    }
+
+    HWY_INLINE void visit_node(std::uint32_t id, std::uint32_t planes) {
         const tree::Node& node = in_.nodes[id];
         const NodeTest test = test_node(*in_.view, node, planes);
         if (kCountStatistics) out_.nodes_tested += node.count;
-        const std::uint32_t whole = seen(node, test.alive & test.settled);
-        if (node.only_leaves) {
-            for (std::uint32_t rest = whole; rest; rest &= rest - 1)
-                accept_whole(node.child[hwy::Num0BitsBelowLS1Bit_Nonzero32(rest)]);
-            leave_open(node, test, test.alive & ~whole);
-            return stack_size;
-        }
-        for (std::uint32_t alive = test.alive; alive;) {
-            const unsigned lane = 31u - static_cast<unsigned>(hwy::Num0BitsAboveMS1Bit_Nonzero32(alive));
-            alive ^= 1u << lane;
-            const bool is_whole = whole >> lane & 1;
-            if (!is_whole && !(node.child[lane] & tree::kLeafBit)) prefetch_node(node.child[lane]);
-            out_.stack[stack_size++] = std::uint64_t{node.child[lane]} << 32 | (is_whole ? kWhole : test.planes[lane]);
-        }
-        return stack_size;
-    }
-
-    // Without a branch on how many they are.
-    HWY_INLINE void leave_open(const tree::Node& node, const NodeTest& test, std::uint32_t lanes) {
+        const std::uint32_t whole = seen(*in_.view, node, test.alive & test.settled), open = test.alive & ~whole;
         const DU du;
         for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-            const std::uint32_t part = lanes >> l;
-            const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(part), static_cast<std::uint8_t>(part >> 8)};
-            const auto mask = hn::LoadMaskBits(du, bytes);
-            hn::StoreU(hn::Compress(hn::Load(du, node.child + l), mask), du, out_.open_leaves + open_);
-            hn::StoreU(hn::Compress(hn::Load(du, test.planes + l), mask), du, out_.open_planes + open_);
-            open_ += hn::CountTrue(du, mask);
+            const VU children = hn::Load(du, node.child + l), straddled = hn::Load(du, test.planes + l);
+            const auto whole_mask = mask_of(whole >> l), open_mask = mask_of(open >> l);
+            hn::StoreU(hn::Compress(children, whole_mask), du, whole_ + whole_count_);
+            whole_count_ += hn::CountTrue(du, whole_mask);
+            if (node.only_leaves) {
+                leaves_.append(children, straddled, open_mask);
+                continue;
+            }
+            const auto is_leaf = hn::Ne(hn::And(children, hn::Set(du, tree::kLeafBit)), hn::Zero(du));
+            leaves_.append(children, straddled, hn::And(open_mask, is_leaf));
+            nodes_.append(children, straddled, hn::AndNot(is_leaf, open_mask));
+        }
+    }
+
+    // Most leaves cross one plane; the others, in a list of their own, are fewer and cost more.
+    HWY_INLINE void part(std::size_t begin) {
+        const DU du;
+        const VU zero = hn::Zero(du), one = hn::Set(du, 1);
+        const std::size_t end = std::exchange(leaves_.count, begin);
+        for (std::size_t i = begin; i < end; i += hn::Lanes(du)) {
+            const VU children = hn::LoadU(du, leaves_.children + i), planes = hn::LoadU(du, leaves_.planes + i);
+            const auto used = hn::FirstN(du, end - i);
+            const auto few = hn::Eq(hn::And(planes, hn::Sub(planes, one)), zero);
+            const auto once = hn::And(few, hn::Ne(planes, zero));
+            leaves_.append(children, planes, hn::And(used, once));
+            cornered_.append(children, planes, hn::AndNot(once, used));
         }
     }
 
@@ -154,21 +175,33 @@ class Walk {
         out_.inside_count += range.items;
     }
 
-    // False for a node whose leaves are not consecutive.
-    HWY_INLINE bool accept_whole(std::uint32_t child) {
+    // A node whose leaves are not consecutive leaves it to its children, at the list's end.
+    HWY_INLINE void accept_all() {
         const std::size_t before = out_.inside_count + out_.whole_count;
-        if (child & tree::kLeafBit) {
-            copy_leaf(child & ~tree::kLeafBit);
-        } else {
+        constexpr std::size_t kAhead = 8;
+        for (std::size_t i = 0; i < whole_count_; ++i) {
+            if (i + kAhead < whole_count_) {
+                const std::uint32_t ahead = whole_[i + kAhead];
+                if (ahead & tree::kLeafBit)
+                    hwy::Prefetch(in_.slot_items + std::size_t{ahead & ~tree::kLeafBit} * tree::kWidth);
+                else
+                    hwy::Prefetch(in_.ranges + ahead);
+            }
+            const std::uint32_t child = whole_[i];
+            if (child & tree::kLeafBit) {
+                copy_leaf(child & ~tree::kLeafBit);
+                continue;
+            }
             const tree::LeafRange range = in_.ranges[child];
-            if (range.count == 0) return false;
-            if (range.items > 0)
+            const tree::Node& node = in_.nodes[child];
+            if (range.count == 0)
+                for (std::uint32_t lane = 0; lane < node.count; ++lane) whole_[whole_count_++] = node.child[lane];
+            else if (range.items > 0)
                 copy_items(range);
             else
                 for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) copy_leaf(leaf);
         }
         if (kCountStatistics) out_.accepted_whole += out_.inside_count + out_.whole_count - before;
-        return true;
     }
 
     template <class V>
@@ -190,36 +223,88 @@ class Walk {
                    out_.undecided_count);
     }
 
-    HWY_INLINE void visit_leaf(std::uint32_t id, std::uint32_t planes) {
-        const tree::Leaf& leaf = in_.leaves[id];
+    // The planes are made a leaf ahead: what a leaf waits for is computed while the one before is tested.
+    HWY_INLINE void visit_crossing(const List& leaves) {
         const KernelView& view = *in_.view;
-        if (kCountStatistics) out_.boxes_tested += leaf.count;
-        const LocalOrigin at = local_origin(view, leaf.origin, leaf.reach);
         const DU du;
-        if (HWY_LIKELY(planes && !(planes & (planes - 1)))) {
-            const LeafPlane plane = leaf_plane(view, hwy::Num0BitsBelowLS1Bit_Nonzero32(planes), at, leaf);
+        if (leaves.count == 0) return;
+        const auto plane_of = [&](std::size_t i) HWY_ATTR {
+            const tree::Leaf& leaf = in_.leaves[leaves.children[i] & ~tree::kLeafBit];
+            return plane_before_(hwy::Num0BitsBelowLS1Bit_Nonzero32(leaves.planes[i]), leaf);
+        };
+        constexpr std::size_t kAhead = 5;
+        const std::size_t last = leaves.count - 1;
+        for (std::size_t i = 0; i < std::min(kAhead, leaves.count); ++i) prefetch_leaf(leaves.children[i]);
+        LeafPlane next = plane_of(0);
+        for (std::size_t i = 0; i <= last; ++i) {
+            prefetch_leaf(leaves.children[std::min(i + kAhead, last)]);
+            const LeafPlane plane = next;
+            next = plane_of(std::min(i + 1, last));
+            const std::uint32_t id = leaves.children[i] & ~tree::kLeafBit;
+            const tree::Leaf& leaf = in_.leaves[id];
+            if (kCountStatistics) out_.boxes_tested += leaf.count;
             for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
                 emit(id, l, test_leaf(LeafRows(view, leaf, l), plane));
-            return;
         }
-        const LeafPlanes local(view, planes, at, leaf);
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-            emit(id, l, test_leaf(LeafRows(view, leaf, l), local.planes, local.count, in_.exact));
+    }
+
+    HWY_INLINE void visit_cornered(const List& leaves) {
+        const KernelView& view = *in_.view;
+        const DU du;
+        constexpr std::size_t kAhead = 4;
+        for (std::size_t i = 0; i < std::min(kAhead, leaves.count); ++i) prefetch_leaf(leaves.children[i]);
+        for (std::size_t i = 0; i < leaves.count; ++i) {
+            if (i + kAhead < leaves.count) prefetch_leaf(leaves.children[i + kAhead]);
+            const std::uint32_t id = leaves.children[i] & ~tree::kLeafBit;
+            const tree::Leaf& leaf = in_.leaves[id];
+            if (kCountStatistics) out_.boxes_tested += leaf.count;
+            LeafPlane planes[KernelView::kMaxPlanes];
+            unsigned count = 0;
+            for (std::uint32_t rest = leaves.planes[i]; rest; rest &= rest - 1)
+                planes[count++] = plane_before_(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest), leaf);
+            // Nearly all have two: then there is no loop.
+            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+                const LeafRows rows(view, leaf, l);
+                emit(id, l,
+                     HWY_LIKELY(count == 2) ? test_leaf(rows, planes, 2, in_.exact)
+                                            : test_leaf(rows, planes, count, in_.exact));
+            }
+        }
     }
 
     const TreeKernelInput& in_;
     TreeKernelOutput out_;
-    std::size_t open_ = 0;
+    LeafPlaneMaker plane_before_{*in_.view, in_.nodes[0]};
+    List nodes_{out_.work, out_.work + out_.work_size};  // open, from the first on
+    List leaves_{out_.work + 2 * out_.work_size, out_.work + 3 * out_.work_size};
+    List cornered_{out_.work + 5 * out_.work_size, out_.work + 6 * out_.work_size};  // those that cross several planes
+    std::uint32_t* whole_ = out_.work + 4 * out_.work_size;  // children that lie inside as a whole
+    std::size_t whole_count_ = 0;
 };
 
-void RunTree(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {
+void RunTree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
     Walk walk(input, output);
-    walk.run(stack_size);
+    walk.run(entries, count);
     output = walk.result();
 }
 
+// One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
 std::size_t ExpandTree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
-    return Walk(input, TreeKernelOutput{}).expand(entry, entries);
+    const auto child = static_cast<std::uint32_t>(entry >> 32);
+    const auto planes = static_cast<std::uint32_t>(entry);
+    if (child & tree::kLeafBit || planes & kWhole) {
+        entries[0] = entry;
+        return 1;
+    }
+    const tree::Node& node = input.nodes[child];
+    const NodeTest test = test_node(*input.view, node, planes);
+    std::size_t count = 0;
+    const std::uint32_t whole = seen(*input.view, node, test.alive & test.settled);
+    for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
+        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
+        entries[count++] = tree_entry(node.child[lane], whole >> lane & 1 ? kWhole : test.planes[lane]);
+    }
+    return count;
 }
 
 }  // namespace
@@ -236,8 +321,9 @@ std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry
     return HWY_DYNAMIC_DISPATCH(ExpandTree)(input, entry, entries);
 }
 
-void run_tree_kernel(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output) {
-    HWY_DYNAMIC_DISPATCH(RunTree)(input, stack_size, output);
+void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
+                     TreeKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(RunTree)(input, entries, count, output);
 }
 
 }  // namespace crofton::cull

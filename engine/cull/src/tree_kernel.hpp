@@ -21,16 +21,15 @@ struct SlotRun {
     std::uint32_t first, count;
 };
 
-// The arrays have room for all items (the last three: for all leaves) and 16 more; `stack` for 16 entries a level. The
-// items that a node above them settles, `whole_count` of them, come first in `inside`, or where there are `runs` stay
-// in the tree's slots and are named there.
+// The lists have room for all items and 16 more, `runs` for all leaves, `work` for seven lists of `work_size`: all nodes
+// and all leaves that the entries name and that lie below them, and 16 more. The items that a node above them settles,
+// `whole_count` of them, come first in `inside`, or where there are `runs` stay in the tree's slots and are named there.
 struct TreeKernelOutput {
     tree::ItemId* inside;
     tree::ItemId* straddling;
-    std::uint32_t* undecided;    // slots
-    std::uint64_t* stack;        // child << 32 | planes still to test
-    std::uint32_t* open_leaves;  // those that straddle the view, and the planes that they straddle
-    std::uint32_t* open_planes;
+    std::uint32_t* undecided;  // slots
+    std::uint32_t* work;
+    std::size_t work_size;
     SlotRun* runs;
     std::size_t run_count;
     std::size_t inside_count, straddling_count, undecided_count, whole_count;
@@ -38,11 +37,21 @@ struct TreeKernelOutput {
     std::uint64_t improper;  // outside, found by a separating axis
 };
 
+inline constexpr std::size_t kWorkLists = 7;
+// So many entries are handled together; the answer's order depends on which.
+inline constexpr std::size_t kTreeGroup = 8;
+
+// An entry names a child and the planes that are still to be tested for what is below: child << 32 | planes.
+[[nodiscard]] constexpr std::uint64_t tree_entry(std::uint32_t child, std::uint32_t planes) {
+    return std::uint64_t{child} << 32 | planes;
+}
+
 // The children of `entry` that are not certainly outside, in the order of their lanes, as entries; returns how many (≤
 // 16).
 std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries);
 
-// Handles the children that `stack_size` entries name, and all below them.
-void run_tree_kernel(const TreeKernelInput& input, std::size_t stack_size, TreeKernelOutput& output);
+// Handles the children that `count` ≤ 256 entries name, and all below them.
+void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
+                     TreeKernelOutput& output);
 
 }  // namespace crofton::cull

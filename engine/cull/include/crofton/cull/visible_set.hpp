@@ -31,8 +31,8 @@ class VisibleSet {
     Vector<std::uint32_t> undecided_;
     Vector<Verdict> verdicts_;
     Vector<std::uint64_t> bits_;
-    Vector<std::uint64_t> stack_, runs_;
-    Vector<std::uint32_t> open_leaves_;
+    Vector<std::uint64_t> runs_;
+    Vector<std::uint32_t> work_;
     std::size_t size_ = 0, inside_ = 0;
     Statistics statistics_;
 };
