@@ -17,6 +17,7 @@ constexpr double kRoundingUp = 1.0 + 1e-12;
 // How many neighbours in angular order are tried as witnesses on each side: pruning less is never wrong.
 constexpr std::size_t kNeighbours = 16;
 constexpr std::size_t kStepsPerEdge = 8;
+constexpr double kFound = 0.5;  // the share of the work that is done with them, as told to the caller
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -56,7 +57,7 @@ bool CandidateFinder::find(const Domain& domain, std::size_t limit, Watch& watch
         seen_.clear();
         look_from(p);
         if (graph.destination.size() + seen_.size() > limit) return false;
-        if (watch.stopped(0.5 * p / count, kStepsPerEdge * (seen_.size() + 1))) return false;
+        if (watch.stopped(kFound * p / count, kStepsPerEdge * (seen_.size() + 1))) return false;
         if (p == count / 16) reserve(graph, 18 * graph.destination.size());
         for (const auto& seen : seen_) {
             graph.destination.push_back(seen.vertex);
@@ -65,8 +66,7 @@ bool CandidateFinder::find(const Domain& domain, std::size_t limit, Watch& watch
         }
         graph.first.push_back(static_cast<Index>(graph.destination.size()));
     }
-    match_twins(graph);
-    return true;
+    return match_twins(graph, watch);
 }
 
 void CandidateFinder::look_from(Index p) {
@@ -205,7 +205,7 @@ void CandidateFinder::filter(std::size_t begin, std::size_t end) {
 
 // Keeps the half-edges whose twin was found too, and joins them. Vertices are visited in order; each leaves its
 // half-edges to later vertices in those vertices' lists.
-void CandidateFinder::match_twins(CandidateGraph& graph) {
+bool CandidateFinder::match_twins(CandidateGraph& graph, Watch& watch) {
     const auto count = static_cast<Index>(graph.vertex_count());
     const auto half_edges = static_cast<Index>(graph.half_edge_count());
     graph.twin.assign(half_edges, kNone);
@@ -217,6 +217,7 @@ void CandidateFinder::match_twins(CandidateGraph& graph) {
     for (Index p = 0; p < count; ++p) {
         // While p is visited, stamp_ leads from an earlier vertex to its half-edge to p. Entries left from other visits
         // name half-edges with another destination.
+        if (watch.stopped(kFound, graph.first[p + 1] - graph.first[p])) return false;
         for (Index h = pending_head_[p]; h != kNone; h = pending_next[h]) stamp_[pending_origin_[h]] = h;
         for (Index h = graph.first[p]; h < graph.first[p + 1]; ++h) {
             const Index q = graph.destination[h];
@@ -249,6 +250,7 @@ void CandidateFinder::match_twins(CandidateGraph& graph) {
     graph.flags.resize(kept);
     graph.twin.resize(kept);
     if (!graph.input.empty()) graph.input.resize(kept);
+    return true;
 }
 
 }  // namespace crofton::triangulate

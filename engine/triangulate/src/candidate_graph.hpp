@@ -51,7 +51,7 @@ class CandidateFinder {
     void look_through(Index edge, Index right, Index left);
     [[nodiscard]] bool is_dark(View& view) const;
     void filter(std::size_t begin, std::size_t end);
-    void match_twins(CandidateGraph& graph);
+    [[nodiscard]] bool match_twins(CandidateGraph& graph, Watch& watch);
 
     const Domain* domain_ = nullptr;
     const HalfEdgeMesh* mesh_ = nullptr;

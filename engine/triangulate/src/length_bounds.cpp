@@ -1,10 +1,31 @@
 #include "length_bounds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace crofton::triangulate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostLooks = 64;
+
+double square(const glm::dvec2& v) {
+    return v.x * v.x + v.y * v.y;
+}
+
+// From p to segment ab, rounded down: the cross product errs by less than 2^-50 |pa| |pb|.
+double square_distance(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+    const glm::dvec2 pa = a - p, pb = b - p, ab = b - a;
+    const double aa = square(pa), bb = square(pb);
+    if (pa.x * ab.x + pa.y * ab.y >= 0.0) return aa;
+    if (pb.x * ab.x + pb.y * ab.y <= 0.0) return bb;
+    const double area = std::max(0.0, std::fabs(pa.x * pb.y - pa.y * pb.x) - 0x1p-50 * std::sqrt(aa * bb));
+    return area * area / square(ab);
+}
+
+}  // namespace
 
 // Among the k vertices of the shortest reach the diagonals and the b(k) sides that join them form a planar graph of at
 // most 3k edges, and a diagonal shorter than the reach of the next vertex joins two of them. So, in order of length,
@@ -26,36 +47,72 @@ double DelaunayBound::weight(const Domain& domain) {
     return sum;
 }
 
-// Of what is seen from a vertex through the opposite side of a Delaunay triangle there, nothing lies inside the
-// triangle's circle, and the chords from the vertex through the opposite side are at least as long as the shorter of
-// the triangle's sides at the vertex.
 void DelaunayBound::measure(const Domain& domain) {
     const auto& mesh = domain.mesh();
-    reach_.assign(mesh.points.size(), std::numeric_limits<double>::infinity());
+    reach_.resize(mesh.points.size());
+    for (Index v = 0; v < reach_.size(); ++v) reach_[v] = shortest_diagonal(domain, v);
     sides_.clear();
     slits_ = 0.0;
     diagonals_ = 0;
-    const auto length = [&](Index e) {
-        const glm::dvec2 d = mesh.points[mesh.origin[e]] - mesh.points[mesh.destination(e)];
-        return std::sqrt(d.x * d.x + d.y * d.y);
-    };
-    for (Index t = 0; t < mesh.triangle_count(); ++t) {
-        if (!domain.inside(t)) continue;
-        for (Index e = 4 * t; e < 4 * t + 3; ++e) {
-            const Index u = mesh.origin[e], w = mesh.destination(e), twin = mesh.twin[e];
-            const double here = length(e);
-            const bool shared = twin != kNone && domain.inside(twin / 4);
-            if (mesh.mark[e] == 0) {
-                diagonals_ += e < twin;
-                reach_[u] = std::min(reach_[u], here);
-                reach_[w] = std::min(reach_[w], here);
-            } else if (!shared || e < twin) {
-                sides_.push_back({u, w});
-                if (shared) slits_ += here;
-            }
-            if (mesh.mark[next(e)] == 0) reach_[u] = std::min({reach_[u], here, length(previous(e))});
+    for (Index e = 0; e < mesh.origin.size(); ++e) {
+        if ((e & 3u) == 3u || !domain.inside(e / 4)) continue;
+        const Index twin = mesh.twin[e];
+        const bool shared = twin != kNone && domain.inside(twin / 4);
+        if (mesh.mark[e] == 0) {
+            diagonals_ += e < twin;
+        } else if (!shared || e < twin) {
+            sides_.push_back({mesh.origin[e], mesh.destination(e)});
+            if (shared) slits_ += std::sqrt(square(mesh.points[mesh.origin[e]] - mesh.points[mesh.destination(e)]));
         }
     }
+}
+
+// A lower bound on the length of v's diagonals: the distance to the nearest vertex that is not joined to v by a side
+// and can be reached through triangles, seen or not. What is not looked through is as far as the nearest point of its
+// edge.
+double DelaunayBound::shortest_diagonal(const Domain& domain, Index v) {
+    const auto& mesh = domain.mesh();
+    const glm::dvec2 eye = mesh.points[v];
+    double best = kInfinity;
+    std::array<Index, 4> joined;
+    std::size_t joined_count = 0;
+    const auto meet = [&](Index w) {
+        const auto end = joined.begin() + static_cast<std::ptrdiff_t>(joined_count);
+        if (std::find(joined.begin(), end, w) == end) best = std::min(best, square(mesh.points[w] - eye));
+    };
+    const auto meet_along = [&](Index e, Index w) {
+        if (mesh.mark[e] == 0)
+            meet(w);
+        else if (joined_count < joined.size())
+            joined[joined_count++] = w;
+    };
+    open_.clear();
+    const Index start = mesh.vertex_edge[v];
+    for (Index e = start; e != kNone;) {
+        if (domain.inside(e / 4)) {
+            meet_along(e, mesh.destination(e));
+            meet_along(previous(e), mesh.apex(e));
+            if (mesh.mark[next(e)] == 0) open_.push_back(next(e));
+        }
+        e = mesh.rotate(e);
+        if (e == start) break;
+    }
+    for (int looks = 0; !open_.empty(); ++looks) {
+        const Index e = open_.back();
+        open_.pop_back();
+        const double distance = square_distance(eye, mesh.points[mesh.origin[e]], mesh.points[mesh.destination(e)]);
+        if (distance >= best) continue;
+        if (looks >= kMostLooks) {
+            best = distance;
+            continue;
+        }
+        const Index beyond = mesh.twin[e];
+        meet(mesh.apex(beyond));
+        for (const Index side : {next(beyond), previous(beyond)}) {
+            if (mesh.mark[side] == 0) open_.push_back(side);
+        }
+    }
+    return std::sqrt(best);
 }
 
 // Sorts the vertices that have diagonals by reach, and counts the sides that each closes with earlier ones.
@@ -63,7 +120,7 @@ void DelaunayBound::rank() {
     order_.clear();
     rank_.assign(reach_.size(), kNone);
     for (Index v = 0; v < reach_.size(); ++v) {
-        if (reach_[v] < std::numeric_limits<double>::infinity()) order_.push_back(v);
+        if (reach_[v] < kInfinity) order_.push_back(v);
     }
     std::sort(order_.begin(), order_.end(),
               [&](Index a, Index b) { return reach_[a] != reach_[b] ? reach_[a] < reach_[b] : a < b; });

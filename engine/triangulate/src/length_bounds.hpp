@@ -15,11 +15,12 @@ class DelaunayBound {
         Index from, to;
     };
     void measure(const Domain& domain);
+    [[nodiscard]] double shortest_diagonal(const Domain& domain, Index v);
     void rank();
 
     Vector<double> reach_;  // no diagonal from a vertex is shorter
     Vector<Side> sides_;    // constrained edges of the inside
-    Vector<Index> order_, rank_, closed_;
+    Vector<Index> order_, rank_, closed_, open_;
     double slits_ = 0.0;
     std::size_t diagonals_ = 0;
 };
