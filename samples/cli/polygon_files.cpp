@@ -161,7 +161,7 @@ class GeoJsonReader {
 
 Result<PolygonFile> read_json(const std::string& path, const std::string& text) {
     const json document = json::parse(text, nullptr, false);
-    if (document.is_discarded()) return damaged(path, "not JSON");
+    if (document.is_discarded()) return damaged(path, "not JSON, or a number that double cannot hold");
     PolygonFile file;
     if (document.is_array()) {
         NamedPolygon named{assets::file_name(path), {}};

@@ -14,8 +14,41 @@ int report_error(std::string_view subject, const Error& error) {
     return kBadInput;
 }
 
+namespace {
+
+// Puts arrays that hold only numbers on one line, outside of strings.
+std::string with_short_arrays(const std::string& text) {
+    std::string result;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"' && (i == 0 || !quoted))
+            quoted = true;
+        else if (quoted && c == '\\')
+            result += text[i++];
+        else if (quoted && c == '"')
+            quoted = false;
+        const std::size_t end = c == '[' && !quoted ? text.find_first_not_of("0123456789+-.eE, \n", i + 1) : text.npos;
+        if (end == text.npos || text[end] != ']') {
+            result += text[i];
+            continue;
+        }
+        for (; i <= end; ++i) {
+            if (text[i] == ',')
+                result += ", ";
+            else if (text[i] != ' ' && text[i] != '\n')
+                result += text[i];
+        }
+        --i;
+    }
+    return result;
+}
+
+}  // namespace
+
 Result<void> write_json(const std::string& path, const nlohmann::json& document) {
-    return write_file(path, document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    const std::string text = document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return write_file(path, with_short_arrays(text) + "\n");
 }
 
 }  // namespace crofton::cli

@@ -1,5 +1,6 @@
 // `crofton triangulate`: polygons with holes, or the planar patches of meshes, to triangles.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
@@ -26,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
     double seconds = 10.0, tolerance = -1.0, attribute_tolerance = 1e-4;
-    bool no_indices = false, compare = false;
+    bool no_indices = false, compare = false, has_tolerance = false;
     std::uint64_t frusta = 100'000;
     std::size_t least_vertices = 5;
 };
@@ -54,7 +55,7 @@ json to_json(const NamedPolygon& named, const Triangulation& result, double micr
 
 struct Totals {
     std::size_t polygons = 0, refused = 0, vertices = 0, holes = 0, triangles = 0, optimal = 0;
-    double weight = 0.0, microseconds = 0.0;
+    double weight = 0.0, microseconds = 0.0, largest_gap = 0.0;
 
     void add(const Polygon& polygon, const Triangulation& result, double time) {
         ++polygons;
@@ -62,6 +63,7 @@ struct Totals {
         holes += polygon.ring_count() - 1;
         triangles += result.triangles.size();
         optimal += result.optimal;
+        largest_gap = std::max(largest_gap, result.gap);
         weight += result.weight;
         microseconds += time;
     }
@@ -73,7 +75,12 @@ void print_table(const TriangulateOptions& options, const Totals& t) {
     std::printf("%-16s %10zu %10zu %8zu %10zu %16.8g %10zu %12.3f\n", options.method.c_str(), t.polygons, t.vertices,
                 t.holes, t.triangles, t.weight, t.optimal,
                 t.vertices ? t.microseconds / static_cast<double>(t.vertices) : 0.0);
-    if (t.refused) std::printf("%zu polygons were refused\n", t.refused);
+    if (t.optimal < t.polygons && std::isfinite(t.largest_gap)) {
+        const std::size_t open = t.polygons - t.optimal;
+        std::printf("%zu %s not proven minimal, but at most %.2g times as heavy as the minimum\n", open,
+                    open == 1 ? "polygon is" : "polygons are", 1.0 + t.largest_gap);
+    }
+    if (t.refused) std::printf("%zu %s refused\n", t.refused, t.refused == 1 ? "polygon was" : "polygons were");
 }
 
 Result<int> run_polygons(const TriangulateOptions& options, Method method) {
@@ -97,8 +104,9 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
                 entries.push_back(to_json(polygons[i], results[i], time, options.no_indices));
             } else {
                 ++totals.refused;
-                std::fprintf(stderr, "crofton: %s: %s: %s\n", options.file.c_str(), polygons[i].name.c_str(),
-                             done.error().message.c_str());
+                const bool named = polygons[i].name != assets::file_name(options.file);
+                std::fprintf(stderr, "crofton: %s: %s%s%s\n", options.file.c_str(),
+                             named ? polygons[i].name.c_str() : "", named ? ": " : "", done.error().message.c_str());
                 entries.push_back(
                     {{"name", polygons[i].name},
                      {"error", {{"code", to_string(done.error().code)}, {"message", done.error().message}}}});
@@ -141,6 +149,17 @@ Result<int> run(const TriangulateOptions& options) {
         return fail(ErrorCode::invalid_argument, kNoItem, "--attribute-tolerance must not be negative");
     if (options.json == "-" && options.out == "-")
         return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --out can go to stdout");
+    if (options.has_tolerance && !(options.tolerance >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "--tolerance must not be negative");
+    const std::string kind = assets::extension(options.file);
+    const bool mesh =
+        kind == "obj" || kind == "glb" || kind == "gltf" || options.file == "town" || options.file == "room";
+    if (!mesh && !is_polygon_file(options.file)) {
+        return fail(ErrorCode::unsupported, kNoItem,
+                    options.file + ": unknown kind of file; known are .poly, .json, .geojson, .wad, .obj, .glb, .gltf");
+    }
+    if (!options.map.empty() && kind != "wad")
+        return fail(ErrorCode::invalid_argument, kNoItem, "--map is for .wad files");
     if (options.compare) {
         if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
             return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
@@ -209,7 +228,8 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout");
     command->add_option("--out", options->out,
                         "Write the asset with its patches triangulated anew, as .glb; - for stdout");
-    command->callback([options, &outcome] {
+    command->callback([options, command, &outcome] {
+        options->has_tolerance = command->count("--tolerance") > 0;
         const auto status = run(*options);
         outcome.status = status ? *status : report_error("", status.error());
     });

@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 
 #include "run_cli.hpp"
@@ -64,6 +65,33 @@ TEST_SUITE("cli/triangulate") {
         CHECK(polygons[0]["gap"].is_null());
         CHECK_FALSE(polygons[0].contains("triangles"));
         CHECK(polygons[1]["vertices"] == 3);
+    }
+
+    TEST_CASE("JSON has a triangle a line, and brackets in names stay as they are") {
+        write_contents(scratch().file("brackets.poly"), "P [1,\\\"[2] 1\n4 0 0 2 0 2 2 0 2\n");
+        const CliRun run = run_cli("triangulate '" + scratch().file("brackets.poly") + "' --json -");
+        REQUIRE(run.json()["polygons"].size() == 1);
+        CHECK(run.json()["polygons"][0]["name"] == "[1,\\\"[2]");
+        CHECK(run.json()["polygons"][0]["triangles"].size() == 2);
+        CHECK(std::count(run.out.begin(), run.out.end(), '\n') < 35);
+    }
+
+    TEST_CASE("options that do not fit the file, or have no sense, are refused") {
+        write_contents(scratch().file("fit.poly"), "P square 1\n4 0 0 2 0 2 2 0 2\n");
+        const std::string file = "triangulate '" + scratch().file("fit.poly") + "' ";
+        for (const char* options :
+             {"--map MAP01", "--tolerance -1", "--tolerance nan", "--time-limit -1", "--out x.glb"})
+            CHECK(run_cli(file + options).status == 2);
+    }
+
+    TEST_CASE("what is not proven when time is over is said, with how heavy it can be") {
+        std::string points;
+        for (int i = 0; i < 2000; ++i)
+            points += " " + std::to_string(i % 2 * 3 + i) + " " + std::to_string((i - 1000) * (i - 1000));
+        write_contents(scratch().file("late.poly"), "P late 1\n2000" + points + "\n");
+        const CliRun run = run_cli("triangulate '" + scratch().file("late.poly") + "' --time-limit 0");
+        CHECK(run.status == 0);
+        CHECK(run.out.find("1 polygon is not proven minimal") != std::string::npos);
     }
 
     TEST_CASE("SVG goes to a file or stdout") {
