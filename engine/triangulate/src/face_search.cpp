@@ -253,14 +253,16 @@ bool FaceSearch::has_crossing(Level& level, Index h) const {
     if (level.witness[h] != kNone && open(level.witness[h])) return true;
     if (level.witness[h] = crossing_from_apex(level, h); level.witness[h] != kNone) return true;
     const Index a = g.destination[g.twin[h]], b = g.destination[h];
-    const Index low = std::min(a, b), high = std::max(a, b);
+    const auto [x_low, x_high] = std::minmax(level.points[a].x, level.points[b].x);
     const auto [y_low, y_high] = std::minmax(level.points[a].y, level.points[b].y);
-    for (Index v = 0; v < high; ++v) {
+    for (Index v = 0; v < g.vertex_count(); ++v) {
+        const glm::dvec2 c = level.points[v];
         for (Index k = g.first[v]; k < g.first[v + 1]; ++k) {
+            if (g.destination[k] <= v || !open(k)) continue;
             const Index d = g.destination[k];
-            if (d <= v || d <= low || !open(k)) continue;
-            const double c_y = level.points[v].y, d_y = level.points[d].y;
-            if (std::max(c_y, d_y) < y_low || std::min(c_y, d_y) > y_high) continue;
+            const glm::dvec2 e = level.points[d];
+            if (std::max(c.x, e.x) < x_low || std::min(c.x, e.x) > x_high) continue;
+            if (std::max(c.y, e.y) < y_low || std::min(c.y, e.y) > y_high) continue;
             if (candidates_cross(level.points, a, b, v, d)) {
                 level.witness[h] = k;
                 return true;
