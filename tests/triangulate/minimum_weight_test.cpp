@@ -143,6 +143,29 @@ TEST_SUITE("triangulate/minimum_weight") {
         CHECK(compared > 400);
     }
 
+    TEST_CASE("turning the plane by right angles changes no weight, also where holes hang far from all else") {
+        std::mt19937_64 random(33);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        for (int trial = 0; trial < 150; ++trial) {
+            CAPTURE(trial);
+            Polygon p;
+            add_star(p, random, {0, 0}, 9.0, 10.0, 30 + trial % 60, 0.0);
+            for (int hole = 0; hole < 2 + trial % 5; ++hole) {
+                const double angle = 6.283185307179586 * (hole + 0.3 * unit(random)) / (2 + trial % 5);
+                add_star(p, random, 4.5 * glm::dvec2(std::cos(angle), std::sin(angle)), 0.1, 1.0, 3 + trial % 3, 0.0);
+            }
+            const auto first = triangulate::triangulate(p, kUnhurried);
+            REQUIRE(first.has_value());
+            for (int turn = 0; turn < 3; ++turn) {
+                for (auto& q : p.points) q = glm::dvec2(-q.y, q.x);
+                const auto turned = triangulate::triangulate(p, kUnhurried);
+                REQUIRE(turned.has_value());
+                CHECK(turned->optimal);
+                CHECK(std::fabs(turned->weight - first->weight) <= 1e-12 * first->weight);
+            }
+        }
+    }
+
     TEST_CASE("without time or memory the Delaunay triangulation is returned, and says that it may not be minimal") {
         std::mt19937_64 random(23);
         Polygon p;
