@@ -10,9 +10,12 @@ void hint(const char* key) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s: %s", key, what_key_does(key));
 }
 
-// In a row of up to three.
+// In a row of up to three, each as wide as the longest label wants it.
 void flag(const char* label, bool& value, const char* key, int column) {
-    if (column > 0) ImGui::SameLine(static_cast<float>(column) * ImGui::GetWindowContentRegionWidth() / 3.0f);
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width =
+        ImGui::GetFrameHeight() + 2.0f * style.ItemInnerSpacing.x + ImGui::CalcTextSize("compare (G)").x;
+    if (column > 0) ImGui::SameLine(style.WindowPadding.x + static_cast<float>(column) * width);
     ImGui::Checkbox(label, &value);
     hint(key);
 }
