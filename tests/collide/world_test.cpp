@@ -157,6 +157,26 @@ TEST_SUITE("collide/world") {
         CHECK(world.rejected().empty());
     }
 
+    TEST_CASE("an instance whose chain of transforms leaves all bounds is rejected, and the others are unharmed") {
+        for (const double scale : {1e15, 1e-15}) {
+            Stage stage;
+            const auto ring = *stage.scene.add_mesh(wavy_torus(1.0, 0.3, 0.0, 12, 8));
+            stage.add(ring, at({0.0, 0.0, 0.0}));
+            stage.add(ring, at({1.0, 0.0, 0.0}));
+            scene::NodeId node = scene::kNone;
+            for (int i = 0; i < 30; ++i) node = *stage.scene.add_node(node, at({5.0, 0.0, 0.0}, glm::dmat3(scale)));
+            const auto lost = *stage.scene.add_instance(node, ring);
+            stage.scene.update();
+            World world;
+            REQUIRE(world.update(stage.scene).has_value());
+            CHECK(world.pairs().size() == 1);
+            if (scale > 1.0) {
+                REQUIRE(world.rejected().size() == 1);
+                CHECK(world.rejected()[0] == lost);
+            }
+        }
+    }
+
     TEST_CASE("once warm a moving scene is collided without allocation") {
         const CountingMemory counting;
         Stage stage;
