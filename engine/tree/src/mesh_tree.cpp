@@ -58,8 +58,7 @@ bool is_usable(const glm::vec3& p) {
 
 class MeshTreeBuilder {
   public:
-    MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
-        : mesh_(mesh), criterion_(options.criterion) {}
+    explicit MeshTreeBuilder(const TriangleMesh& mesh) : mesh_(mesh) {}
 
     Result<MeshTree> build();
 
@@ -75,7 +74,6 @@ class MeshTreeBuilder {
     }
 
     const TriangleMesh& mesh_;
-    measure::Criterion criterion_;
     MeshTree tree_;
     Vector<Reference> references_;
     Vector<Task> tasks_;
@@ -234,7 +232,6 @@ Result<MeshTree> MeshTreeBuilder::build() {
                     "mesh: the index count is not a multiple of three");
     if (mesh_.triangle_count() >= (std::size_t{1} << 28))
         return fail(ErrorCode::out_of_range, mesh_.triangle_count(), "mesh: 2^28 triangles or more");
-    if (auto sound = measure::validate(criterion_); !sound) return tl::unexpected<Error>(sound.error());
     collect();
     if (references_.empty()) return fail(ErrorCode::empty, kNoItem, "mesh: no valid triangle");
     tree_.triangle_count_ = references_.size();
@@ -257,8 +254,8 @@ Result<MeshTree> MeshTreeBuilder::build() {
     return std::move(tree_);
 }
 
-Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {
-    return MeshTreeBuilder(mesh, options).build();
+Result<MeshTree> MeshTree::build(const TriangleMesh& mesh) {
+    return MeshTreeBuilder(mesh).build();
 }
 
 }  // namespace crofton::tree
