@@ -43,12 +43,16 @@ crofton_status capi::to_pose(const crofton_transform* transform, const char* fun
     return status_of(validate(pose), function);
 }
 
+crofton_status capi::check_boxes(const crofton_box* a, const crofton_box* b, const char* function) {
+    CROFTON_CHECK(check_pointer(a, function));
+    CROFTON_CHECK(check_pointer(b, function));
+    CROFTON_CHECK(status_of(validate(to_box(a), 0), function));
+    return status_of(validate(to_box(b), 1), function);
+}
+
 crofton_status crofton_boxes_meet(const crofton_box* a, const crofton_box* b, int* meet) {
-    CROFTON_CHECK(check_pointer(a, __func__));
-    CROFTON_CHECK(check_pointer(b, __func__));
     CROFTON_CHECK(check_pointer(meet, __func__));
-    CROFTON_CHECK(status_of(validate(to_box(a), 0), __func__));
-    CROFTON_CHECK(status_of(validate(to_box(b), 1), __func__));
+    CROFTON_CHECK(check_boxes(a, b, __func__));
     *meet = collide::intersects(to_box(a), to_box(b)) ? 1 : 0;
     return CROFTON_OK;
 }

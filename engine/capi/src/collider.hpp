@@ -1,4 +1,4 @@
-// A mesh ready for collisions, as the functions of several headers see it.
+// What collides, as the functions of several headers see it: boxes, and meshes made ready.
 #pragma once
 #include <crofton/capi/collide.h>
 
@@ -17,6 +17,9 @@ struct crofton_collider {
 namespace crofton::capi {
 
 [[nodiscard]] crofton_status to_pose(const crofton_transform* transform, const char* function, collide::Pose& pose);
+
+// Both boxes are there and valid; an error names the first of them 0, the second 1.
+[[nodiscard]] crofton_status check_boxes(const crofton_box* a, const crofton_box* b, const char* function);
 
 // Where the caller asked for it.
 inline void copy_vector(const glm::dvec3& v, double* result) {

@@ -14,17 +14,6 @@ static_assert(CROFTON_A_INSIDE_B == static_cast<int>(collide::Containment::a_ins
               CROFTON_B_INSIDE_A == static_cast<int>(collide::Containment::b_inside_a) &&
               CROFTON_PARTLY_INSIDE == static_cast<int>(collide::Containment::partly));
 
-namespace {
-
-crofton_status check_boxes(const crofton_box* a, const crofton_box* b, const char* function) {
-    CROFTON_CHECK(check_pointer(a, function));
-    CROFTON_CHECK(check_pointer(b, function));
-    CROFTON_CHECK(status_of(validate(to_box(a), 0), function));
-    return status_of(validate(to_box(b), 1), function);
-}
-
-}  // namespace
-
 crofton_status crofton_boxes_manifold(const crofton_box* a, const crofton_box* b, crofton_manifold* manifold) {
     CROFTON_CHECK(check_boxes(a, b, __func__));
     CROFTON_CHECK(check_struct(manifold, __func__));

@@ -77,9 +77,9 @@ LaneBox box_for(const Block& block, const Aabb& bounds) {
     return box;
 }
 
-template <class Meets>
-void collect(const tree::BoxTree& tree, const Aabb& bounds, std::uint32_t layers, Vector<tree::ItemId>& items,
-             const Meets& meets) {
+template <class Body>
+void collect(const tree::BoxTree& tree, const Body& body, const Aabb& bounds, std::uint32_t layers,
+             Vector<tree::ItemId>& items) {
     items.clear();
     if (!std::isfinite(bounds.min.x + bounds.min.y + bounds.min.z + bounds.max.x + bounds.max.y + bounds.max.z)) return;
     Stack<std::uint32_t> stack(tree);
@@ -90,7 +90,7 @@ void collect(const tree::BoxTree& tree, const Aabb& bounds, std::uint32_t layers
             const tree::LeafId id = child & ~tree::kLeafBit;
             const tree::Leaf& leaf = tree.leaves()[id];
             for_each_item(tree, id, lanes_within(leaf, box_for(leaf, bounds)), layers, [&](tree::ItemId item) {
-                if (meets(tree.boxes()[item])) items.push_back(item);
+                if (intersects(tree.boxes()[item], body)) items.push_back(item);
             });
             continue;
         }
@@ -151,18 +151,17 @@ void overlapping(const tree::BoxTree& tree, const Obb& body, Vector<tree::ItemId
     if (!validate(body)) return;
     glm::dvec3 reach(0.0);
     for (int k = 0; k < 3; ++k) reach += static_cast<double>(body.half_extents[k]) * glm::abs(glm::dvec3(body.axes[k]));
-    collect(tree, around(body.center, reach), layers, items, [&](const Obb& box) { return intersects(box, body); });
+    collect(tree, body, around(body.center, reach), layers, items);
 }
 
 void overlapping(const tree::BoxTree& tree, const Sphere& body, Vector<tree::ItemId>& items, std::uint32_t layers) {
-    collect(tree, around(body.center, glm::dvec3(body.radius)), layers, items,
-            [&](const Obb& box) { return intersects(box, body); });
+    collect(tree, body, around(body.center, glm::dvec3(body.radius)), layers, items);
 }
 
 void overlapping(const tree::BoxTree& tree, const Capsule& body, Vector<tree::ItemId>& items, std::uint32_t layers) {
     Aabb bounds = around(body.begin, glm::dvec3(body.radius));
     bounds.include(around(body.end, glm::dvec3(body.radius)));
-    collect(tree, bounds, layers, items, [&](const Obb& box) { return intersects(box, body); });
+    collect(tree, body, bounds, layers, items);
 }
 
 void visit_along(const Ray& ray, const tree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
