@@ -12,7 +12,8 @@ namespace crofton::tree {
 namespace {
 
 constexpr std::size_t kMaxItems = std::size_t{1} << 30;
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kSubtreeBatch = 32;
 
 }  // namespace
 
@@ -31,18 +32,6 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
     if (!layer_masks.empty() && layer_masks.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "box tree: as many layer masks as boxes are needed, or none");
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
-    Aabb scene;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (auto valid = crofton::validate(boxes[i], i); !valid) return tl::unexpected(valid.error());
-        scene.include(boxes[i].center);
-    }
-    BoxTree tree;
-    tree.criterion_ = options.criterion;
-    tree.boxes_.assign(boxes.begin(), boxes.end());
-    tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
-    tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
-    Builder builder(scene, boxes.size(), options.criterion);
-    for (std::size_t i = 0; i < boxes.size(); ++i) builder.add(static_cast<ItemId>(i), boxes[i]);
     Vector<std::uint64_t> moving((boxes.size() + 63) / 64, 0);
     for (const ItemId item : options.moving) {
         if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item that moves");
@@ -51,28 +40,74 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
     const auto moves = [](const void* bits, ItemId item) {
         return (static_cast<const std::uint64_t*>(bits)[item / 64] >> item % 64 & 1) != 0;
     };
-    while (!builder.step(~std::size_t{0} / 8, {moves, moving.data()}, executor)) {
+    BoxTree tree;
+    tree.criterion_ = options.criterion;
+    Aabb scene;
+    if (auto taken = tree.take_boxes(boxes, scene); !taken) return tl::unexpected(taken.error());
+    tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
+    tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
+    Builder builder(scene, boxes.size(), options.criterion);
+    for (std::size_t i = 0; i < boxes.size(); ++i) builder.add(static_cast<ItemId>(i), tree.boxes_[i]);
+    while (!builder.prepare(~std::size_t{0} / 8, tree.boxes_, {moves, moving.data()})) {
     }
-    tree.adopt(tree.now_, builder.result());
-    executor.parallel_for(tree.now_.leaves.size(), kGrain / kWidth, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t l = begin; l < end; ++l) tree.fill_leaf(tree.now_, static_cast<LeafId>(l), builder.result());
-    });
-    // Parents come before children.
-    for (auto n = static_cast<NodeId>(tree.now_.nodes.size()); n-- > 0;) tree.finish_node(tree.now_, n);
+    tree.build_subtrees(builder, executor);
     return tree;
 }
 
-// The links of a new structure; the leaves are still to be filled.
-void BoxTree::adopt(Structure& structure, const Topology& topology) const {
+// Checks the boxes and copies them while they are at hand.
+Result<void> BoxTree::take_boxes(std::span<const Obb> boxes, Aabb& scene) {
+    boxes_.reserve(boxes.size());
+    for (std::size_t begin = 0; begin < boxes.size(); begin += kGrain) {
+        const std::span<const Obb> some = boxes.subspan(begin, std::min(kGrain, boxes.size() - begin));
+        for (std::size_t i = count_certainly_valid(some.data(), some.size()); i < some.size(); ++i)
+            if (auto valid = crofton::validate(some[i], begin + i); !valid) return valid;
+        for (const Obb& box : some) scene.include(box.center);
+        boxes_.insert(boxes_.end(), some.begin(), some.end());
+    }
+    return {};
+}
+
+// Each subtree's leaves and nodes right after it is divided: its boxes are in the cache then.
+void BoxTree::build_subtrees(Builder& builder, Executor& executor) {
+    const Topology& topology = builder.result();
+    const std::span<const Subtree> subtrees = builder.subtrees();
+    start(now_, topology);
+    now_.leaves.reserve(topology.leaves.size());
+    Vector<SubtreeBuilder> workers(executor.concurrency());
+    // A batch's leaves are written before they have left the cache where they were made.
+    for (std::size_t first = 0; first < subtrees.size(); first += kSubtreeBatch) {
+        const std::size_t count = std::min(kSubtreeBatch, subtrees.size() - first);
+        const Subtree& last = subtrees[first + count - 1];
+        now_.leaves.resize(last.first_leaf + last.leaves);
+        executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
+            for (std::size_t s = first + begin; s < first + end; ++s) {
+                builder.build(s, workers[worker], boxes_);
+                const Subtree& subtree = subtrees[s];
+                for (LeafId l = 0; l < subtree.leaves; ++l) fill_leaf(now_, subtree.first_leaf + l, topology);
+                finish_nodes(subtree.first_node, subtree.first_node + subtree.nodes, topology);
+            }
+        });
+    }
+    finish_nodes(0, subtrees.front().first_node, topology);
+}
+
+void BoxTree::finish_nodes(NodeId begin, NodeId end, const Topology& topology) {
+    for (NodeId n = begin; n < end; ++n) adopt_node(now_, n, topology);
+    // Parents come before children.
+    for (NodeId n = end; n-- > begin;) finish_node(now_, n);
+}
+
+// Room for a new structure.
+void BoxTree::start(Structure& structure, const Topology& topology) const {
     structure.height = topology.height;
     structure.nodes.resize(topology.nodes.size());
     structure.ranges.resize(topology.nodes.size());
-    structure.leaves.resize(topology.leaves.size());
     structure.leaf_counts.assign(topology.leaves.size(), 0);
-    clear_marks(structure);
     structure.slot_items.assign(topology.leaves.size() * kWidth, kNone);
     structure.item_slots.assign(boxes_.size(), kNone);
-    for (NodeId n = 0; n < topology.nodes.size(); ++n) adopt_node(structure, n, topology);
+    structure.dirty_lanes.assign(topology.leaves.size(), 0);
+    structure.lanes_before.assign(topology.leaves.size(), 0);
+    structure.lanes_long_before.assign(topology.leaves.size(), 0);
 }
 
 void BoxTree::adopt_node(Structure& structure, NodeId n, const Topology& topology) const {

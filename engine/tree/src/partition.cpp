@@ -5,147 +5,121 @@
 namespace crofton::tree {
 namespace {
 
-constexpr unsigned kBins = 16;
-
-struct Split {
-    unsigned axis = 0;
-    std::uint32_t left = 0;  // how many items
-};
-
-struct Bin {
-    BuildItem bounds = kNothing;
-    std::uint32_t count = 0;
-};
-using Bins = std::array<std::array<Bin, kBins>, 3>;
-
-// Equal cells of the centres' range along each axis; monotone in the centre.
-struct Cells {
-    float low[3], scale[3];
-
-    explicit Cells(std::span<const BuildItem> items) {
-        float high[3];
-        for (unsigned j = 0; j < 3; ++j) low[j] = high[j] = items[0].twice_center(j);
-        for (const BuildItem& item : items)
-            for (unsigned j = 0; j < 3; ++j) {
-                const float c = item.twice_center(j);
-                low[j] = c < low[j] ? c : low[j];
-                high[j] = c > high[j] ? c : high[j];
-            }
-        for (unsigned j = 0; j < 3; ++j) {
-            const float extent = high[j] - low[j];
-            scale[j] = extent > 1e-30f && extent < kHuge ? (kBins - 0.01f) / extent : 0.0f;
-        }
-    }
-    // Do all centres coincide?
-    [[nodiscard]] bool is_point() const { return !(scale[0] > 0.0f || scale[1] > 0.0f || scale[2] > 0.0f); }
-    // The axis along which the centres spread farthest: the scale is smallest there, unless it is 0.
-    [[nodiscard]] unsigned longest() const {
-        unsigned best = 0;
-        for (unsigned j = 1; j < 3; ++j)
-            if (scale[j] > 0.0f && (scale[best] <= 0.0f || scale[j] < scale[best])) best = j;
-        return best;
-    }
-    [[nodiscard]] unsigned of(const BuildItem& item, unsigned j) const {
-        const auto cell = static_cast<unsigned>(static_cast<int>((item.twice_center(j) - low[j]) * scale[j]));
-        return cell < kBins ? cell : kBins - 1;
-    }
-};
-
-void fill(Bins& bins, std::span<const BuildItem> items, const Cells& cells) {
-    for (const BuildItem& item : items)
-        for (unsigned j = 0; j < 3; ++j) {
-            Bin& bin = bins[j][cells.of(item, j)];
-            bin.bounds.include(item);
-            ++bin.count;
-        }
+// Unsigned integers in the order of the floats they stand for.
+std::uint32_t ordered_bits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-// The best cut at a border of bins.
-Split best_split(std::span<const BuildItem> items, const Cells& cells, const Cost& cost) {
-    const auto count = static_cast<std::uint32_t>(items.size());
-    Split best{0, count / 2};
-    Bins bins;
-    fill(bins, items, cells);
-    double best_cost = std::numeric_limits<double>::infinity();
-    for (unsigned j = 0; j < 3; ++j) {
-        std::array<double, kBins> right_cost{};
+}  // namespace
+
+void Splitter::start(std::span<const BuildItem> items) {
+    items_ = items;
+    const auto grow = [&](auto& buffer) {
+        if (buffer.size() < items.size()) buffer.resize(items.size());
+    };
+    grow(right_);
+    grow(is_left_);
+    grow(keys_);
+    grow(keys_next_);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        sorted_[axis].resize(items.size());
+        sort(axis);
+    }
+}
+
+// By centres along an axis, and where they are equal as the items come: digit by digit, the least first.
+void Splitter::sort(unsigned axis) {
+    constexpr unsigned kDigitBits = 8, kDigits = 4, kDigitValues = 1u << kDigitBits;
+    constexpr std::size_t kFew = 64;
+    const std::size_t count = items_.size();
+    for (std::uint32_t i = 0; i < count; ++i) keys_[i] = {ordered_bits(items_[i].twice_center(axis)), i};
+    if (count <= kFew) {
+        std::sort(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(count), [](const Key& a, const Key& b) {
+            return a.value != b.value ? a.value < b.value : a.index < b.index;
+        });
+    } else {
+        const auto digit = [](const Key& key, unsigned d) { return key.value >> d * kDigitBits & (kDigitValues - 1); };
+        std::uint32_t starts[kDigits][kDigitValues] = {};
+        for (std::size_t i = 0; i < count; ++i)
+            for (unsigned d = 0; d < kDigits; ++d) ++starts[d][digit(keys_[i], d)];
+        for (unsigned d = 0; d < kDigits; ++d) {
+            if (starts[d][digit(keys_[0], d)] == count) continue;
+            std::uint32_t sum = 0;
+            for (std::uint32_t& start : starts[d]) sum += std::exchange(start, sum);
+            for (std::size_t i = 0; i < count; ++i) keys_next_[starts[d][digit(keys_[i], d)]++] = keys_[i];
+            keys_.swap(keys_next_);
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) sorted_[axis][i] = keys_[i].index;
+}
+
+// The axis along which the centres spread farthest.
+unsigned Splitter::longest_axis(Range range) const {
+    unsigned best = 0;
+    float longest = -1.0f;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const float spread = items_[sorted_[axis][range.end - 1]].twice_center(axis) -
+                             items_[sorted_[axis][range.begin]].twice_center(axis);
+        if (spread > longest) longest = spread, best = axis;
+    }
+    return best;
+}
+
+// The best of the cuts at multiples of `capacity`, fewer than 16 along each axis.
+Splitter::Cut Splitter::best_cut(Range range, std::uint32_t capacity, const Cost& cost) const {
+    const std::uint32_t count = range.size(), parts = (count + capacity - 1) / capacity;
+    // Where only one place is possible, the axis is all there is to choose.
+    if (parts == 2) return {longest_axis(range), capacity};
+    Cut best;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        BuildItem part[kWidth];
+        for (std::uint32_t p = 0; p < parts; ++p) {
+            const std::uint32_t begin = range.begin + p * capacity, end = std::min(begin + capacity, range.end);
+            BuildItem bounds = kNothing;
+            for (std::uint32_t i = begin; i < end; ++i) bounds.include(items_[sorted_[axis][i]]);
+            part[p] = bounds;
+        }
+        double right_cost[kWidth];
         BuildItem bounds = kNothing;
-        std::uint32_t n = 0;
-        for (unsigned i = kBins - 1; i > 0; --i) {
-            bounds.include(bins[j][i].bounds);
-            n += bins[j][i].count;
-            right_cost[i] = n ? cost(bounds) * n : 0.0;
+        for (std::uint32_t p = parts - 1; p > 0; --p) {
+            bounds.include(part[p]);
+            right_cost[p] = cost(bounds) * (count - p * capacity);
         }
         bounds = kNothing;
-        n = 0;
-        for (unsigned i = 0; i + 1 < kBins; ++i) {
-            bounds.include(bins[j][i].bounds);
-            n += bins[j][i].count;
-            if (n == 0 || n == count) continue;
-            const double value = cost(bounds) * n + right_cost[i + 1];
-            if (value < best_cost) {
-                best_cost = value;
-                best = {j, n};
-            }
+        for (std::uint32_t p = 1; p < parts; ++p) {
+            bounds.include(part[p - 1]);
+            const double value = cost(bounds) * (p * capacity) + right_cost[p];
+            if (value < least) least = value, best = {axis, p * capacity};
         }
     }
     return best;
 }
 
-// Moves the items for which `first` holds to the front; returns how many. Without a branch on what cannot be guessed.
-template <class First>
-std::uint32_t gather(std::span<BuildItem> items, const First& first) {
-    std::uint32_t front = 0;
-    for (std::uint32_t i = 0; i < items.size(); ++i) {
-        const BuildItem item = items[i];
-        items[i] = items[front];
-        items[front] = item;
-        front += first(item) ? 1u : 0u;
+void Splitter::cut(Range range, const Cut& cut) {
+    const std::uint32_t middle = range.begin + cut.left;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) is_left_[sorted_[cut.axis][i]] = i < middle ? 1 : 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        if (axis == cut.axis) continue;
+        // Both places are written, and one of them is moved on: no branch on what cannot be guessed.
+        std::uint32_t* const sorted = sorted_[axis].data();
+        std::uint32_t *left = sorted + range.begin, *right = right_.data();
+        for (std::uint32_t i = range.begin; i < range.end; ++i) {
+            const std::uint32_t index = sorted[i], is_left = is_left_[index];
+            *left = index;
+            *right = index;
+            left += is_left;
+            right += 1 - is_left;
+        }
+        std::copy(right_.data(), right, left);
     }
-    return front;
 }
 
-// The `left` items with the least centres (and ids, where centres are equal) to the front.
-void select(std::span<BuildItem> items, std::uint32_t left, unsigned axis, const Cells& cells) {
-    const auto before = [axis](const BuildItem& a, const BuildItem& b) {
-        const float x = a.twice_center(axis), y = b.twice_center(axis);
-        return x != y ? x < y : a.id() < b.id();
-    };
-    // By cells first: only the one that the cut goes through is to be looked at more closely.
-    std::uint32_t begin = 0, end = static_cast<std::uint32_t>(items.size());
-    if (end > 4 * kBins) {
-        std::array<std::uint32_t, kBins> counts{};
-        for (const BuildItem& item : items) ++counts[cells.of(item, axis)];
-        unsigned cut = 0;
-        std::uint32_t smaller = 0;
-        while (smaller + counts[cut] <= left) smaller += counts[cut++];
-        begin = gather(items, [&](const BuildItem& item) { return cells.of(item, axis) < cut; });
-        end = begin + gather(items.subspan(begin), [&](const BuildItem& item) { return cells.of(item, axis) == cut; });
-    }
-    const auto at = [&](std::uint32_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(left), at(end), before);
-}
-
-// Puts the items before and behind the cut; returns how many are before it, a multiple of `capacity`.
-std::uint32_t partition(std::span<BuildItem> items, std::uint32_t capacity, const Cost& cost) {
-    const auto count = static_cast<std::uint32_t>(items.size());
-    const std::uint32_t parts = (count + capacity - 1) / capacity;
-    const Cells cells(items);
-    Split split{cells.longest(), count / 2};
-    // Where only one place is possible, the axis is all there is to choose.
-    if (parts > 2 && !cells.is_point()) split = best_split(items, cells, cost);
-    const std::uint32_t left = capacity * std::clamp((split.left + capacity / 2) / capacity, 1u, parts - 1);
-    select(items, left, split.axis, cells);
-    return left;
-}
-
-}  // namespace
-
-Children divide(std::span<BuildItem> items, Range range, std::uint32_t unit, const Cost& cost) {
+Children Splitter::divide(Range range, std::uint32_t unit, const Cost& cost) {
     Children children;
     if (range.size() == 0) return children;
-    std::uint64_t capacity = unit;
-    while (capacity * kWidth < range.size()) capacity *= kWidth;
+    const std::uint64_t capacity = items_a_part(range.size(), unit);
     children.ranges[0] = range;
     children.count = 1;
     for (;;) {
@@ -154,13 +128,25 @@ Children divide(std::span<BuildItem> items, Range range, std::uint32_t unit, con
             if (children.ranges[i].size() > children.ranges[largest].size()) largest = i;
         const Range whole = children.ranges[largest];
         if (whole.size() <= capacity) return children;
-        const std::uint32_t middle = whole.begin + partition(items.subspan(whole.begin, whole.size()),
-                                                             static_cast<std::uint32_t>(capacity), cost);
+        const Cut best = best_cut(whole, static_cast<std::uint32_t>(capacity), cost);
+        cut(whole, best);
         for (std::uint32_t i = children.count; i > largest + 1; --i) children.ranges[i] = children.ranges[i - 1];
-        children.ranges[largest] = {whole.begin, middle};
-        children.ranges[largest + 1] = {middle, whole.end};
+        children.ranges[largest] = {whole.begin, whole.begin + best.left};
+        children.ranges[largest + 1] = {whole.begin + best.left, whole.end};
         ++children.count;
     }
+}
+
+Children divide(std::span<BuildItem> items, Range range, std::uint32_t unit, const Cost& cost) {
+    const std::span<BuildItem> part = items.subspan(range.begin, range.size());
+    Splitter splitter;
+    splitter.start(part);
+    Children children = splitter.divide({0, range.size()}, unit, cost);
+    const Vector<BuildItem> before(part.begin(), part.end());
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = before[splitter.order()[i]];
+    for (std::uint32_t i = 0; i < children.count; ++i)
+        children.ranges[i] = {range.begin + children.ranges[i].begin, range.begin + children.ranges[i].end};
+    return children;
 }
 
 }  // namespace crofton::tree

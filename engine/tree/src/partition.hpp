@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <bit>
+#include <crofton/core/memory.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/tree/layout.hpp>
 #include <limits>
@@ -51,9 +52,48 @@ struct Children {
     std::uint32_t count = 0;
 };
 
-// Reorders items[range] and cuts it into the fewest parts of unit · 16^k items each, the last of which may be smaller;
-// cuts are chosen to minimise Σ criterion(part) · items(part), what a uniformly random query pays below here. At most
-// 16 parts.
+// How many items each part of divide() holds, but for the last one: the least unit · 16^k of which 16 are enough.
+[[nodiscard]] inline std::uint64_t items_a_part(std::uint64_t items, std::uint64_t unit) {
+    while (unit * kWidth < items) unit *= kWidth;
+    return unit;
+}
+
+// Items in three orders at once, by their centres along each axis; cuts keep all three sorted, so that items are sorted
+// but once. Memory is kept from crowd to crowd.
+class Splitter {
+  public:
+    // `items` stay where they are, and are read until the last divide().
+    void start(std::span<const BuildItem> items);
+
+    // Cuts the items order()[range] into the fewest parts of items_a_part() items each, the last of which may be smaller:
+    // at most 16. A part is a range of order() then. Cuts are chosen to minimise Σ criterion(part) · items(part), what a
+    // uniformly random query pays below here.
+    [[nodiscard]] Children divide(Range range, std::uint32_t unit, const Cost& cost);
+
+    // Indices into the items.
+    [[nodiscard]] std::span<const std::uint32_t> order() const { return sorted_[0]; }
+
+  private:
+    struct Cut {
+        unsigned axis = 0;
+        std::uint32_t left = 0;  // how many items
+    };
+    struct Key {
+        std::uint32_t value, index;
+    };
+
+    void sort(unsigned axis);
+    [[nodiscard]] Cut best_cut(Range range, std::uint32_t capacity, const Cost& cost) const;
+    [[nodiscard]] unsigned longest_axis(Range range) const;
+    void cut(Range range, const Cut& cut);
+
+    std::span<const BuildItem> items_;
+    Vector<std::uint32_t> sorted_[3], right_;
+    Vector<std::uint8_t> is_left_;
+    Vector<Key> keys_, keys_next_;
+};
+
+// The same for items that are to be cut once: reorders items[range].
 [[nodiscard]] Children divide(std::span<BuildItem> items, Range range, std::uint32_t unit, const Cost& cost);
 
 }  // namespace crofton::tree

@@ -61,7 +61,7 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
                 const std::uint32_t lanes = now.lanes_before[slot / kWidth] & now.lanes_long_before[slot / kWidth];
                 return (lanes >> slot % kWidth & 1) != 0;
             };
-            if (!work.builder->step(budget, {moves, this}, serial_executor())) return budget;
+            if (!work.builder->step(budget, boxes_, {moves, this})) return budget;
             structure.height = topology.height;
             structure.item_slots.reserve(boxes_.size());
             go_on_to(Stage::clear_slots);

@@ -12,6 +12,7 @@
 
 namespace crofton::tree {
 
+class Builder;
 struct Topology;
 
 struct BuildOptions {
@@ -107,7 +108,10 @@ class BoxTree {
     static constexpr std::size_t kRefitBatch = 256;  // leaves that stay in the cache from their boxes to their bounds
 
     BoxTree();
-    void adopt(Structure& structure, const Topology& topology) const;
+    [[nodiscard]] Result<void> take_boxes(std::span<const Obb> boxes, Aabb& scene);
+    void build_subtrees(Builder& builder, Executor& executor);
+    void finish_nodes(NodeId begin, NodeId end, const Topology& topology);
+    void start(Structure& structure, const Topology& topology) const;
     void adopt_node(Structure& structure, NodeId node, const Topology& topology) const;
     static void clear_marks(Structure& structure);
     void fill_leaf(Structure& structure, LeafId leaf, const Topology& topology) const;
