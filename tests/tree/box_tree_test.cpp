@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
 #include <crofton/tree/box_tree.hpp>
+#include <crofton/core/thread_pool.hpp>
 #include <limits>
+#include <oracle/least_cuts.hpp>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
 #include <vector>
@@ -59,6 +61,55 @@ TEST_SUITE("tree/box_tree") {
         std::size_t partial = 0;
         for (const tree::Leaf& leaf : tree->leaves()) partial += leaf.count < tree::kWidth;
         CHECK(partial == 1);
+    }
+
+    TEST_CASE("leaves hold the parts that trying all cuts finds, for each criterion") {
+        for (const measure::Criterion& criterion :
+             {measure::minimal_perimeter(), measure::minimal_area(), measure::minimal_volume()})
+            for (const std::size_t count : {17u, 32u, 47u, 100u, 255u, 256u}) {
+                const std::vector<Obb> boxes = oracle::random_crowd(count, 0.0, count).boxes;
+                const BoxTree tree = *BoxTree::build(boxes, {.criterion = criterion});
+                const std::vector<oracle::Part> parts = oracle::least_cuts(boxes, tree::kWidth, criterion);
+                REQUIRE(tree.leaves().size() == parts.size());
+                for (std::size_t l = 0; l < parts.size(); ++l) {
+                    const auto slots = tree.slot_items().subspan(l * tree::kWidth, tree.leaves()[l].count);
+                    CHECK(std::ranges::is_permutation(slots, parts[l]));
+                }
+            }
+    }
+
+    // Two clumps of 40,000 boxes each, as large as a 10^4th of the scene: all of a clump share one coarse cell of the curve.
+    TEST_CASE("crowds in clumps make leaves as small as a crowd of one scale") {
+        oracle::NearMisses random(8);
+        const auto place = [&](double reach) {
+            return glm::dvec3(random.number(-reach, reach), random.number(-reach, reach), random.number(-reach, reach));
+        };
+        std::vector<Obb> boxes;
+        for (int clump = 0; clump < 2; ++clump) {
+            const glm::dvec3 middle = place(5000.0);
+            for (int i = 0; i < 40000; ++i) boxes.push_back({.center = middle + place(0.5), .half_extents = glm::vec3(0.001f)});
+        }
+        const BoxTree tree = *BoxTree::build(boxes);
+        CHECK(tree.validate().has_value());
+        double edges = 0.0;
+        for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+            Aabb centers;
+            for (unsigned lane = 0; lane < tree.leaves()[l].count; ++lane)
+                centers.include(boxes[tree.slot_items()[l * tree::kWidth + lane]].center);
+            const glm::dvec3 size = centers.max - centers.min;
+            edges += size.x + size.y + size.z;
+        }
+        // Cubes for 16 of 40,000 items in a cube of side 1.
+        CHECK(edges / double(tree.leaves().size()) < 1.3 * 3.0 * std::cbrt(16.0 / 40000.0));
+    }
+
+    TEST_CASE("a tree is the same, byte for byte, however many threads build it") {
+        const oracle::Crowd crowd = oracle::random_crowd(50000, 0.0, 22);
+        const Vector<std::byte> serial = BoxTree::build(crowd.boxes)->serialise();
+        for (const unsigned threads : {2u, 3u, 8u}) {
+            ThreadPool pool(threads);
+            CHECK(std::ranges::equal(BoxTree::build(crowd.boxes, {}, pool)->serialise(), serial));
+        }
     }
 
     // A leaf of 16 items is 512 bytes, 64 are the items' ids, 7 its marks and count; an item has 4 bytes for its slot and 4
