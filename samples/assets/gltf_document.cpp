@@ -213,7 +213,7 @@ Result<Container> open_file(std::string_view file, const std::string& path) {
         if (!opened) return opened;
         container = std::move(*opened);
     } else if (extension(path) == "glb") {
-        return fail(ErrorCode::parse, kNoItem, "is no binary glTF file");
+        return fail(ErrorCode::parse, kNoItem, "is no binary glTF file: it does not begin with glTF");
     } else {
         container.json = file;
     }

@@ -1,14 +1,24 @@
+#include <filesystem>
+
 #include "assets/file.hpp"
 #include "assets/scene_source.hpp"
 
 namespace crofton::assets {
 
 Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options) {
-    if (source == "town") return make_town(options);
-    if (source == "room") return make_room(options);
     const std::string kind = extension(source);
     if (kind != "wad" && !options.map.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, source + ": a map can be chosen in a .wad file only");
+    if (source == "town") return make_town(options);
+    if (source == "room") return make_room(options);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(source, ignored))
+        return fail(ErrorCode::io, kNoItem, source + ": is a folder; name a file in it");
+    if (std::filesystem::is_regular_file(source, ignored) && std::filesystem::is_empty(source, ignored))
+        return fail(ErrorCode::empty, kNoItem, source + ": the file is empty");
+    if (kind == "crofton")
+        return fail(ErrorCode::unsupported, kNoItem,
+                    source + ": is what 'crofton bake' writes for engines to load; name the scene that it was made of");
     if (kind == "glb" || kind == "gltf") return load_gltf(source, options);
     if (kind == "obj") return load_obj(source, options);
     if (kind == "wad") return load_wad(source, options);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "arguments.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "report.hpp"
@@ -83,6 +84,10 @@ class BakeRun {
   private:
     // Loads the file as an engine would and says how long that took.
     int check() {
+        if (assets::extension(options_.scene) != "crofton" && !std::filesystem::exists(options_.scene))
+            return report_error(options_.scene,
+                                {ErrorCode::invalid_argument, kNoItem,
+                                 "is no .crofton file to check; to bake a scene, say where to: -o FILE"});
         const Stopwatch watch;
         const auto baked = bake::BakedScene::open(options_.scene, executor());
         const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
@@ -120,17 +125,19 @@ void add_bake_command(CLI::App& app, Outcome& outcome) {
     auto options = std::make_shared<BakeOptions>();
     CLI::App* command = app.add_subcommand("bake", "Write a scene's boxes, tree and triangulations to a .crofton file");
     command
-        ->add_option("scene", options->scene,
-                     "town or a .glb, .gltf, .obj or .wad file; without -o a .crofton file to check")
+        ->add_option(
+            "scene", options->scene,
+            "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
         ->required();
-    command->add_option("-o,--output", options->output, "The file to write");
+    command->add_option("-o,--output", options->output, "The file to write")->check(writable_file());
     command->add_option("--map", options->map, "Which level of a WAD");
     command->add_option("--instances", options->instances, "Size of the town, roughly");
     command->add_option("--seed", options->seed, "Of the town")->capture_default_str();
     command->add_option("--threads", options->threads, "0: one per core")
         ->check(CLI::Range(0u, 256u))
         ->capture_default_str();
-    command->add_option("--json", options->json, "Write the figures as JSON to this file; - for standard output");
+    command->add_option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
+        ->check(writable_file());
     command->footer(
         "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged.\n\n"
         "Examples:\n"

@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
+#include "arguments.hpp"
 #include "commands.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
@@ -202,7 +203,8 @@ void add_collide_command(CLI::App& app, Outcome& outcome) {
             "contain: is one inside the other")
         ->check(CLI::IsMember({"any", "all", "distance", "contain"}))
         ->capture_default_str();
-    command->add_option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output");
+    command->add_option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
+        ->check(writable_file());
     command->footer(
         "A mesh inside the other, which is to be closed, counts as a hit and is reported in `contained`. Each piece "
         "is\n"

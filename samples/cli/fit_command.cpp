@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "arguments.hpp"
 #include "commands.hpp"
 #include "fit_criterion.hpp"
 #include "fit_output.hpp"
@@ -133,9 +134,12 @@ void add_fit_command(CLI::App& app, Outcome& outcome) {
         ->add_option("--budget", request->budget_seconds,
                      "Seconds per box after which exact returns the best so far, with its gap")
         ->check(CLI::NonNegativeNumber);
-    command->add_option("--json", request->json_path,
-                        "Write the boxes as JSON to this file; - for standard output, instead of the text");
-    command->add_option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output");
+    command
+        ->add_option("--json", request->json_path,
+                     "Write the boxes as JSON to this file; - for standard output, instead of the text")
+        ->check(writable_file());
+    command->add_option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
+        ->check(writable_file());
     command->footer(
         "The criterion is alpha V + beta F + gamma M of volume, surface area and integral of mean curvature (pi times "
         "the edge sum).\n"

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "arguments.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "frames_output.hpp"
@@ -120,7 +121,7 @@ class FramesRun {
         if (!mode) return tl::unexpected(mode.error());
         const double aspect = static_cast<double>(size->width) / size->height;
         if (options_.frames == 0u) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
-        if (auto writable = check_writable(options_.output); !writable) return writable;
+        if (auto writable = check_writable(options_.output, options_.report); !writable) return writable;
         if (options_.threads != 1) pool_.emplace(options_.threads);
 
         // obb-frustum fits the boxes to the frustum in use: 60° with this aspect, and a depth of the order of a street.
@@ -259,7 +260,8 @@ void add_frames_command(CLI::App& app, Outcome& outcome) {
     CLI::App* command =
         app.add_subcommand("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
     command->footer(kExamples);
-    command->add_option("scene", options->scene, "town, or a .glb, .gltf, .obj or .wad file")->capture_default_str();
+    command->add_option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file")
+        ->capture_default_str();
     command->add_option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command->add_option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras")
         ->capture_default_str();
@@ -271,16 +273,21 @@ void add_frames_command(CLI::App& app, Outcome& outcome) {
         ->capture_default_str();
     command->add_option("--cull", options->cull, "none, flat or tree")->capture_default_str();
     command->add_option("--map", options->map, "Which level of a .wad; the first where absent");
-    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")->capture_default_str();
+    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")
+        ->check(CLI::Range(0u, 256u))
+        ->capture_default_str();
     auto* draw =
         command->add_flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
     command->add_flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone")->excludes(draw);
     command->add_flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
     command->add_flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
-    command->add_option("--json", options->output.json, "Write everything as JSON; - for stdout");
-    command->add_option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout");
+    command->add_option("--json", options->output.json, "Write everything as JSON; - for stdout")
+        ->check(writable_file());
+    command->add_option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout")
+        ->check(writable_file());
     command->add_option("--png", options->output.png, "Write a picture per frame into this folder");
-    command->add_option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary");
+    command->add_option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
+        ->check(writable_file());
     command->callback([options, &outcome] {
         const auto status = FramesRun(*options).run();
         outcome.status = status ? *status : report_error("", status.error());

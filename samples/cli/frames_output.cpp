@@ -62,7 +62,8 @@ void print_table(const SceneFacts& scene, std::span<const FrameStatistics> frame
                    mean([](const auto& f) { return f.triangles_passed; }),
                    mean([](const auto& f) { return f.colliding_pairs; }));
     text += format(
-        "collisions: %.1f pairs of boxes tested; early outs: %.1f by faces of the first, %.1f of the second, %.1f by edges; "
+        "collisions: %.1f pairs of boxes tested; early outs: %.1f by faces of the first, %.1f of the second, %.1f by "
+        "edges; "
         "%.1f refined, %.1f contact points\n",
         mean([](const auto& f) { return f.pairs_tested; }), mean([](const auto& f) { return f.separated_by_face_a; }),
         mean([](const auto& f) { return f.separated_by_face_b; }),
@@ -98,9 +99,13 @@ Result<ImageSize> image_size_from(const std::string& text) {
     return size;
 }
 
-Result<void> check_writable(const FramesOutput& output) {
+Result<void> check_writable(const FramesOutput& output, const std::string& report) {
     if (output.json == "-" && output.csv == "-")
         return fail(ErrorCode::invalid_argument, kNoItem, "--json and --csv cannot both go to stdout");
+    for (const auto& [a, b] : {std::pair(output.json, output.csv), {output.json, report}, {output.csv, report}})
+        if (!a.empty() && a == b)
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        a + ": named for two outputs, of which one would be lost");
     if (output.png.empty()) return {};
     std::error_code error;
     std::filesystem::create_directories(output.png, error);

@@ -25,8 +25,8 @@ struct SceneFacts {
     std::uint64_t nodes = 0, instances = 0, triangles = 0;
 };
 
-// Before the work: only one output may be stdout, and the pictures' folder is made.
-[[nodiscard]] Result<void> check_writable(const FramesOutput& output);
+// Before the work: no two outputs go to the same place, and the pictures' folder is made. `report`: the page's file.
+[[nodiscard]] Result<void> check_writable(const FramesOutput& output, const std::string& report);
 
 // FOLDER/frame_0000.png
 [[nodiscard]] Result<void> write_picture(const std::string& folder, std::uint32_t index, const render::Image& image);

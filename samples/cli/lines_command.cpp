@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "arguments.hpp"
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
 #include "report.hpp"
@@ -159,7 +160,7 @@ void add_lines_command(CLI::App& app, Outcome& outcome) {
         ->capture_default_str();
     command->add_option("--seed", options->seed, "Seed of the lines and of the town")->capture_default_str();
     command->add_option("--map", options->map, "Which level of a .wad");
-    command->add_option("--json", options->json, "Write the comparison as JSON; - for stdout");
+    command->add_option("--json", options->json, "Write the comparison as JSON; - for stdout")->check(writable_file());
     command->callback([options, &outcome] {
         if (const auto done = run(*options); !done) outcome.status = report_error("", done.error());
     });

@@ -1,8 +1,12 @@
 // The command line `crofton`: one sub-command per question.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <crofton/core/version.hpp>
+#include <cstdio>
+#include <cstring>
 #include <iostream>
 
+#include "arguments.hpp"
 #include "commands.hpp"
 
 int main(int argc, char** argv) {
@@ -23,10 +27,17 @@ int main(int argc, char** argv) {
 #if defined(CROFTON_VIEWER)
     add_view_command(app, outcome);
 #endif
+    refuse_negative_counts(app);
+    const std::vector<std::string> arguments = with_help_as_option(argc, argv);
     try {
-        app.parse(argc, argv);
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kSuccess : kBadInput;
+        if (error.get_exit_code() == 0) return app.exit(error);
+        std::cerr << usage_error(app, error, arguments);
+        return kBadInput;
     }
-    return outcome.status;
+    // What was printed may still be in the buffer, and a full disk is told only when it goes out.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return outcome.status;
+    std::fprintf(stderr, "crofton: standard output: cannot write: %s\n", std::strerror(errno));
+    return kBadInput;
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "arguments.hpp"
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
 #include "pipeline/camera_path.hpp"
@@ -170,7 +171,8 @@ void add_radiosity_command(CLI::App& app, Outcome& outcome) {
         "  crofton radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
     command->add_option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file")->required();
-    auto* lines = command->add_option("--lines", options->lines, "Trace about this many lines")->capture_default_str();
+    auto* lines = command->add_option("--lines", options->lines, "Trace about this many lines, in two runs or more")
+                      ->capture_default_str();
     command->add_option("--error", options->error, "Stop at this relative error instead, for example 0.02")
         ->check(CLI::PositiveNumber)
         ->excludes(lines);
@@ -187,12 +189,16 @@ void add_radiosity_command(CLI::App& app, Outcome& outcome) {
         ->check(CLI::PositiveNumber);
     command->add_option("--seed", options->seed, "Seed of the lines and of the town")->capture_default_str();
     command->add_option("--map", options->map, "Which level of a .wad");
-    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")->capture_default_str();
-    command->add_option("--out", options->out, "Write the lit scene as .glb");
-    command->add_option("--png", options->png, "Write a picture of it");
-    command->add_option("--json", options->json, "Write the figures as JSON; - for stdout");
-    command->add_option("--checkpoint", options->checkpoint,
-                        "Save after every run to this file; go on from it where it exists");
+    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")
+        ->check(CLI::Range(0u, 256u))
+        ->capture_default_str();
+    command->add_option("--out", options->out, "Write the lit scene as .glb")->check(writable_file());
+    command->add_option("--png", options->png, "Write a picture of it")->check(writable_file());
+    command->add_option("--json", options->json, "Write the figures as JSON; - for stdout")->check(writable_file());
+    command
+        ->add_option("--checkpoint", options->checkpoint,
+                     "Save after every run to this file; go on from it where it exists")
+        ->check(writable_file());
     command->callback([options, &outcome] {
         if (const auto done = run(*options); !done) outcome.status = report_error("", done.error());
     });

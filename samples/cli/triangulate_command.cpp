@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "arguments.hpp"
 #include "assets/file.hpp"
 #include "commands.hpp"
 #include "polygon_files.hpp"
@@ -224,10 +225,12 @@ void add_triangulate_command(CLI::App& app, Outcome& outcome) {
     command->add_option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out")
         ->capture_default_str();
     command->add_flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
-    command->add_option("--json", options->json, "Write results as JSON; - for stdout");
-    command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout");
-    command->add_option("--out", options->out,
-                        "Write the asset with its patches triangulated anew, as .glb; - for stdout");
+    command->add_option("--json", options->json, "Write results as JSON; - for stdout")->check(writable_file());
+    command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout")
+        ->check(writable_file());
+    command
+        ->add_option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
+        ->check(writable_file());
     command->callback([options, command, &outcome] {
         options->has_tolerance = command->count("--tolerance") > 0;
         const auto status = run(*options);

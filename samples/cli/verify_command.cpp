@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "arguments.hpp"
 #include "commands.hpp"
 #include "report.hpp"
 #include "verify_collide.hpp"
@@ -60,8 +61,10 @@ void add_verify_command(CLI::App& app, Outcome& outcome) {
         ->capture_default_str();
     command->add_option("--seed", request->options.seed, "The same seed gives the same table, bit by bit")
         ->capture_default_str();
-    command->add_option("--json", request->json_path,
-                        "Also write the rows as JSON to this file; - for standard output, instead of the table");
+    command
+        ->add_option("--json", request->json_path,
+                     "Also write the rows as JSON to this file; - for standard output, instead of the table")
+        ->check(writable_file());
     command->footer(
         "`holds` says whether the claim's sentence is borne out; sentences that begin \"wrong, must be rejected\" hold "
         "when the\n"

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "arguments.hpp"
 #include "commands.hpp"
 #include "frames_output.hpp"
 #include "pipeline/bounds.hpp"
@@ -64,7 +65,7 @@ void add_view_command(CLI::App& app, Outcome& outcome) {
     CLI::App* command =
         app.add_subcommand("view", "Fly through a scene and see what is culled, why, and what it costs");
     command->footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kExamples);
-    command->add_option("SCENE", options.scene.source, "town, or a .glb, .gltf, .obj or .wad file")
+    command->add_option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj or .wad file")
         ->capture_default_str();
     command->add_option("--map", options.scene.map, "which level of a WAD");
     command->add_option("--seed", options.scene.seed, "of the town")->capture_default_str();
@@ -78,9 +79,10 @@ void add_view_command(CLI::App& app, Outcome& outcome) {
     command->add_option("--cull", arguments->cull, "none, flat or tree")->capture_default_str();
     command->add_option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
     command->add_option("--after", options.frames, "quit after so many frames");
-    command->add_option("--screenshot", options.screenshot, "the last frame as PNG");
+    command->add_option("--screenshot", options.screenshot, "the last frame as PNG")->check(writable_file());
     command->add_option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
-    command->add_option("--json", options.json, "statistics of all frames into this file, - for stdout");
+    command->add_option("--json", options.json, "statistics of all frames into this file, - for stdout")
+        ->check(writable_file());
     command->add_option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
         ->capture_default_str();
     command->add_option("--device", options.device, "part of the Vulkan device's name, or cpu");

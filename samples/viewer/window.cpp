@@ -80,11 +80,10 @@ struct WindowCallbacks {
 Result<std::unique_ptr<Window>> Window::create(const std::string& title, int width, int height) {
     glfwInitHint(GLFW_JOYSTICK_HAT_BUTTONS, GLFW_FALSE);
     if (glfwInit() != GLFW_TRUE)
-        return fail(
-            ErrorCode::unavailable, kNoItem,
-            "no window can be opened (" + glfw_reason() +
-                "). Without a display: 'crofton view --no-window --screenshot FILE', 'xvfb-run -a crofton view', or "
-                "'crofton frames --png DIR'");
+        return fail(ErrorCode::unavailable, kNoItem,
+                    "no window can be opened (" + glfw_reason() +
+                        "). Without a display: 'crofton view --no-window --after 1 --screenshot FILE', "
+                        "'xvfb-run -a crofton view', or 'crofton frames --png DIR'");
     std::unique_ptr<Window> window(new Window());
     if (glfwVulkanSupported() != GLFW_TRUE)
         return fail(ErrorCode::unavailable, kNoItem,

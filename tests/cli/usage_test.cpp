@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include "run_cli.hpp"
 
@@ -20,5 +21,83 @@ TEST_SUITE("cli/usage") {
         const CliRun help = run_cli("--help");
         CHECK(help.status == 0);
         CHECK(help.out.find("verify") != std::string::npos);
+    }
+
+    TEST_CASE("a word that is nearly a sub-command or an option is answered with the one that was meant") {
+        CHECK(run_cli("frame").err.find("there is no sub-command 'frame'; did you mean 'frames'?") !=
+              std::string::npos);
+        CHECK(run_cli("rdaiosity").err.find("did you mean 'radiosity'?") != std::string::npos);
+        CHECK(run_cli("--hlep").err.find("there is no option '--hlep'; did you mean '--help'?") != std::string::npos);
+        CHECK(run_cli("frames town --frmaes 3").err.find("there is no option '--frmaes'; did you mean '--frames'?") !=
+              std::string::npos);
+        CHECK(run_cli("frames town --cols=3").err.find("there is no option '--cols'") != std::string::npos);
+        CHECK(run_cli("jump").err.find("did you mean") == std::string::npos);
+        CHECK(run_cli("frames town street").err.find("'street' is one argument too many") != std::string::npos);
+    }
+
+    TEST_CASE("help is asked for in either way") {
+        CHECK(run_cli("help").out == run_cli("--help").out);
+        CHECK(run_cli("help fit").out == run_cli("fit --help").out);
+        CHECK(run_cli("help fit").status == 0);
+    }
+
+    TEST_CASE("a number that is none, or has a sign where it has no meaning, is refused by name") {
+        for (const char* seed : {"x", "-1", "1e6", "99999999999999999999"}) {
+            const CliRun run = run_cli(std::string("frames --no-draw --frames 1 --seed ") + seed);
+            CHECK(run.status == 2);
+            CHECK(run.err.find(std::string("--seed: '") + seed + "' is not a whole number") != std::string::npos);
+        }
+        CHECK(run_cli("frames --threads 9999").err.find("--threads") != std::string::npos);
+    }
+
+    TEST_CASE("a place where nothing can be written is refused before the work") {
+        const std::string folder = scratch().file("folder");
+        std::filesystem::create_directories(folder);
+        for (const std::string& place : {folder, folder + "/missing/a.json", std::string("/proc/a.json")}) {
+            const CliRun run = run_cli("frames --no-draw --frames 1 --json '" + place + "'");
+            CHECK(run.status == 2);
+            CHECK(run.out.empty());
+            CHECK(run.err.find(place) != std::string::npos);
+        }
+        CHECK(run_cli("frames --no-draw --json a --csv a").err.find("named for two outputs") != std::string::npos);
+    }
+
+    TEST_CASE("what is no plain file is written to and stays what it is; a full disk is an error") {
+        const std::string link = scratch().file("link.csv"), target = scratch().file("target.csv");
+        write_contents(target, "old");
+        std::filesystem::create_symlink(target, link);
+        CHECK(run_cli("frames --no-draw --frames 1 --csv '" + link + "'").status == 0);
+        CHECK(std::filesystem::is_symlink(link));
+        CHECK(contents_of(target).find("index,") == 0);
+
+        const std::string pipe = scratch().file("pipe");
+        REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+        const std::string copy = scratch().file("copy");
+        const int status =
+            std::system(("cat '" + pipe + "' >'" + copy + "' & '" CROFTON_CLI "' frames --no-draw --frames 1 --csv '" +
+                         pipe + "' >/dev/null; wait")
+                            .c_str());
+        CHECK(status == 0);
+        CHECK(std::filesystem::is_fifo(pipe));
+        CHECK(contents_of(copy).find("index,") == 0);
+
+        const std::string full = scratch().file("full.csv");  // a link, so that even a failing program harms no device
+        std::filesystem::create_symlink("/dev/full", full);
+        const CliRun run = run_cli("frames --no-draw --frames 1 --csv '" + full + "'");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("cannot write") != std::string::npos);
+        CHECK(std::filesystem::is_character_file("/dev/full"));
+        CHECK(WEXITSTATUS(std::system("'" CROFTON_CLI "' frames --no-draw --frames 1 >/dev/full 2>/dev/null")) == 2);
+    }
+
+    TEST_CASE("a scene that is a folder, an empty file, or a .crofton file is refused for that reason") {
+        const std::string folder = scratch().file("scenes.glb"), empty = scratch().file("empty.obj");
+        std::filesystem::create_directories(folder);
+        write_contents(empty, "");
+        CHECK(run_cli("frames '" + folder + "'").err.find("is a folder; name a file in it") != std::string::npos);
+        CHECK(run_cli("frames '" + empty + "'").err.find("the file is empty") != std::string::npos);
+        CHECK(run_cli("frames a.crofton").err.find("'crofton bake' writes") != std::string::npos);
+        CHECK(run_cli("bake town").err.find("say where to: -o FILE") != std::string::npos);
+        CHECK(run_cli("frames town --map MAP01 --no-draw").err.find("in a .wad file only") != std::string::npos);
     }
 }
