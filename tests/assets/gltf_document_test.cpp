@@ -116,7 +116,7 @@ TEST_SUITE("assets/gltf_document") {
         CHECK_FALSE(again->root["buffers"][0].contains("uri"));
     }
 
-    TEST_CASE("images in files beside are taken in once; those that cannot be keep their URI, with a warning") {
+    TEST_CASE("images in files beside are taken in once, those that cannot be keep their URI, with a warning") {
         Asset asset = strip_asset();
         const TemporaryFile picture("picture.png", kPng), text("notes.txt", "hello");
         const auto name = [](const TemporaryFile& f) { return std::filesystem::path(f.path()).filename().string(); };

@@ -40,7 +40,7 @@ TEST_SUITE("assets/gltf_from_obj") {
         CHECK(primitives[0]["attributes"].size() == 1);
     }
 
-    TEST_CASE("a vertex is a triple; corners with and without attributes are primitives of their own") {
+    TEST_CASE("a vertex is a triple, corners with and without attributes are primitives of their own") {
         const auto document =
             convert(std::string(kSquare) + "f 1/1/1 2/2/1 3/3/1\nf 1/4/1 3/3/1 4/1/1\nf 1//1 2//1 3//2\n");
         const Json& primitives = document.root["meshes"][0]["primitives"];

@@ -69,7 +69,7 @@ TEST_SUITE("assets/gltf_loader") {
         CHECK(says(message(assets::load_scene(damaged.path())), "vertex 1"));
     }
 
-    TEST_CASE("what the parser refuses is named by mesh and primitive; deep nesting is refused before it") {
+    TEST_CASE("what the parser refuses is named by mesh and primitive, deep nesting is refused before it") {
         const auto of = [](const std::string& indices) {
             return message(load_glb(gltf_json("[{\"mesh\":0}]", indices)));
         };
@@ -126,7 +126,7 @@ TEST_SUITE("assets/gltf_loader") {
         CHECK(yellow);
     }
 
-    TEST_CASE("a material's emission is its factor times its strength; without one nothing glows") {
+    TEST_CASE("a material's emission is its factor times its strength, without one nothing glows") {
         const auto with_material = [](const std::string& material) {
             std::string text = gltf_json("[{\"mesh\":0}]");
             text.insert(text.find("\"indices\":1") + 11, ",\"material\":0");

@@ -163,7 +163,7 @@ TEST_SUITE("assets/gltf_patches") {
         CHECK(refused({{{"primitives", {7}}}}));
     }
 
-    TEST_CASE("a primitive that is damaged or compressed is named and stays as it was; the others are done") {
+    TEST_CASE("a primitive that is damaged or compressed is named and stays as it was, the others are done") {
         SUBCASE("NaN") {
             Pair pair;
             const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -285,7 +285,7 @@ TEST_SUITE("assets/gltf_patches") {
         CHECK(improved([&](Asset& asset) { asset.binary[offset(asset, "COLOR_0") + 4 * 4] = 7; }) != best);
     }
 
-    TEST_CASE("indices of 8, 16 and 32 bits, strips and fans; without indices no triangles share vertices") {
+    TEST_CASE("indices of 8, 16 and 32 bits, strips and fans, without indices no triangles share vertices") {
         const auto positions = strip_positions(8);
         const auto check = [&](Asset& asset, std::size_t triangles) {
             const Done done = run(asset);
@@ -326,7 +326,7 @@ TEST_SUITE("assets/gltf_patches") {
         CHECK(alone.after.root == plain.root);
     }
 
-    TEST_CASE("geometry used twice is done once; indices that others read stay, and new ones are made") {
+    TEST_CASE("geometry used twice is done once, indices that others read stay, and new ones are made") {
         Asset asset;
         const std::size_t flat = asset.accessor(strip_positions(8), "VEC3");
         auto bent_positions = strip_positions(8);

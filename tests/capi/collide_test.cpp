@@ -37,7 +37,7 @@ TEST_SUITE("capi/collide") {
         CHECK(meet == 0);
     }
 
-    TEST_CASE("pairs begin, stay and end; filters keep layers apart") {
+    TEST_CASE("pairs begin, stay and end, filters keep layers apart") {
         const Broadphase broadphase = make_broadphase();
         std::vector<crofton_box> boxes{box_at(0, 0, 0), box_at(0.5, 0, 0), box_at(10, 0, 0)};
         const std::vector<crofton_filter> filters{{1, 1}, {2, 2}, {1, 1}};

@@ -104,7 +104,7 @@ TEST_SUITE("capi/cull") {
         if (crofton::cull::kCountStatistics) CHECK(statistics.nodes_tested > 0);
     }
 
-    TEST_CASE("a tree changes: items come, move and go; wrong ids and boxes change nothing") {
+    TEST_CASE("a tree changes: items come, move and go, wrong ids and boxes change nothing") {
         const crofton_box seen = box_at(0, 0, -5), behind = box_at(0, 0, 50);
         const std::vector<crofton_box> boxes{seen, behind};
         crofton_tree* tree = nullptr;

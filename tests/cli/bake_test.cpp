@@ -20,7 +20,7 @@ TEST_SUITE("cli/bake") {
         CHECK(run_cli("bake town --threads lots").status == 2);
     }
 
-    TEST_CASE("what was baked is loaded again; damage, a cut and another version are told apart") {
+    TEST_CASE("what was baked is loaded again, damage, a cut and another version are told apart") {
         const std::string path = scratch().file("town.crofton"), bad = scratch().file("bad.crofton");
         const CliRun baked = run_cli("bake town --instances 400 -o " + path + " --json -");
         REQUIRE(baked.status == 0);

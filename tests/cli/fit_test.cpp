@@ -143,7 +143,7 @@ TEST_SUITE("cli/fit") {
         CHECK(number(frustum.json()["meshes"][0], "gap") <= 1e-6);
     }
 
-    TEST_CASE("every quality holds the box; only exact proves something") {
+    TEST_CASE("every quality holds the box, only exact proves something") {
         const std::string box = file("box.obj", turned_box(1e5));
         for (const char* quality : {"fast", "tight", "exact"}) {
             INFO(std::string(quality));

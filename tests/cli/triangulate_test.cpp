@@ -30,7 +30,7 @@ TEST_SUITE("cli/triangulate") {
         CHECK(run_cli("triangulate").status == 2);
     }
 
-    TEST_CASE("an invalid polygon is named with ring, point and position; the others are done") {
+    TEST_CASE("an invalid polygon is named with ring, point and position, the others are done") {
         write_contents(scratch().file("two.poly"), "P bow 1\n4 0 0 2 2 2 0 0 2\nP square 1\n4 0 0 2 0 2 2 0 2\n");
         const CliRun run = run_cli("triangulate '" + scratch().file("two.poly") + "' --json -");
         CHECK(run.status == 2);
@@ -156,7 +156,7 @@ TEST_SUITE("cli/triangulate") {
               doctest::Approx(before["weight_after"].get<double>()).epsilon(1e-6));
     }
 
-    TEST_CASE("a damaged glTF file leaves no output; a damaged primitive is named, and the others are written") {
+    TEST_CASE("a damaged glTF file leaves no output, a damaged primitive is named, and the others are written") {
         using Json = nlohmann::ordered_json;
         // Two flat strips of three squares, cut the long way.
         std::string binary;

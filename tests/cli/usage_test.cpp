@@ -62,7 +62,7 @@ TEST_SUITE("cli/usage") {
         CHECK(run_cli("frames --no-draw --json a --csv a").err.find("named for two outputs") != std::string::npos);
     }
 
-    TEST_CASE("what is no plain file is written to and stays what it is; a full disk is an error") {
+    TEST_CASE("what is no plain file is written to and stays what it is, a full disk is an error") {
         const std::string link = scratch().file("link.csv"), target = scratch().file("target.csv");
         write_contents(target, "old");
         std::filesystem::create_symlink(target, link);

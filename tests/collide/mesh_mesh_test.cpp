@@ -169,7 +169,7 @@ TEST_SUITE("collide/mesh_mesh") {
         CHECK_FALSE(contains(outer, {-1.0, -1.0, -2.0}));
     }
 
-    TEST_CASE("of a mesh in several pieces each is asked; vertices that only coincide hold a piece together") {
+    TEST_CASE("of a mesh in several pieces each is asked, vertices that only coincide hold a piece together") {
         const auto pieces = [](std::initializer_list<glm::vec3> places, float half) {
             TriangleMesh mesh;
             for (const glm::vec3& place : places) {

@@ -168,7 +168,7 @@ TEST_SUITE("cull/bound_set") {
         }
     }
 
-    TEST_CASE("a chunk whose boxes have all moved far away is laid out anew; one box moving to and fro is not") {
+    TEST_CASE("a chunk whose boxes have all moved far away is laid out anew, one box moving to and fro is not") {
         oracle::Crowd crowd = oracle::random_crowd(4096, 0.0, 8);
         BoxSet set;
         set.assign(crowd.boxes);

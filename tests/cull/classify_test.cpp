@@ -79,7 +79,7 @@ TEST_SUITE("cull/classify") {
         CHECK(cull::classify(frustum, needle) == Verdict::outside);
     }
 
-    TEST_CASE("a box that touches a plane, an edge or a corner from outside is never culled; one step away it is") {
+    TEST_CASE("a box that touches a plane, an edge or a corner from outside is never culled, one step away it is") {
         const Frustum frustum = unit_cube();
         for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(1, -1, 0), glm::dvec3(-1, 1, 1)}) {
             CHECK(cull::classify(frustum, cube_at(1.5 * axis, 0.5f)) == Verdict::straddling);
@@ -172,7 +172,7 @@ TEST_SUITE("cull/classify") {
         CHECK(cull::classify(broken, Aabb{{50.0, 0.0, 0.0}, {51.0, 1.0, 1.0}}) == Verdict::straddling);
     }
 
-    TEST_CASE("balls that touch a plane, an edge or a corner are never culled; one step away they are") {
+    TEST_CASE("balls that touch a plane, an edge or a corner are never culled, one step away they are") {
         const Frustum frustum = unit_cube();
         const double next = std::nextafter(2.0, 1.0);
         CHECK(cull::classify(frustum, Sphere{{3.0, 0.0, 0.0}, 2.0}) == Verdict::straddling);

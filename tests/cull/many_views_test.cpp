@@ -25,7 +25,7 @@ std::map<cull::ItemId, std::uint32_t> one_by_one(const tree::BoxTree& tree, std:
 }  // namespace
 
 TEST_SUITE("cull/many_views") {
-    TEST_CASE("no views see nothing; a view that is not finite does not spoil the others") {
+    TEST_CASE("no views see nothing, a view that is not finite does not spoil the others") {
         const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 1);
         const auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
         cull::ManyVisible visible;

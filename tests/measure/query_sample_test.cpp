@@ -54,7 +54,7 @@ TEST_SUITE("measure/query_sample") {
         check(*QuerySample::frusta(camera, region, n, 4), box, kinematic_measure(*of_frustum(camera), k));
     }
 
-    TEST_CASE("a frustum straddles what it meets and does not contain; planes and lines contain nothing") {
+    TEST_CASE("a frustum straddles what it meets and does not contain, planes and lines contain nothing") {
         Camera camera;
         camera.near = 0.5, camera.far = 8.0;
         const Ball region{glm::dvec3(0.0), 2.0};

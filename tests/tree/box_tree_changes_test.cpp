@@ -224,7 +224,7 @@ TEST_SUITE("tree/box_tree changes") {
         CHECK(tree.validate().has_value());
     }
 
-    TEST_CASE("stored bytes give an equal tree back; damaged ones are refused") {
+    TEST_CASE("stored bytes give an equal tree back, damaged ones are refused") {
         const oracle::Crowd crowd = oracle::random_crowd(700, 1e7, 5);
         BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
         REQUIRE(tree.remove(5).has_value());

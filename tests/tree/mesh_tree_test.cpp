@@ -91,7 +91,7 @@ TEST_SUITE("tree/mesh_tree") {
         CHECK(tree->triangle_count() == 17);
     }
 
-    TEST_CASE("every triangle is in exactly one leaf and in every box above it; only the root has few children") {
+    TEST_CASE("every triangle is in exactly one leaf and in every box above it, only the root has few children") {
         for (const std::size_t count : {1u, 8u, 9u, 100u, 129u, 2049u, 2100u, 5000u}) {
             const TriangleMesh mesh = random_triangles(count, 30.0f);
             const auto tree = MeshTree::build(mesh);

@@ -138,7 +138,7 @@ TEST_SUITE("triangulate/triangulate") {
         }
     }
 
-    TEST_CASE("spikes: an inner one becomes a slit, an outer one vanishes; holes of one and two points are kept") {
+    TEST_CASE("spikes: an inner one becomes a slit, an outer one vanishes, holes of one and two points are kept") {
         for (const Method method : kMethods) {
             const auto inner = polygon({{{0, 0}, {8, 0}, {8, 8}, {4, 8}, {4, 3}, {4, 8}, {0, 8}}});
             CHECK(checked(inner, method) == "");

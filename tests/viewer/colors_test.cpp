@@ -105,7 +105,7 @@ TEST_SUITE("viewer/colors") {
         CHECK(picture(result, "none.png")["statistics"]["colliding_pairs"] == 0);
         CHECK(Pixels(scratch().file("none.png")).red() == 0);
     }
-    TEST_CASE("a material without light shows its colour as it is, until it is tinted; one with light is shaded") {
+    TEST_CASE("a material without light shows its colour as it is, until it is tinted, one with light is shaded") {
         for (const bool unlit : {true, false}) {
             const std::string file = scratch().file("square.gltf");
             write_contents(file, square_gltf(unlit));

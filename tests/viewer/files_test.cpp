@@ -49,7 +49,7 @@ TEST_SUITE("viewer/files") {
         CHECK(picture(result, "picked.png").contains("selected"));
         CHECK_FALSE(picture(result, "sky.png").contains("selected"));
     }
-    TEST_CASE("a path flown by keys is recorded and replays; is replayed") {
+    TEST_CASE("a path flown by keys is recorded and replays, is replayed") {
         const ViewRun flown = view({{{"frame", 1}, {"key", "R"}},
                                     {{"frame", 1}, {"key_down", "W"}},
                                     {{"frame", 9}, {"key_up", "W"}},

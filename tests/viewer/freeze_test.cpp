@@ -4,7 +4,7 @@
 using namespace crofton::test;
 
 TEST_SUITE("viewer/freeze") {
-    TEST_CASE("freeze keeps what is culled while the eye flies on; culled boxes, frustum and inset are drawn") {
+    TEST_CASE("freeze keeps what is culled while the eye flies on, culled boxes, frustum and inset are drawn") {
         CROFTON_REQUIRE_DISPLAY();
         const ViewRun result = view({set(0, {{"panels", false}, {"paused", true}, {"coloring", "verdict"}}),
                                      shot(1, "before.png"),

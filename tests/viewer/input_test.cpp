@@ -126,7 +126,7 @@ xdotool key 3; shoot
         CHECK(p[4]["settings"]["exact"] == true);
         for (const json& picture : p) CHECK_FALSE(picture.contains("selected"));
     }
-    TEST_CASE("a click picks the instance that a script's click at the same place picks; a click on the sky lets go") {
+    TEST_CASE("a click picks the instance that a script's click at the same place picks, a click on the sky lets go") {
         CROFTON_REQUIRE_XDOTOOL();
         const ViewRun run = drive(R"(
 xdotool key h key p; shoot
@@ -146,7 +146,7 @@ xdotool mousemove 400 300 mousedown 3 mousemove 400 20 mouseup 3 click 1; shoot
         check_clean(scripted);
         CHECK(picture(scripted, "there.png")["selected"] == p[2]["selected"]);
     }
-    TEST_CASE("minimised, the viewer rests; restored, it goes on; sizes may change with every frame") {
+    TEST_CASE("minimised, the viewer rests, restored, it goes on, sizes may change with every frame") {
         CROFTON_REQUIRE_XDOTOOL();
 #ifndef CROFTON_X_DESKTOP
         MESSAGE("skipped: Xlib's headers are not installed (third_party/install.sh)");
@@ -164,7 +164,7 @@ xdotool mousemove 400 300 mousedown 3 mousemove 400 20 mouseup 3 click 1; shoot
         CHECK(p[3]["eye"]["aspect"] == doctest::Approx(1.6));
 #endif
     }
-    TEST_CASE("a file dragged onto the window is opened; a broken one leaves the scene, and says so in the window") {
+    TEST_CASE("a file dragged onto the window is opened, a broken one leaves the scene, and says so in the window") {
         CROFTON_REQUIRE_XDOTOOL();
 #ifndef CROFTON_X_DESKTOP
         MESSAGE("skipped: Xlib's headers are not installed (third_party/install.sh)");

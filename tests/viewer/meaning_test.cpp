@@ -122,7 +122,7 @@ TEST_SUITE("viewer/meaning") {
         CHECK(middling.red() + middling.green() == 0);
         CHECK(middling.count([](int r, int g, int b) { return r > 60 && g > 60 && 2 * b < g; }) > 1000);
     }
-    TEST_CASE("improper tests are magenta where there are some; tight boxes leave fewer than spheres") {
+    TEST_CASE("improper tests are magenta where there are some, tight boxes leave fewer than spheres") {
         const ViewRun run =
             view({set(0, {{"panels", false}, {"paused", true}, {"coloring", "improper"}, {"bounds_kind", "sphere"}}),
                   shot(1, "spheres.png"), set(2, {{"bounds_kind", "obb-perimeter"}}), shot(3, "boxes.png")},

@@ -84,7 +84,7 @@ TEST_SUITE("assets/retriangulate") {
         REQUIRE(source.scene.add_instance(0, 0));
         return source;
     }
-    TEST_CASE("the least weight takes the short diagonal; facing, area, ids and counts stay, for meshes and polygons") {
+    TEST_CASE("the least weight takes the short diagonal, facing, area, ids and counts stay, for meshes and polygons") {
         for (const bool as_polygon : {false, true}) {
             CAPTURE(as_polygon);
             assets::SceneSource source = rhombus(as_polygon);
@@ -134,7 +134,7 @@ TEST_SUITE("viewer/contact_finder") {
                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
         return mesh;
     }
-    TEST_CASE("contacts of scaled, sheared and mirrored bodies lie on both surfaces; apart there are none") {
+    TEST_CASE("contacts of scaled, sheared and mirrored bodies lie on both surfaces, apart there are none") {
         const glm::dmat3 linears[] = {glm::dmat3(1.0), glm::dmat3(3, 0, 0, 0, 1, 0, 0, 0, 0.5),
                                       // Turned, stretched and sheared; then mirrored.
                                       glm::dmat3(0.8, 0.6, 0, -1.2, 1.6, 0, 0.3, 0.4, 1.5),
@@ -168,7 +168,7 @@ TEST_SUITE("viewer/contact_finder") {
                 CHECK(found.empty());
             }
     }
-    TEST_CASE("the separation spans the gap along a line that has one box on each side; boxes that meet have none") {
+    TEST_CASE("the separation spans the gap along a line that has one box on each side, boxes that meet have none") {
         Obb a, b;
         a.half_extents = {1.0f, 2.0f, 1.0f};
         b.half_extents = {1.0f, 1.0f, 1.0f};

@@ -4,7 +4,7 @@
 using namespace crofton::test;
 
 TEST_SUITE("viewer/window") {
-    TEST_CASE("bad usage and bad scenes end with exit 2 and a message; no picture is left behind") {
+    TEST_CASE("bad usage and bad scenes end with exit 2 and a message, no picture is left behind") {
         CHECK(run_cli("view --no-window").status == 2);
         CHECK(run_cli("view --no-window --screenshot x.png").status == 2);
         CHECK(run_cli("view --size big --after 1").status == 2);
@@ -41,7 +41,7 @@ TEST_SUITE("viewer/window") {
         CHECK(result.document["frames"][4]["ui_us"] == 0.0);
         CHECK(result.document["frames"][1]["ui_us"] > 0.0);
     }
-    TEST_CASE("the window is resized and the picture follows; tiny and large sizes too") {
+    TEST_CASE("the window is resized and the picture follows, tiny and large sizes too") {
         CROFTON_REQUIRE_DISPLAY();
         const ViewRun result = view({{{"frame", 1}, {"resize", {300, 200}}},
                                      shot(6, "small.png"),
