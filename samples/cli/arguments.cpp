@@ -2,12 +2,16 @@
 
 #include <unistd.h>
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <filesystem>
 
 #include "../assets/file.hpp"
 
 namespace crofton::cli {
 namespace {
+
+constexpr const char* kNotWhole = " is not a whole number from 0 in digits, or too large";
 
 // Optimal string alignment distance: letters added, left out, replaced, or swapped with their neighbour.
 std::size_t distance(const std::string& a, const std::string& b) {
@@ -71,7 +75,7 @@ std::string of_conversion(const CLI::App& command, const std::string& what) {
     const std::string name = what.substr(marker.size(), equals - marker.size());
     const CLI::Option* option = command.get_option_no_throw(name);
     const std::string type = option == nullptr ? "" : option->get_type_name();
-    const char* wanted = type.compare(0, 4, "UINT") == 0  ? " is not a whole number from 0, in digits"
+    const char* wanted = type.compare(0, 4, "UINT") == 0  ? kNotWhole
                          : type.compare(0, 3, "INT") == 0 ? " is not a whole number, in digits"
                                                           : " is not a number";
     return name + ": '" + what.substr(equals + 3) + "'" + wanted;
@@ -113,16 +117,18 @@ CLI::Validator writable_file() {
             ""};
 }
 
-void refuse_negative_counts(CLI::App& app) {
+void demand_whole_numbers(CLI::App& app) {
+    const CLI::Validator whole(
+        [](std::string& text) {
+            std::uint64_t value = 0;
+            const char* end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, value);
+            return read.ec == std::errc{} && read.ptr == end ? std::string{} : "'" + text + "'" + kNotWhole;
+        },
+        "");
     for (CLI::App* command : app.get_subcommands({}))
         for (CLI::Option* option : command->get_options())
-            if (option->get_type_name().compare(0, 4, "UINT") == 0)
-                option->check(CLI::Validator(
-                    [](std::string& text) {
-                        return text[0] == '-' ? "'" + text + "' is not a whole number from 0, in digits"
-                                              : std::string{};
-                    },
-                    ""));
+            if (option->get_type_name().compare(0, 4, "UINT") == 0) option->check(whole);
 }
 
 std::vector<std::string> with_help_as_option(int argc, char** argv) {

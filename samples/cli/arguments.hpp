@@ -13,9 +13,9 @@ namespace crofton::cli {
 // For options that name a file to write: refuses a folder, and a place where nothing can be written; "-" is stdout.
 [[nodiscard]] CLI::Validator writable_file();
 
-// After all sub-commands are added: options that take a number without sign refuse one with a minus. (CLI11 2.1 reads
-// -1 as 2⁶⁴ − 1.)
-void refuse_negative_counts(CLI::App& app);
+// After all sub-commands are added: options that take a number without sign refuse one with a minus, and one that has
+// too many digits. (CLI11 2.1 reads -1 as 2⁶⁴ − 1, and 10²⁰ as well.)
+void demand_whole_numbers(CLI::App& app);
 
 // `crofton help` and `crofton help fit` are `crofton --help` and `crofton fit --help`.
 [[nodiscard]] std::vector<std::string> with_help_as_option(int argc, char** argv);

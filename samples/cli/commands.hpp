@@ -20,6 +20,7 @@ void add_bake_command(CLI::App& app, Outcome& outcome);
 void add_collide_command(CLI::App& app, Outcome& outcome);
 void add_frames_command(CLI::App& app, Outcome& outcome);
 void add_lines_command(CLI::App& app, Outcome& outcome);
+void add_measure_command(CLI::App& app, Outcome& outcome);
 void add_radiosity_command(CLI::App& app, Outcome& outcome);
 void add_triangulate_command(CLI::App& app, Outcome& outcome);
 void add_verify_command(CLI::App& app, Outcome& outcome);

@@ -21,13 +21,14 @@ int main(int argc, char** argv) {
     add_collide_command(app, outcome);
     add_frames_command(app, outcome);
     add_lines_command(app, outcome);
+    add_measure_command(app, outcome);
     add_radiosity_command(app, outcome);
     add_triangulate_command(app, outcome);
     add_verify_command(app, outcome);
 #if defined(CROFTON_VIEWER)
     add_view_command(app, outcome);
 #endif
-    refuse_negative_counts(app);
+    demand_whole_numbers(app);
     const std::vector<std::string> arguments = with_help_as_option(argc, argv);
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

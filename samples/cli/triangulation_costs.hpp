@@ -20,7 +20,7 @@ struct Comparison {
 };
 
 // Trial i takes polygon i modulo their number and a uniformly random perspective frustum, as deep as the polygon is
-// large, among those near it; counted are the triangles that meet it, predicted by THEORY.md (6).
+// large, among those near it; counted are the triangles that meet it, predicted by theory.md (6).
 [[nodiscard]] Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::uint64_t trials);
 
 // The polygon is laid at random on a pixel grid, `size` pixels large. Counted are the 2 × 2 quads whose square of pixel

@@ -79,10 +79,10 @@ void ranking_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     };
     const double long_ray = 50.0;
     const Ratios rays = compare(segment_body(long_ray), cube, plate, point, 2.6, 4 * options.trials, seed++);
-    rows.push_back(measured_row("rays of length 50: improper tests of the cube over the plate's", "THEORY.md section 2",
+    rows.push_back(measured_row("rays of length 50: improper tests of the cube over the plate's", "theory.md section 2",
                                 exact(measure::of_segment(long_ray)), rays.outside.value(),
                                 rays.outside.standard_error()));
-    rows.push_back(computed_row("rays: the ratio tends to that of F", "paper, section 3; THEORY.md section 2",
+    rows.push_back(computed_row("rays: the ratio tends to that of F", "paper, section 3; theory.md section 2",
                                 c.area / p.area, exact(measure::of_segment(1e6)), 1e-4));
     for (const double depth : {0.5, 5.0, 20.0, 100.0, 1000.0}) {
         char size[48];
@@ -90,22 +90,22 @@ void ranking_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         const Body frustum = frustum_body(1.0, 0.6, 0.01 * depth, depth, true);
         const Ratios ratios = compare(frustum, cube, plate, point, 2.6, options.trials, seed++);
         rows.push_back(measured_row(size + std::string("improper outside tests of the cube over the plate's"),
-                                    "THEORY.md section 2", exact(frustum_volumes(depth)), ratios.outside.value(),
+                                    "theory.md section 2", exact(frustum_volumes(depth)), ratios.outside.value(),
                                     ratios.outside.standard_error()));
         if (depth == 0.5)
             rows.push_back(
                 at_most_row(size + std::string("the plate misleads less, as F says (plate/cube, both kinds)"),
-                            "THEORY.md section 2", 1.0, 1.0 / ratios.total.value(),
+                            "theory.md section 2", 1.0, 1.0 / ratios.total.value(),
                             ratios.total.standard_error() / std::pow(ratios.total.value(), 2.0)));
         if (depth >= 20.0)
             rows.push_back(at_most_row(size + std::string("the cube misleads less, as M says (cube/plate, both kinds)"),
-                                       "THEORY.md section 2", 1.0, ratios.total.value(),
+                                       "theory.md section 2", 1.0, ratios.total.value(),
                                        ratios.total.standard_error()));
         if (depth == 1000.0)
             rows.push_back(wrong_row(size + std::string("improper tests rank as F"), "paper, section 3.7, for 3D",
                                      c.area / p.area, ratios.total.value(), ratios.total.standard_error()));
     }
-    rows.push_back(computed_row("frusta: the ratio tends to that of M", "THEORY.md section 2",
+    rows.push_back(computed_row("frusta: the ratio tends to that of M", "theory.md section 2",
                                 c.mean_curvature / p.mean_curvature, exact(frustum_volumes(1e6)), 1e-4));
 }
 
@@ -153,7 +153,7 @@ void box_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
             ratio.add(misled(minimal) ? q.weight : 0.0, misled(body_of(*other)) ? q.weight : 0.0);
         }
         rows.push_back(
-            at_most_row(c.claim, "paper, section 3; THEORY.md section 2", 1.0, ratio.value(), ratio.standard_error()));
+            at_most_row(c.claim, "paper, section 3; theory.md section 2", 1.0, ratio.value(), ratio.standard_error()));
     }
 }
 
@@ -197,9 +197,9 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         rows.push_back(measured_row(claim, source, exact.value, all * share.value,
                                     std::hypot(all * share.standard_error, exact.error / kMaxZ)));
     };
-    row("planes that hit two boxes and a ball", "THEORY.md (4)", *measure_of_planes_hitting_all(bodies),
+    row("planes that hit two boxes and a ball", "theory.md (4)", *measure_of_planes_hitting_all(bodies),
         4.0 * pi * reach, planes);
-    row("lines that hit two boxes and a ball", "THEORY.md (5)",
+    row("lines that hit two boxes and a ball", "theory.md (5)",
         *measure_of_lines_hitting_all(bodies, {.tolerance = 1e-2, .max_cells = 40000}),
         measure::measure_of_lines(4.0 * pi * reach * reach), lines);
 }
@@ -247,7 +247,7 @@ void triangulation_rows(const VerifyOptions& options, std::vector<VerifyRow>& ro
                                      area * b.mean_curvature / (2.0 * pi) + b.area / 8.0 * (boundary + 2.0 * weight);
             rows.push_back(measured_row(std::string(lens.name) + " frusta: triangles passed, " +
                                             (heavier ? "heavier" : "lighter") + " triangulation of an L",
-                                        "THEORY.md (6)", predicted, placements.measure() * passed.value(),
+                                        "theory.md (6)", predicted, placements.measure() * passed.value(),
                                         placements.measure() * passed.standard_error()));
         }
 }

@@ -67,7 +67,7 @@ VerifyRow counted(const NamedBody& b, const NamedBody& k, std::uint64_t trials, 
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i) hits += meet(moved(b.body, placements.motion(points.at<6>(i))), k.body);
     const Share share = share_of(hits, trials);
-    return measured_row(std::string("motions of ") + b.name + " that hit " + k.name, "THEORY.md (1)",
+    return measured_row(std::string("motions of ") + b.name + " that hit " + k.name, "theory.md (1)",
                         measure::kinematic_measure(b.volumes, k.volumes), placements.measure() * share.value,
                         placements.measure() * share.standard_error);
 }
@@ -81,7 +81,7 @@ VerifyRow counted(const char* claim, const Figure& b, const Figure& k, std::uint
         hits += meet(moved(b, measure::motion2(glm::dvec2(-reach), glm::dvec2(reach), points.at<3>(i))), k);
     const double all = 4.0 * reach * reach;
     const Share share = share_of(hits, trials);
-    return measured_row(claim, "THEORY.md (1), in the plane", measure::kinematic_measure(measures(b), measures(k)),
+    return measured_row(claim, "theory.md (1), in the plane", measure::kinematic_measure(measures(b), measures(k)),
                         all * share.value, all * share.standard_error);
 }
 
@@ -107,7 +107,7 @@ std::vector<VerifyRow> kinematic_rows(const VerifyOptions& options) {
                            plate = measure::of_box(2.4, 0.7, 0.05);
     const measure::Criterion criterion = measure::for_partner(b);
     const double difference = measure::kinematic_measure(b, cube) - measure::kinematic_measure(b, plate);
-    rows.push_back(computed_row("the criterion of a frustum ranks bounds by how often it hits them", "THEORY.md (2)",
+    rows.push_back(computed_row("the criterion of a frustum ranks bounds by how often it hits them", "theory.md (2)",
                                 difference, criterion(cube) - criterion(plate), 1e-9 * std::abs(difference)));
     return rows;
 }

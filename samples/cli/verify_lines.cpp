@@ -81,7 +81,7 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
     const std::uint64_t trials = 4 * options.trials;
     const auto right = [&](const char* name, auto sample, std::uint64_t lines) {
         rows.push_back(measured_row(std::string("χ² of directions and places, 1,024 cells: ") + name,
-                                    "THEORY.md section 6", kMeanChiSquare, chi_square(lines, options.seed, sample),
+                                    "theory.md section 6", kMeanChiSquare, chi_square(lines, options.seed, sample),
                                     kErrorOfChiSquare));
     };
     right(
@@ -116,7 +116,7 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
     const std::uint64_t enough = std::max<std::uint64_t>(trials, 200'000);
     const auto wrong = [&](const char* name, auto sample) {
         rows.push_back(wrong_row(std::string("χ² of directions and places: ") + name + " are uniform",
-                                 "THEORY.md section 6", kMeanChiSquare, chi_square(enough, options.seed, sample),
+                                 "theory.md section 6", kMeanChiSquare, chi_square(enough, options.seed, sample),
                                  kErrorOfChiSquare));
     };
     wrong("lines through two uniform points of a box",
@@ -141,14 +141,14 @@ void plane_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         return sum;
     };
     const double mean = cells - 1.0, error = std::sqrt(2.0 * mean);
-    rows.push_back(wrong_row("in the plane, lines through two points of a circle are uniform", "THEORY.md section 6",
+    rows.push_back(wrong_row("in the plane, lines through two points of a circle are uniform", "theory.md section 6",
                              mean, chi([](Random& r) {
                                  const auto line = measure::wrong::line_through_two_circle_points(1.0, r.point<2>());
                                  return std::abs(line.point.x * line.direction.y - line.point.y * line.direction.x);
                              }),
                              error));
     rows.push_back(measured_row("in the plane, cosine-weighted lines from a point of a circle are uniform",
-                                "THEORY.md section 6", mean, chi([](Random& r) {
+                                "theory.md section 6", mean, chi([](Random& r) {
                                     // The sine of the angle to the normal is uniform.
                                     const glm::dvec2 a = measure::circle_point(r.uniform()), across(-a.y, a.x);
                                     const double sine = 2.0 * r.uniform() - 1.0;
@@ -184,7 +184,7 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         Random random(options.seed, 13);
         Mean mean;
         for (std::uint64_t i = 0; i < 2 * options.trials; ++i) mean.add(patch.crossings(sample(random)));
-        rows.push_back(measured_row(std::string("mean hits of a bent patch per line: ") + name, "THEORY.md section 6",
+        rows.push_back(measured_row(std::string("mean hits of a bent patch per line: ") + name, "theory.md section 6",
                                     2.0 * Patch::kArea / surface, mean.value(), mean.standard_error()));
     };
     const glm::dvec3 size = kBox.max - kBox.min;
@@ -207,9 +207,9 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         mean.add(hits);
         lines_per_bundle.add(static_cast<double>(lines.size()));
     }
-    rows.push_back(measured_row("mean hits of a bent patch per bundle: (c), A/(2Δ)", "THEORY.md section 6",
+    rows.push_back(measured_row("mean hits of a bent patch per bundle: (c), A/(2Δ)", "theory.md section 6",
                                 Patch::kArea / (2.0 * cell), mean.value(), mean.standard_error()));
-    rows.push_back(measured_row("lines of a bundle: πR²/Δ", "THEORY.md section 6", pi / cell, lines_per_bundle.value(),
+    rows.push_back(measured_row("lines of a bundle: πR²/Δ", "theory.md section 6", pi / cell, lines_per_bundle.value(),
                                 lines_per_bundle.standard_error()));
     rows.push_back(wrong_row("mean hits of a bent patch per bundle: 2A/Δ", "paper, section 6, as printed",
                              2.0 * Patch::kArea / cell, mean.value(), mean.standard_error()));

@@ -51,13 +51,13 @@ void line_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const std::vector<PlanarSupport> two = {circles[0], circles[1]},
                                      apart = {circles[1], PlanarSupport(Disc{{-3.0, 0.0}, 0.7})};
 
-    rows.push_back(counted_lines("lines that hit a triangle: its perimeter", "THEORY.md section 1",
+    rows.push_back(counted_lines("lines that hit a triangle: its perimeter", "theory.md section 1",
                                  measure::of_convex_polygon(triangle).perimeter, {polygon}, options, 101));
-    rows.push_back(counted_lines("lines that hit a disc, a triangle and a rectangle", "THEORY.md (3)",
+    rows.push_back(counted_lines("lines that hit a disc, a triangle and a rectangle", "theory.md (3)",
                                  measure_of_lines_hitting_all(mixed), mixed, options, 102));
-    rows.push_back(counted_lines("lines that hit four discs", "THEORY.md (3)", measure_of_lines_hitting_all(circles),
+    rows.push_back(counted_lines("lines that hit four discs", "theory.md (3)", measure_of_lines_hitting_all(circles),
                                  circles, options, 103));
-    rows.push_back(counted_lines("lines that hit two discs apart", "THEORY.md (3)", measure_of_lines_hitting_all(apart),
+    rows.push_back(counted_lines("lines that hit two discs apart", "theory.md (3)", measure_of_lines_hitting_all(apart),
                                  apart, options, 104));
     const double seven = two[0].integral() + two[1].integral() - max(two[0], two[1]).integral();
     rows.push_back(computed_row("two discs that meet: L1 + L2 - L_hull = (3)", "paper (7)", seven,
@@ -88,7 +88,7 @@ void triangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         computed_row("triangle example: its radius is 1.871·l", "paper, section 4", 1.871, best->bound.radius, 1e-3));
     rows.push_back(computed_row("triangle example: the gain is approximately 40 %", "paper, section 4", 0.403,
                                 1.0 - least / (2.0 * pi - 4.0), 1e-3));
-    rows.push_back(computed_row("triangle example: no circle is better (certificate)", "THEORY.md section 4",
+    rows.push_back(computed_row("triangle example: no circle is better (certificate)", "theory.md section 4",
                                 best->measure, best->lower_bound, 2.0 * pi * 1e-9));
     rows.push_back(counted_lines("triangle example: as many lines as that hit both circles and miss the triangle",
                                  "paper, section 4", least, {first, PlanarSupport(best->bound)}, options, 111, 4.0));

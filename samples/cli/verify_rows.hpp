@@ -12,7 +12,7 @@ inline constexpr double kMaxZ = 4.0;
 
 struct VerifyRow {
     std::string claim;   // a sentence; of a claim that is wrong on purpose it says that it must be rejected
-    std::string source;  // where it is made: "paper, Theorem 1", "THEORY.md (1)"
+    std::string source;  // where it is made: "paper, Theorem 1", "theory.md (1)"
     double predicted = 0.0;
     double measured = 0.0;
     double standard_error =

@@ -6,7 +6,7 @@
 
 namespace crofton::cli {
 
-// The measures and criteria: equations, theorems and examples of the paper, corrected where THEORY.md says so.
+// The measures and criteria: equations, theorems and examples of the paper, corrected where theory.md says so.
 [[nodiscard]] std::vector<VerifyRow> verify_paper(const VerifyOptions& options);
 // Global lines: the densities that are uniform, those that are not, and what a patch expects of them.
 [[nodiscard]] std::vector<VerifyRow> verify_lines(const VerifyOptions& options);

@@ -1,4 +1,4 @@
-// THEORY.md (6): the expected number of a polygon's triangles that a random frustum meets is affine in the weight.
+// theory.md (6): the expected number of a polygon's triangles that a random frustum meets is affine in the weight.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>

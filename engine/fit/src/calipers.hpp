@@ -18,7 +18,7 @@ struct Calipers {
 };
 
 // The rectangle that minimises product_weight · width · height + sum_weight · (width + height) around a convex polygon
-// as convex_hull makes it. One side is flush with an edge at the minimum (THEORY.md section 3), so only edges are
+// as convex_hull makes it. One side is flush with an edge at the minimum (theory.md section 3), so only edges are
 // tried.
 [[nodiscard]] Calipers minimal_rectangle(std::span<const glm::dvec2> hull, double product_weight, double sum_weight);
 

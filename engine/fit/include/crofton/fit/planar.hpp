@@ -28,7 +28,7 @@ enum class PlanarCriterion : std::uint8_t {
     area,       // random points
 };
 
-// The best of all rectangles, by rotating calipers: one side holds an edge of the hull (THEORY.md section 3). O(n log
+// The best of all rectangles, by rotating calipers: one side holds an edge of the hull (theory.md section 3). O(n log
 // n). Contains every point; grown by rounding only. Errors: no points; NaN, infinite or |coordinate| > 1e30, by index.
 [[nodiscard]] Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion);
 

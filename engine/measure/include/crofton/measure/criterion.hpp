@@ -5,7 +5,7 @@
 namespace crofton::measure {
 
 // α·V + β·F + γ·M, all weights ≥ 0 and not all 0. By Hadwiger's theorem every criterion for uniformly random queries
-// has this form; minimising it minimises the expected number of hits (kinematic formula, THEORY.md section 2).
+// has this form; minimising it minimises the expected number of hits (kinematic formula, theory.md section 2).
 struct Criterion {
     double volume_weight = 0.0;          // α
     double area_weight = 0.0;            // β

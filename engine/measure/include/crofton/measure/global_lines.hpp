@@ -1,4 +1,4 @@
-// Uniform random lines through a region: no point and no direction is preferred (THEORY.md section 6).
+// Uniform random lines through a region: no point and no direction is preferred (theory.md section 6).
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>

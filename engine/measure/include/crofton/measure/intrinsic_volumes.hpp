@@ -16,7 +16,7 @@ struct IntrinsicVolumes {
     double mean_curvature = 0.0;
 };
 
-// THEORY.md section 1. A box of edges a, b, c: abc, 2(ab+bc+ca), π(a+b+c).
+// theory.md section 1. A box of edges a, b, c: abc, 2(ab+bc+ca), π(a+b+c).
 [[nodiscard]] IntrinsicVolumes of_box(double a, double b, double c);
 [[nodiscard]] IntrinsicVolumes of_box(const Obb& box);
 [[nodiscard]] IntrinsicVolumes of_ball(double radius);

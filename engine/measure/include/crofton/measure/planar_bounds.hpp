@@ -1,5 +1,5 @@
 // The best circle, box or rectangle around an object of the plane, given the bounds of its ancestors: the one that the
-// fewest lines hit together with all of them (THEORY.md section 4; two-level is one ancestor, n-level is n − 1).
+// fewest lines hit together with all of them (theory.md section 4; two-level is one ancestor, n-level is n − 1).
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/measure/planar_support.hpp>

@@ -1,4 +1,4 @@
-// Lines of the plane that hit all of n convex figures: the chance that a node of a hierarchy is tested (THEORY.md (3)).
+// Lines of the plane that hit all of n convex figures: the chance that a node of a hierarchy is tested (theory.md (3)).
 #pragma once
 #include <crofton/measure/planar_support.hpp>
 #include <span>

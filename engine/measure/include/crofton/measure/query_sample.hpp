@@ -1,5 +1,5 @@
 // A fixed sample of uniform queries, to count instead of to calculate: the chance that all of several boxes are hit,
-// for any frustum, nested or not (THEORY.md section 4).
+// for any frustum, nested or not (theory.md section 4).
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>

@@ -1,4 +1,4 @@
-// Planes and lines of space that hit all of n convex bodies (THEORY.md (4) and (5)), by quadrature with a proven error
+// Planes and lines of space that hit all of n convex bodies (theory.md (4) and (5)), by quadrature with a proven error
 // bound.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,4 +1,4 @@
-// Global lines for a scene, in blocks that anyone can draw again: the four right ways of THEORY.md section 6.
+// Global lines for a scene, in blocks that anyone can draw again: the four right ways of theory.md section 6.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>

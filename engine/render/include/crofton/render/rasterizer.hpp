@@ -92,7 +92,7 @@ struct RasterizerOptions {
     std::uint32_t height = 720;
 };
 
-// Draws into an RGBA8 + D32 target (on lavapipe any other pair may turn on a guard band, which changes the counts).
+// Draws into a BGRA8 + D32 target (on lavapipe any other pair may turn on a guard band, which changes the counts).
 // The device must outlive it. Depth is reversed-Z: cameras and matrices must use DepthRange::reversed_zero_to_one.
 class Rasterizer {
   public:

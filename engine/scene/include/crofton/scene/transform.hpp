@@ -31,7 +31,7 @@ struct Transform {
 
 // A box that contains the exact image of every point of `box` under the stored numbers of `transform`. Similarities
 // keep the box's shape but for rounding; other maps turn it into a parallelepiped, around which the best box by
-// `criterion` with two adjacent flush faces is taken (THEORY.md section 3). Always right-handed, also for reflections.
+// `criterion` with two adjacent flush faces is taken (theory.md section 3). Always right-handed, also for reflections.
 // Errors: as validate(Obb) for the result: not finite or too large.
 [[nodiscard]] Result<Obb> transformed_box(const Transform& transform, const Obb& box,
                                           const measure::Criterion& criterion);

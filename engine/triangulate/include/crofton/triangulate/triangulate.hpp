@@ -1,4 +1,4 @@
-// Polygons with holes to triangles: minimum weight, because that is what a frustum pays for (THEORY.md section 5).
+// Polygons with holes to triangles: minimum weight, because that is what a frustum pays for (theory.md section 5).
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
