@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/cull/moving_boxes.hpp>
 #include <cstdlib>
 #include <map>
 #include <random>
@@ -111,6 +113,81 @@ BENCHMARK_CAPTURE(move_and_cull, neighbours, Tenth::neighbours, false)->Arg(1000
 BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, Tenth::neighbours_numbered, false)
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
+
+// The tenth is lifted out of the tree and kept as a list over the caller's boxes. Parts of the frame: 0 the caller's own
+// change of the boxes, 1 the list's update as well, 2 all.
+void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::Options options) {
+    Moving moving(state.range(0), tenth);
+    if (tenth == Tenth::scattered) {  // each once
+        std::ranges::sort(moving.items);
+        const auto repeated = std::ranges::unique(moving.items);
+        moving.items.erase(repeated.begin(), repeated.end());
+        std::ranges::shuffle(moving.items, std::mt19937(2));
+    }
+    moving.moved.clear();
+    for (const tree::ItemId item : moving.items) moving.moved.push_back(moving.boxes[item]);
+    moving.tree = *tree::BoxTree::build(moving.boxes, {.lifted = moving.items});
+    cull::MovingBoxes list;
+    const cull::View view = bench::view_of_share(moving.boxes, 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        for (Obb& box : moving.moved) box.center.x += moving.step;
+        moving.step = -moving.step;
+        benchmark::ClobberMemory();
+        if (part > 0 && !list.update(moving.tree, moving.items, moving.moved)) std::abort();
+        if (part > 1) cull::cull(moving.tree, list, view, visible, options);
+    }
+    report(state, visible.size());
+}
+constexpr cull::Options kPlanes{cull::Mode::conservative, cull::Order::tree};
+BENCHMARK_CAPTURE(list_and_cull, change, Tenth::scattered, 0, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, update, Tenth::scattered, 1, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, scattered, Tenth::scattered, 2, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, numbered_together, Tenth::numbered_together, 2, kPlanes)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, neighbours, Tenth::neighbours, 2, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, neighbours_numbered, Tenth::neighbours_numbered, 2, kPlanes)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, scattered_exact, Tenth::scattered, 2,
+                  (cull::Options{cull::Mode::exact, cull::Order::tree}))
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, scattered_ascending, Tenth::scattered, 2, cull::Options{})
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+
+// Another tenth in each frame, of a list of all.
+void list_of_all(benchmark::State& state) {
+    std::vector<Obb> boxes = boxes_of(state.range(0));
+    cull::BoxSet set;
+    set.assign(boxes);
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::VerdictBits bits;
+    std::mt19937 random(1);
+    std::vector<std::uint32_t> items(boxes.size() / 10);
+    double change = 0, update = 0, query = 0;
+    for (auto _ : state) {
+        for (auto& i : items) i = static_cast<std::uint32_t>(random() % boxes.size());
+        const auto t0 = std::chrono::steady_clock::now();
+        for (const auto i : items) boxes[i].center.x += 0.1;
+        const auto t1 = std::chrono::steady_clock::now();
+        set.update(items, boxes);
+        const auto t2 = std::chrono::steady_clock::now();
+        cull::cull(set, boxes, view, bits, cull::Mode::conservative);
+        const auto t3 = std::chrono::steady_clock::now();
+        change += std::chrono::duration<double>(t1 - t0).count();
+        update += std::chrono::duration<double>(t2 - t1).count();
+        query += std::chrono::duration<double>(t3 - t2).count();
+        state.SetIterationTime(std::chrono::duration<double>(t3 - t0).count());
+    }
+    const double n = 1e-3 * static_cast<double>(state.iterations());
+    state.counters["change_ms"] = change / n;
+    state.counters["update_ms"] = update / n;
+    state.counters["query_ms"] = query / n;
+}
+BENCHMARK(list_of_all)->Arg(1000000)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 // What memory allows: a tenth of the boxes is changed where it lies, read, and written where it belongs.
 void move_floor(benchmark::State& state, Tenth tenth) {

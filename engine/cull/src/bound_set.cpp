@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/bound_set.hpp>
 
 #include "box_constraints.hpp"
+#include "box_writer.hpp"
 #include "records.hpp"
 
 namespace crofton::cull {
@@ -47,29 +49,37 @@ bool write_row(RowBlock& block, std::size_t lane, const glm::dvec3& offset, doub
 }  // namespace
 
 template <class Bound>
-void BoundSet<Bound>::assign(std::span<const Bound> bounds, Executor& executor) {
-    size_ = bounds.size();
+void BoundSet<Bound>::resize(std::size_t size) {
+    size_ = size;
     rows_.resize((size_ + 63) / 64 * 4);  // whole words of verdicts
     records_.resize(size_);
     chunks_.resize((size_ + kChunk - 1) / kChunk);
-    executor.parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t c = begin; c < end; ++c) assign_chunk(c, bounds);
-    });
     for (std::size_t i = size_; i < rows_.size() * 16; ++i) clear_row(rows_[i / 16], i % 16);
 }
 
 template <class Bound>
+void BoundSet<Bound>::assign(std::span<const Bound> bounds, Executor& executor) {
+    chunks_.clear();
+    (void)update(bounds, executor);
+}
+
+template <class Bound>
 void BoundSet<Bound>::assign_chunk(std::size_t c, std::span<const Bound> bounds) {
-    const std::size_t first = c * kChunk, last = std::min(size_, first + kChunk);
+    choose_frame(c, bounds);
+    (void)fill_chunk(c, bounds);
+    chunks_[c].accepted_strays = chunks_[c].strays;
+}
+
+template <class Bound>
+void BoundSet<Bound>::choose_frame(std::size_t c, std::span<const Bound> bounds) {
     ListChunk& chunk = chunks_[c];
     chunk = {};
     Aabb centers;
     double exponents = 0.0;
     std::size_t usable = 0;
-    for (std::size_t i = first; i < last; ++i) {
-        clear_row(rows_[i / 16], i % 16);
-        if (!is_usable(bounds[i])) continue;
-        const Sphere ball = ball_around(bounds[i]);
+    for (const Bound& bound : bounds.subspan(c * kChunk, std::min(kChunk, size_ - c * kChunk))) {
+        if (!is_usable(bound)) continue;
+        const Sphere ball = ball_around(bound);
         centers.include(ball.center);
         exponents += std::ilogb(std::max(ball.radius, 1e-30));
         ++usable;
@@ -82,18 +92,81 @@ void BoundSet<Bound>::assign_chunk(std::size_t c, std::span<const Bound> bounds)
     const double typical = usable > 0 ? std::exp2(std::floor(exponents / static_cast<double>(usable))) : 0.0;
     const double quantum = std::max(extent * 1.0001 / kMaxRowCoordinate, typical / kTypicalRadius);
     chunk.quantum = std::exp2(std::ilogb(quantum) + 1);
-    chunk.strays = static_cast<std::uint32_t>(last - first);
-    for (std::size_t i = first; i < last; ++i) write(i, bounds[i]);
-    chunk.accepted_strays = chunk.strays;
+}
+
+// Writes all of a chunk whose frame is chosen. Returns the first that is not valid, or size().
+template <class Bound>
+std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bounds) {
+    std::size_t invalid = size_;
+    const std::size_t first = c * kChunk, count = std::min(size_ - first, kChunk);
+    ListChunk& chunk = chunks_[c];
+    if constexpr (std::is_same_v<Bound, Obb>) {
+        std::uint32_t left[kChunk];
+        const std::size_t left_count =
+            write_boxes(&bounds[first], count, chunk, &rows_[first / 16], &records_[first], left);
+        for (std::size_t n = left_count; n-- > 0;) {
+            const std::size_t i = first + left[n];
+            write(i, bounds[i]);
+            if (!validate(bounds[i])) invalid = i;
+        }
+    } else {
+        for (std::size_t i = first; i < first + count; ++i) clear_row(rows_[i / 16], i % 16);
+        chunk.reach = 0.0f;
+        chunk.largest_radius = 0;
+        for (std::int32_t& extent : chunk.extent) extent = 0;
+        chunk.strays = static_cast<std::uint32_t>(count);
+        for (std::size_t i = first + count; i-- > first;) {
+            write(i, bounds[i]);
+            if (!is_usable(bounds[i])) invalid = i;
+        }
+    }
+    return invalid;
+}
+
+// When more of its rows say nothing than should, or its integers are twice as coarse as they need be.
+template <class Bound>
+bool BoundSet<Bound>::wants_new_frame(const ListChunk& chunk) {
+    if (chunk.strays >= chunk.accepted_strays + kTooManyStrays) return true;
+    const std::int32_t farthest = std::max({chunk.extent[0], chunk.extent[1], chunk.extent[2]});
+    return farthest < kMaxRowCoordinate / 4 && chunk.largest_radius < static_cast<std::uint32_t>(kTypicalRadius) / 4;
+}
+
+template <class Bound>
+std::size_t BoundSet<Bound>::update(std::span<const Bound> bounds, Executor& executor) {
+    const std::size_t laid_out = chunks_.size();
+    resize(bounds.size());
+    std::atomic<std::size_t> first_invalid = size_;
+    executor.parallel_for(chunks_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t c = begin; c < end; ++c) {
+            if (c >= laid_out) choose_frame(c, bounds);
+            const std::size_t invalid = fill_chunk(c, bounds);
+            std::size_t before = first_invalid;
+            while (invalid < before && !first_invalid.compare_exchange_weak(before, invalid)) {
+            }
+            if (c >= laid_out) chunks_[c].accepted_strays = chunks_[c].strays;
+            if (wants_new_frame(chunks_[c])) assign_chunk(c, bounds);
+        }
+    });
+    return first_invalid;
 }
 
 template <class Bound>
 void BoundSet<Bound>::update(std::span<const std::uint32_t> items, std::span<const Bound> bounds) {
     CROFTON_ASSERT(bounds.size() == size_, "update needs all bounds of the set");
-    for (const std::uint32_t i : items) {
-        write(i, bounds[i]);
-        const ListChunk& chunk = chunks_[i / kChunk];
-        if (chunk.strays >= chunk.accepted_strays + kTooManyStrays) assign_chunk(i / kChunk, bounds);
+    for (; !items.empty(); items = items.subspan(std::min(items.size(), kWriteBatch))) {
+        const std::span<const std::uint32_t> batch = items.first(std::min(items.size(), kWriteBatch));
+        if constexpr (std::is_same_v<Bound, Obb>) {
+            std::uint32_t left[kWriteBatch];
+            const std::size_t left_count = write_boxes(bounds.data(), batch.data(), batch.size(), chunks_.data(),
+                                                       rows_.data(), records_.data(), left);
+            for (std::size_t i = 0; i < left_count; ++i) write(left[i], bounds[left[i]]);
+        } else {
+            for (const std::uint32_t i : batch) write(i, bounds[i]);
+        }
+        for (const std::uint32_t i : batch) {
+            const ListChunk& chunk = chunks_[i / kChunk];
+            if (chunk.strays >= chunk.accepted_strays + kTooManyStrays) assign_chunk(i / kChunk, bounds);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 #include <bit>
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/many_views.hpp>
+#include <crofton/cull/moving_boxes.hpp>
 #include <cstring>
 
 #include "box_constraints.hpp"
@@ -14,9 +15,16 @@ class ManyViewsQuery {
     ManyViewsQuery(const tree::BoxTree& tree, std::span<const View> views, Mode mode)
         : tree_(tree), views_(views), mode_(mode) {}
 
-    void run(ManyVisible& visible) {
+    void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
+        find_resting(visible, moving ? moving->size() : 0);
+        if (moving) add_moving(*moving, visible);
+    }
+
+  private:
+    // Leaves room for `more` items.
+    void find_resting(ManyVisible& visible, std::size_t more) {
         const std::size_t leaves = tree_.leaves().size() + tree::kWidth;
-        grow(visible.ids_, tree_.boxes().size() + tree::kWidth);
+        grow(visible.ids_, tree_.boxes().size() + more + tree::kWidth);
         visible.mask_bytes_ = views_.size() > 16 ? 4 : views_.size() > 8 ? 2 : 1;
         grow(visible.masks_, visible.ids_.size() * visible.mask_bytes_);
         grow(visible.whole_, leaves);
@@ -64,7 +72,29 @@ class ManyViewsQuery {
         visible.size_ = output.count;
     }
 
-  private:
+    void add_moving(const MovingBoxes& moving, ManyVisible& visible) const {
+        grow(visible.moving_masks_, moving.size());
+        const std::span<std::uint32_t> masks = std::span(visible.moving_masks_).first(moving.size());
+        cull(moving.set(), moving.boxes(), {}, views_, masks, mode_);
+        for (std::size_t k = 0; k < masks.size(); ++k) {
+            if (masks[k] == 0) continue;
+            const ItemId item = moving.items()[k];
+            append(visible, item, masks[k] & views_with(tree_.layer_masks()[item]));
+        }
+    }
+
+    [[nodiscard]] std::uint32_t views_with(std::uint32_t layers) const {
+        std::uint32_t with = 0;
+        for (std::size_t v = 0; v < views_.size(); ++v) with |= std::uint32_t{(layers & views_[v].layer_mask) != 0} << v;
+        return with;
+    }
+
+    static void append(ManyVisible& visible, ItemId item, std::uint32_t mask) {
+        if (mask == 0) return;
+        visible.ids_[visible.size_] = item;
+        std::memcpy(visible.masks_.data() + visible.size_++ * visible.mask_bytes_, &mask, visible.mask_bytes_);
+    }
+
     template <class T>
     static void grow(Vector<T>& buffer, std::size_t size) {
         if (buffer.size() < size) buffer.resize(size);
@@ -82,9 +112,7 @@ class ManyViewsQuery {
                 if (tree_.layer_masks()[item] & views_[v].layer_mask &&
                     classify(views_[v].frustum, tree_.boxes()[item], mode_) != Verdict::outside)
                     mask |= 1u << v;
-            if (mask == 0) continue;
-            visible.ids_[visible.size_] = item;
-            std::memcpy(visible.masks_.data() + visible.size_++ * visible.mask_bytes_, &mask, visible.mask_bytes_);
+            append(visible, item, mask);
         }
     }
 
@@ -96,6 +124,12 @@ class ManyViewsQuery {
 void cull(const tree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, Mode mode) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     ManyViewsQuery(tree, views, mode).run(visible);
+}
+
+void cull(const tree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views, ManyVisible& visible,
+          Mode mode) {
+    CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
+    ManyViewsQuery(resting, views, mode).run(visible, &moving);
 }
 
 }  // namespace crofton::cull

@@ -79,8 +79,8 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
 }
 
 void Query::run(const tree::BoxTree& tree, Executor& executor) {
-    start(tree.boxes().size());
-    if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree);
+    start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
+    if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     const KernelView view = kernel_view_of(view_);
     const TreeKernelInput input{tree.nodes().data(),         tree.leaves().data(),     tree.leaf_ranges().data(),
@@ -98,7 +98,7 @@ void Query::run(const tree::BoxTree& tree, Executor& executor) {
     run_tree_kernel(input, tasks.entries, tasks.count, output);
     std::size_t inside = output.inside_count, straddling = output.straddling_count;
     append_decided(output, decide(tree, output), inside, straddling);
-    finish(inside, straddling, tree.boxes().size());
+    finish(tree, inside, straddling, executor);
 }
 
 // A bound contains what is below it, so its verdict is theirs unless it straddles.
@@ -188,11 +188,11 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
         }
     });
     for (std::size_t p = 0; p < parts; ++p) append_decided(outputs[p], kept[p], inside, straddling);
-    finish(inside, straddling, tree.boxes().size());
+    finish(tree, inside, straddling, executor);
 }
 
 // A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
-void Query::run_all(const tree::BoxTree& tree) {
+void Query::run_all(const tree::BoxTree& tree, Executor& executor) {
     std::size_t inside = 0, straddling = 0;
     for (tree::LeafId l = 0; l < tree.leaves().size(); ++l)
         for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane) {
@@ -202,7 +202,7 @@ void Query::run_all(const tree::BoxTree& tree) {
             if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
             if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
         }
-    finish(inside, straddling, tree.boxes().size());
+    finish(tree, inside, straddling, executor);
 }
 
 // Replaces the undecided slots by the items that are visible after all, with kInside where that is so; the others are
@@ -238,6 +238,11 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.accepted_whole += output.accepted_whole;
     statistics.exact_tests += output.undecided_count;
     statistics.improper += output.improper + output.undecided_count - kept;
+}
+
+void Query::finish(const tree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
+    if (moving_) add_moving(tree, inside, straddling, executor);
+    finish(inside, straddling, tree.boxes().size());
 }
 
 void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items) {

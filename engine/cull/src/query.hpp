@@ -1,6 +1,7 @@
 // One query at work in a VisibleSet's buffers.
 #pragma once
 #include <crofton/cull/cull.hpp>
+#include <crofton/cull/moving_boxes.hpp>
 
 #include "tree_kernel.hpp"
 
@@ -10,8 +11,9 @@ namespace crofton::cull {
 
 class Query {
   public:
-    Query(const View& view, VisibleSet& visible, const Options& options)
-        : view_(view), visible_(visible), options_(options) {}
+    // What moves, if there is any, is asked beside a BoxTree.
+    Query(const View& view, VisibleSet& visible, const Options& options, const MovingBoxes* moving = nullptr)
+        : view_(view), visible_(visible), options_(options), moving_(moving) {}
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
     void run(const tree::BoxTree& tree, Executor& executor);
@@ -19,7 +21,7 @@ class Query {
 
   private:
     void start(std::size_t items);
-    void run_all(const tree::BoxTree& tree);
+    void run_all(const tree::BoxTree& tree, Executor& executor);
     struct Tasks {
         static constexpr std::size_t kMost = std::size_t{tree::kWidth} * tree::kWidth;
         std::uint64_t entries[kMost];
@@ -30,12 +32,15 @@ class Query {
     void run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks, Executor& executor);
     [[nodiscard]] std::size_t decide(const tree::BoxTree& tree, TreeKernelOutput& output) const;
     void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
+    void add_moving(const tree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
+    void finish(const tree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     void sort(std::size_t inside, std::size_t straddling, std::size_t items);
 
     const View& view_;
     VisibleSet& visible_;
     const Options& options_;
+    const MovingBoxes* moving_;
 };
 
 }  // namespace crofton::cull

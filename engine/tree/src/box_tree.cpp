@@ -46,8 +46,13 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
     if (auto taken = tree.take_boxes(boxes, scene); !taken) return tl::unexpected(taken.error());
     tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
     tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
-    Builder builder(scene, boxes.size(), options.criterion);
-    for (std::size_t i = 0; i < boxes.size(); ++i) builder.add(static_cast<ItemId>(i), tree.boxes_[i]);
+    for (const ItemId item : options.lifted) {
+        if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to lift");
+        if (!tree.is_lifted(item)) tree.set_lifted(item, true);
+    }
+    Builder builder(scene, tree.item_count(), options.criterion);
+    for (ItemId item = 0; item < boxes.size(); ++item)
+        if (!tree.is_lifted(item)) builder.add(item, tree.boxes_[item]);
     while (!builder.prepare(~std::size_t{0} / 8, tree.boxes_, {moves, moving.data()})) {
     }
     tree.build_subtrees(builder, executor);
@@ -275,6 +280,7 @@ Aabb BoxTree::child_bounds(NodeId node, unsigned lane) const {
 }
 
 Result<void> BoxTree::check_item(ItemId item) const {
+    if (is_lifted(item)) return fail(ErrorCode::out_of_range, item, "box tree: the item has been lifted; settle it first");
     if (!is_present(item))
         return fail(ErrorCode::out_of_range, item, "box tree: no such item, or it has been removed");
     return {};

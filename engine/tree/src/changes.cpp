@@ -85,6 +85,10 @@ void BoxTree::mark_moved() {
 }
 
 Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
+    if (is_lifted(item)) {
+        layer_masks_[item] = layer_mask;
+        return {};
+    }
     if (auto known = check_item(item); !known) return known;
     layer_masks_[item] = layer_mask;
     const std::uint32_t slot = now_.item_slots[item];
@@ -96,6 +100,11 @@ Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
 }
 
 Result<void> BoxTree::remove(ItemId item) {
+    if (is_lifted(item)) {
+        set_lifted(item, false);
+        free_items_.push_back(item);
+        return {};
+    }
     if (auto known = check_item(item); !known) return known;
     vacate(item);
     free_items_.push_back(item);

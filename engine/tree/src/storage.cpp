@@ -86,6 +86,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         at += count * sizeof(array[0]);
     });
     clear_marks(tree.now_);
+    tree.find_lifted();
     if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
     if (auto valid = tree.validate(trust); !valid)
         return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);

@@ -6,6 +6,7 @@
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/list_layout.hpp>
+#include <crofton/cull/verdict_bits.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,6 +42,9 @@ class BoundSet {
     // bounds[i] has changed, for each of `items`. Requires indices below size(). Bounds that move far from where they
     // were cost their queries more; when many have, their chunk is laid out anew.
     void update(std::span<const std::uint32_t> items, std::span<const Bound> bounds);
+    // All may have changed, and be more or fewer than before. Returns the first that is not valid (see assign; a box must
+    // pass validate(Obb)), or size().
+    std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::span<const RowBlock> rows() const { return rows_; }
@@ -49,7 +53,11 @@ class BoundSet {
 
   private:
     void assign_chunk(std::size_t c, std::span<const Bound> bounds);
+    void resize(std::size_t size);
+    void choose_frame(std::size_t c, std::span<const Bound> bounds);
+    std::size_t fill_chunk(std::size_t c, std::span<const Bound> bounds);
     void write(std::size_t i, const Bound& bound);
+    [[nodiscard]] static bool wants_new_frame(const ListChunk& chunk);
 
     std::size_t size_ = 0;
     Vector<RowBlock> rows_;
@@ -60,20 +68,6 @@ class BoundSet {
 using BoxSet = BoundSet<Obb>;
 using AabbSet = BoundSet<Aabb>;
 using SphereSet = BoundSet<Sphere>;
-
-// What a query answers: bit i % 64 of word i / 64 is bound i's.
-struct VerdictBits {
-    Vector<std::uint64_t> visible;  // not outside
-    Vector<std::uint64_t> inside;
-    Statistics statistics;
-
-    [[nodiscard]] Verdict verdict(std::size_t i) const {
-        if (!(visible[i / 64] >> (i % 64) & 1)) return Verdict::outside;
-        return inside[i / 64] >> (i % 64) & 1 ? Verdict::inside : Verdict::straddling;
-    }
-
-    Vector<Statistics> by_chunk;  // for the query's own use
-};
 
 // The verdicts of classify(view.frustum, bounds[i], mode) for all bounds; `bounds` are those that the set was given.
 // The view's layers are not looked at. Allocates nothing once `verdicts` has been used for a set of this size.

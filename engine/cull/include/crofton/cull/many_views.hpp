@@ -29,6 +29,7 @@ class ManyVisible {
     Vector<std::uint32_t> whole_, open_, listed_;  // by leaf
     Vector<std::uint16_t> planes_;                 // by view, by leaf
     Vector<std::uint64_t> touched_, stack_;
+    Vector<std::uint32_t> moving_masks_;
     std::size_t size_ = 0;
 };
 

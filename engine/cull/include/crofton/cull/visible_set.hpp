@@ -3,6 +3,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/statistics.hpp>
+#include <crofton/cull/verdict_bits.hpp>
 #include <crofton/tree/layout.hpp>
 #include <cstdint>
 #include <span>
@@ -33,6 +34,8 @@ class VisibleSet {
     Vector<std::uint64_t> bits_;
     Vector<std::uint64_t> runs_;
     Vector<std::uint32_t> work_;
+    VerdictBits moving_bits_;
+    Vector<std::uint32_t> listed_;
     std::size_t size_ = 0, inside_ = 0;
     Statistics statistics_;
 };

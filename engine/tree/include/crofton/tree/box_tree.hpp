@@ -20,6 +20,8 @@ struct BuildOptions {
     // Items that will move nearly every frame, if known. In a tree of more than 32,768 items they share leaves with each
     // other, so that frames touch few leaves besides theirs. maintain() finds such items by itself.
     std::span<const ItemId> moving = {};
+    // Items that are lifted from the start: see BoxTree::lift.
+    std::span<const ItemId> lifted = {};
 };
 
 // What deserialise() may take on trust. `contents`: the bytes are what serialise() wrote, as a checksum has shown; then
@@ -53,6 +55,14 @@ class BoxTree {
     [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
     void refit();
 
+    // For what moves in every frame, which cull::MovingBoxes keeps beside the tree: a lifted item is in no leaf, and its id
+    // and layers stay its own until settle() puts it back or remove() gives the id away. Like remove and insert otherwise.
+    [[nodiscard]] Result<void> lift(ItemId item);
+    [[nodiscard]] Result<void> settle(ItemId item, const Obb& box);
+    [[nodiscard]] bool is_lifted(ItemId item) const {
+        return item / 64 < lifted_bits_.size() && (lifted_bits_[item / 64] >> item % 64 & 1) != 0;
+    }
+
     // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up to
     // date twice as many items' more as have changed since the call before (a build is worth about 10 per item). Call it
     // once a frame where items move for long. True when a rebuild has just been completed. Items that moved before both
@@ -68,11 +78,11 @@ class BoxTree {
     [[nodiscard]] Vector<std::byte> serialise() const;
     [[nodiscard]] static Result<BoxTree> deserialise(std::span<const std::byte> bytes, Trust trust = Trust::nothing);
 
-    // By ItemId. Ids are below boxes().size(), removed ones included.
+    // By ItemId. Ids are below boxes().size(), removed ones included; item_count() is how many the leaves hold.
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
     [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_; }
-    [[nodiscard]] std::size_t item_count() const { return boxes_.size() - free_items_.size(); }
-    [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return now_.item_slots[item]; }  // kNone once removed
+    [[nodiscard]] std::size_t item_count() const { return boxes_.size() - free_items_.size() - lifted_count_; }
+    [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return now_.item_slots[item]; }  // kNone: removed or lifted
 
     // The structure itself, root = nodes()[0]; there is always a root.
     [[nodiscard]] std::span<const Node> nodes() const { return now_.nodes; }
@@ -148,6 +158,8 @@ class BoxTree {
     std::size_t fill_leaves(Rebuild& work, std::size_t budget) const;
     std::size_t catch_up(Rebuild& work, std::size_t budget);
     void follow(ItemId item, bool present);
+    void set_lifted(ItemId item, bool lifted);
+    void find_lifted();
     [[nodiscard]] Result<void> validate(Trust trust) const;
     [[nodiscard]] Result<void> validate_leaves(Trust trust) const;
     [[nodiscard]] bool is_present(ItemId item) const {
@@ -160,6 +172,8 @@ class BoxTree {
     Vector<Obb> boxes_;
     Vector<std::uint32_t> layer_masks_;
     Vector<ItemId> free_items_;
+    Vector<std::uint64_t> lifted_bits_;  // one bit an item, up to the last that was ever lifted
+    std::size_t lifted_count_ = 0;
     Structure now_;
     Vector<std::uint32_t> moved_slots_;
     Vector<LeafId> dirty_list_;
