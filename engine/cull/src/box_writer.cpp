@@ -2,7 +2,9 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "box_writer.cpp"
@@ -19,37 +21,41 @@ namespace {
 
 constexpr std::size_t kSixteen = tree::kWidth;
 using DD = hn::CappedTag<double, kSixteen>;
-using VD = hn::Vec<DD>;
 
 // As Obb has it: a centre, three axes, three half extents.
 constexpr std::size_t kBoxBytes = sizeof(Obb), kShapeBytes = 24;
+
+// Centres beyond this are left to others, and so are chunks whose origin is: then all centres here are below 1e30.
+constexpr double kFarthest = 4e29;
 
 // Sixteen boxes side by side, and the frames that they are to be written in.
 struct Boxes {
     alignas(64) double center[3][kSixteen];
     alignas(64) float shape[3][kSixteen][4];  // nine axes' components, three half extents: loaded interleaved
     alignas(64) double origin[3][kSixteen];
-    alignas(64) double per_quantum[kSixteen];
-    alignas(64) float per_quantum_f[kSixteen];
+    alignas(64) float per_quantum[kSixteen];
 
     HWY_INLINE void put(std::size_t lane, const unsigned char* box) {
         for (std::size_t j = 0; j < 3; ++j) std::memcpy(&center[j][lane], box + 8 * j, 8);
         for (std::size_t q = 0; q < 3; ++q) std::memcpy(shape[q][lane], box + kShapeBytes + 16 * q, 16);
     }
     HWY_INLINE void put_frame(std::size_t lane, const ListChunk& chunk) {
-        for (std::size_t j = 0; j < 3; ++j) origin[j][lane] = chunk.origin[j];
-        per_quantum[lane] = 1.0 / chunk.quantum;  // exact, a power of two
-        per_quantum_f[lane] = static_cast<float>(per_quantum[lane]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            const bool far = !(std::abs(chunk.origin[j]) <= kFarthest);
+            origin[j][lane] = far ? std::numeric_limits<double>::quiet_NaN() : chunk.origin[j];
+        }
+        per_quantum[lane] = static_cast<float>(1.0 / chunk.quantum);  // exact, a power of two
     }
 };
 
-// What becomes of them.
+// What becomes of them. Coordinates and radius are in quanta, and those of a row that says nothing are 0 and
+// kUnboundedRadius.
 struct Written {
-    alignas(64) float offset[3][kSixteen];     // infinite where the centre is not usable
-    alignas(64) std::int32_t at[3][kSixteen];  // in quanta; kBeyond where the frame ends before
+    alignas(64) float offset[3][kSixteen];
+    alignas(64) std::int32_t at[3][kSixteen];
     alignas(64) std::uint32_t xy[kSixteen];
     alignas(64) std::uint32_t zr[kSixteen];
-    alignas(64) std::uint32_t radius[kSixteen];  // in quanta
+    alignas(64) std::uint32_t radius[kSixteen];
     alignas(64) float reach[kSixteen];
     alignas(64) std::uint32_t record[2][kSixteen][4];
     std::uint32_t usable = 0, bounded = 0;  // a bit a lane
@@ -59,23 +65,14 @@ struct Written {
             std::memcpy(reinterpret_cast<unsigned char*>(&to) + 16 * q, record[q][lane], 16);
     }
 };
-constexpr std::int32_t kBeyond = kMaxRowCoordinate + 1;
 
-HWY_INLINE void write_centers(const Boxes& boxes, Written& to) {
+HWY_INLINE void write_offsets(const Boxes& boxes, Written& to) {
     const DD d;
     const hn::Rebind<float, DD> df;
-    const hn::Rebind<std::int32_t, DD> di;
-    const VD magic = hn::Set(d, 0x1.8p52);  // added and taken away again it leaves the nearest integer
     for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(d))
         for (std::size_t j = 0; j < 3; ++j) {
-            const VD center = hn::Load(d, boxes.center[j] + l);
-            const VD offset = hn::Sub(center, hn::Load(d, boxes.origin[j] + l));
-            const auto good = hn::Le(hn::Abs(center), hn::Set(d, kMaxCoordinate));
-            const VD quanta = hn::Mul(offset, hn::Load(d, boxes.per_quantum + l));
-            const auto near = hn::Le(hn::Abs(quanta), hn::Set(d, double{kMaxRowCoordinate}));
-            const VD whole = hn::Sub(hn::Add(quanta, magic), magic);
-            hn::Store(hn::DemoteTo(df, hn::IfThenElse(good, offset, hn::Set(d, 1e35))), df, to.offset[j] + l);
-            hn::Store(hn::DemoteTo(di, hn::IfThenElse(near, whole, hn::Set(d, double{kBeyond}))), di, to.at[j] + l);
+            const auto offset = hn::Sub(hn::Load(d, boxes.center[j] + l), hn::Load(d, boxes.origin[j] + l));
+            hn::Store(hn::DemoteTo(df, offset), df, to.offset[j] + l);
         }
 }
 
@@ -84,81 +81,82 @@ HWY_INLINE VU pairs_of(VI lower, VI upper) {
     return hn::BitCast(DU(), hn::Or(low, hn::ShiftLeft<16>(upper)));
 }
 
-HWY_INLINE VF dot(const VF (&of)[9], std::size_t i, std::size_t k) {
-    return hn::Add(hn::Add(hn::Mul(of[3 * i], of[3 * k]), hn::Mul(of[3 * i + 1], of[3 * k + 1])),
-                   hn::Mul(of[3 * i + 2], of[3 * k + 2]));
-}
-
-// Certainly so, as validate(Obb) asks it: a dot in float of numbers below 1.01 is within 4 · 2^-24 of the truth.
-HWY_INLINE MF has_valid_shape(const VF (&axes)[9], const VF (&half)[3]) {
+// How far the axes are from orthonormal, Σ |axes[i] · axes[k] − δik|, within 30 · 2^-24; NaN if a component is.
+HWY_INLINE VF deviation(const VF (&axes)[9]) {
     const DF d;
-    auto good = hn::FirstN(d, kSixteen);
-    for (std::size_t i = 0; i < 3; ++i) {
-        good = hn::And(good, hn::And(hn::Ge(half[i], hn::Zero(d)), hn::Le(half[i], hn::Set(d, 1e18f))));
+    VF sum = hn::Zero(d);
+    for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = i; k < 3; ++k) {
-            const VF error = hn::Sub(dot(axes, i, k), hn::Set(d, i == k ? 1.0f : 0.0f));
-            good = hn::And(good, hn::Le(hn::Abs(error), hn::Set(d, 0.99e-4f)));
+            VF dot = hn::Mul(axes[3 * i], axes[3 * k]);
+            for (std::size_t j = 1; j < 3; ++j) dot = hn::Add(dot, hn::Mul(axes[3 * i + j], axes[3 * k + j]));
+            sum = hn::Add(sum, hn::Abs(i == k ? hn::Sub(dot, hn::Set(d, 1.0f)) : dot));
         }
-    }
-    return good;
+    return sum;
 }
 
-// The radius is √(Σ|e_k|² + 2 Σ|e_i · e_k|) for half edges e_k, or more: with u = 2^-24 the edges and products cost 2u and
-// 3u of |e_i| |e_k| ≤ (|e_i|² + |e_k|²) / 2 each, the sums 5u, so that the square is within 20u and the root within 12u,
-// for which 2^-14 stands, so that no edge has more than 32766 units besides; what underflows is far below 1e-15. Edges are
-// within 3u · 32766 + 1/2 of a unit.
-HWY_INLINE void write_shapes(const Boxes& boxes, Written& to) {
+// A box is taken if it certainly passes validate(Obb): its axes are orthonormal to 1e-4 even summed, no half extent is
+// negative, none beyond 1e18, the centre below 1e30. With half extents h the farthest corner is within
+// Σ h² · 1.0001 + 2 · 1e-4 · Σ h_i h_k ≤ 1.0003 · Σ h², squared: 1.0002 · √Σ h² covers that and the roundings; what
+// underflows is far below 1e-15. So no edge has more than 32766 units, each within 3 · 2^-24 · 32767 + 1/2.
+HWY_INLINE void write(const Boxes& boxes, Written& to) {
     const DF d;
     const DI di;
     const DU du;
+    write_offsets(boxes, to);
     to.usable = to.bounded = 0;
     for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(d)) {
-        VF axes[9], half[3], edge[9];
+        VF axes[9], half[3];
         hn::LoadInterleaved4(d, boxes.shape[0][l], axes[0], axes[1], axes[2], axes[3]);
         hn::LoadInterleaved4(d, boxes.shape[1][l], axes[4], axes[5], axes[6], axes[7]);
         hn::LoadInterleaved4(d, boxes.shape[2][l], axes[8], half[0], half[1], half[2]);
-        for (std::size_t i = 0; i < 9; ++i) edge[i] = hn::Mul(axes[i], half[i / 3]);
-        const VF mixed =
-            hn::Add(hn::Add(hn::Abs(dot(edge, 0, 1)), hn::Abs(dot(edge, 1, 2))), hn::Abs(dot(edge, 2, 0)));
         const VF square =
-            hn::Add(hn::Add(hn::Add(dot(edge, 0, 0), dot(edge, 1, 1)), dot(edge, 2, 2)), hn::Add(mixed, mixed));
-        const VF radius = hn::Add(hn::Mul(hn::Sqrt(square), hn::Set(d, 1.0f + 0x1p-14f)), hn::Set(d, 1e-15f));
+            hn::Add(hn::Add(hn::Mul(half[0], half[0]), hn::Mul(half[1], half[1])), hn::Mul(half[2], half[2]));
+        const VF radius = hn::Add(hn::Mul(hn::Sqrt(square), hn::Set(d, 1.0002f)), hn::Set(d, 1e-15f));
+        const VF offset[3] = {hn::Load(d, to.offset[0] + l), hn::Load(d, to.offset[1] + l),
+                              hn::Load(d, to.offset[2] + l)};
+        const VF sum = hn::Add(hn::Add(hn::Abs(offset[0]), hn::Abs(offset[1])), hn::Abs(offset[2]));
+        const VF reach = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f));
+        const auto usable =
+            hn::And(hn::And(hn::Le(deviation(axes), hn::Set(d, 0.99e-4f)), hn::Le(square, hn::Set(d, 1e36f))),
+                    hn::And(hn::Ge(hn::Min(hn::Min(half[0], half[1]), half[2]), hn::Zero(d)),
+                            hn::Le(reach, hn::Set(d, static_cast<float>(kFarthest)))));
 
-        const VF x = hn::Load(d, to.offset[0] + l), y = hn::Load(d, to.offset[1] + l), z = hn::Load(d, to.offset[2] + l);
-        const VF reach = hn::Mul(hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z)), hn::Set(d, 1.0f + 0x1p-20f));
-        auto usable = hn::And(hn::Le(square, hn::Set(d, 1e36f)), hn::Le(reach, hn::Set(d, 1e31f)));
-        usable = hn::And(usable, has_valid_shape(axes, half));
-
-        const VI at[3] = {hn::Load(di, to.at[0] + l), hn::Load(di, to.at[1] + l), hn::Load(di, to.at[2] + l)};
-        const VI farthest = hn::Max(hn::Max(hn::Abs(at[0]), hn::Abs(at[1])), hn::Abs(at[2]));
-        const VF size = hn::Mul(radius, hn::Mul(hn::Load(d, boxes.per_quantum_f + l), hn::Set(d, 1.0f + 0x1p-9f + 0x1p-18f)));
-        const VF limited = hn::IfThenElse(hn::Le(size, hn::Set(d, 65530.0f)), size, hn::Set(d, 65535.0f));
-        auto bounded = hn::And(usable, hn::Le(size, hn::Set(d, 65530.0f)));
-        bounded = hn::And(bounded, hn::RebindMask(d, hn::Lt(farthest, hn::Set(di, kBeyond))));
-        const VI whole = hn::Add(hn::ConvertTo(di, limited), hn::Set(di, 2));
-        const VI mask = hn::BitCast(di, hn::VecFromMask(d, bounded));
-        const VI shown = hn::IfThenElse(hn::RebindMask(di, bounded), whole, hn::Set(di, std::int32_t{kUnboundedRadius}));
-        for (std::size_t j = 0; j < 3; ++j) hn::Store(hn::And(mask, at[j]), di, to.at[j] + l);
-        hn::Store(hn::And(hn::BitCast(du, mask), pairs_of(at[0], at[1])), du, to.xy + l);
-        hn::Store(pairs_of(hn::And(mask, at[2]), shown), du, to.zr + l);
+        const VF per_quantum = hn::Load(d, boxes.per_quantum + l);
+        const VF at[3] = {hn::Mul(offset[0], per_quantum), hn::Mul(offset[1], per_quantum),
+                          hn::Mul(offset[2], per_quantum)};
+        const VF farthest = hn::Max(hn::Max(hn::Abs(at[0]), hn::Abs(at[1])), hn::Abs(at[2]));
+        const VF size = hn::Mul(radius, hn::Mul(per_quantum, hn::Set(d, 1.0f + 0x1p-9f + 0x1p-18f)));
+        const auto bounded =
+            hn::And(usable, hn::And(hn::Le(farthest, hn::Set(d, static_cast<float>(kMaxRowCoordinate))),
+                                    hn::Le(size, hn::Set(d, 65530.0f))));
+        VI whole[3];
+        for (std::size_t j = 0; j < 3; ++j) {
+            whole[j] = hn::NearestInt(hn::IfThenElseZero(bounded, at[j]));
+            hn::Store(whole[j], di, to.at[j] + l);
+        }
+        const VI shown = hn::IfThenElse(hn::RebindMask(di, bounded),
+                                        hn::Add(hn::ConvertTo(di, hn::IfThenElseZero(bounded, size)), hn::Set(di, 2)),
+                                        hn::Set(di, std::int32_t{kUnboundedRadius}));
+        hn::Store(pairs_of(whole[0], whole[1]), du, to.xy + l);
+        hn::Store(pairs_of(whole[2], shown), du, to.zr + l);
         hn::Store(hn::BitCast(du, shown), du, to.radius + l);
         hn::Store(hn::IfThenElseZero(usable, reach), d, to.reach + l);
 
         const VU upper = hn::And(hn::Add(hn::BitCast(du, radius), hn::Set(du, 0xffffu)), hn::Set(du, 0xffff0000u));
         const VF per_unit = hn::Div(hn::Set(d, 0x1p15f), hn::BitCast(d, upper));
-        const auto units = [&](std::size_t i) HWY_ATTR { return hn::NearestInt(hn::Mul(edge[i], per_unit)); };
-        const VU first = hn::Or(hn::ShiftRight<16>(upper), hn::ShiftLeft<16>(hn::BitCast(du, units(0))));
-        hn::StoreInterleaved4(hn::BitCast(du, x), hn::BitCast(du, y), hn::BitCast(du, z), first, du, to.record[0][l]);
-        hn::StoreInterleaved4(pairs_of(units(1), units(2)), pairs_of(units(3), units(4)), pairs_of(units(5), units(6)),
-                              pairs_of(units(7), units(8)), du, to.record[1][l]);
+        VI units[9];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VF scale = hn::Mul(half[k], per_unit);
+            for (std::size_t j = 0; j < 3; ++j) units[3 * k + j] = hn::NearestInt(hn::Mul(axes[3 * k + j], scale));
+        }
+        const VU first = hn::Or(hn::ShiftRight<16>(upper), hn::ShiftLeft<16>(hn::BitCast(du, units[0])));
+        hn::StoreInterleaved4(hn::BitCast(du, offset[0]), hn::BitCast(du, offset[1]), hn::BitCast(du, offset[2]), first,
+                              du, to.record[0][l]);
+        hn::StoreInterleaved4(pairs_of(units[1], units[2]), pairs_of(units[3], units[4]), pairs_of(units[5], units[6]),
+                              pairs_of(units[7], units[8]), du, to.record[1][l]);
         to.usable |= bits_of(usable) << l;
         to.bounded |= bits_of(bounded) << l;
     }
-}
-
-HWY_INLINE void write(const Boxes& boxes, Written& to) {
-    write_centers(boxes, to);
-    write_shapes(boxes, to);
 }
 
 // The largest of a chunk's rows and records, lane by lane.

@@ -32,8 +32,8 @@ RowPlanes row_planes(const KernelView& view, const ListChunk& chunk) {
             const double scaled = plane.normal[j] * kScale;
             normals[i][j] = static_cast<std::int32_t>(scaled + std::copysign(0.5, scaled));
             const double whole = normals[i][j];
-            // The normal's rounding, and that of the row: half a quantum, a trifle more for the centre's in double.
-            slack += std::fabs(scaled - whole) * chunk.extent[j] + std::fabs(scaled) * 0.5001;
+            // The normal's rounding, and that of the row: half a quantum, and 2^14 · 2^-24 for the centre's in float.
+            slack += std::fabs(scaled - whole) * chunk.extent[j] + std::fabs(scaled) * 0.502;
             span += std::fabs(whole) * chunk.extent[j];
         }
         result.offset[i] = static_cast<std::int32_t>(offset);
