@@ -40,6 +40,25 @@ TEST_SUITE("tree/lift") {
         CHECK(holds_all(tree));
     }
 
+    TEST_CASE("a large tree built with items lifted holds the others, and all once they have settled and it is rebuilt") {
+        const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 5);
+        std::vector<ItemId> lifted;
+        for (ItemId i = 3; i < 40000; i += 8) lifted.push_back(i);
+        BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers, {.lifted = lifted});
+        CHECK(tree.item_count() == 35000);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+        bool done = false;
+        for (std::size_t i = 0; i < lifted.size() || !done; ++i) {
+            if (i < lifted.size()) REQUIRE(tree.settle(lifted[i], crowd.boxes[lifted[i]]).has_value());
+            tree.refit();
+            done = tree.maintain(1000);
+        }
+        CHECK(tree.item_count() == 40000);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+    }
+
     TEST_CASE("a tree of which all is lifted is empty, and fills again") {
         const oracle::Crowd crowd = oracle::random_crowd(1000, 0.0, 2);
         BoxTree tree = *BoxTree::build(crowd.boxes);
