@@ -151,6 +151,9 @@ BENCHMARK_CAPTURE(single_pairs, random, random_pairs)
 BENCHMARK_CAPTURE(single_pairs, stacked, stacked_pairs)
     ->Name("sat/4096 stacked crates one by one/crofton")
     ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(single_pairs, grid, grid_pairs)
+    ->Name("sat/4096 crates on a grid one by one/crofton")
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(all_pairs, bounds, false)
     ->Name("broadphase/bounds/crofton")
     ->Arg(1000)

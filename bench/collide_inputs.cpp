@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
@@ -55,6 +56,25 @@ BoxPairs stacked_pairs(std::size_t count) {
         const int up = static_cast<int>(i % 3);
         offset[up] = static_cast<double>(a.half_extents[up]) + static_cast<double>(b.half_extents[up]);
         b.center = a.center + frame * offset;
+        pairs.a.push_back(a);
+        pairs.b.push_back(b);
+    }
+    return pairs;
+}
+
+BoxPairs grid_pairs(std::size_t count) {
+    Random random(6);
+    const auto on_grid = [&](double low, double high) {
+        return glm::round(uniform_vector(random, low, high) * 16.0) / 16.0;
+    };
+    BoxPairs pairs;
+    for (std::size_t i = 0; i < count; ++i) {
+        Obb a{on_grid(-10.0, 10.0), glm::mat3(1.0f), glm::vec3(on_grid(0.25, 1.0))}, b = a;
+        b.half_extents = glm::vec3(on_grid(0.25, 1.0));
+        glm::dvec3 offset = on_grid(-0.25, 0.25);
+        const int up = static_cast<int>(i % 3);
+        offset[up] = static_cast<double>(a.half_extents[up]) + static_cast<double>(b.half_extents[up]);
+        b.center = a.center + offset;
         pairs.a.push_back(a);
         pairs.b.push_back(b);
     }

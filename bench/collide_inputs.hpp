@@ -18,6 +18,9 @@ struct BoxPairs {
 // Neighbours in stacks: the same random frame but for rounding to float, face on face but for rounding.
 [[nodiscard]] BoxPairs stacked_pairs(std::size_t count);
 
+// Upright neighbours on a grid, of sizes that floats hold exactly, face on face with no gap at all.
+[[nodiscard]] BoxPairs grid_pairs(std::size_t count);
+
 // Boxes of random frames in a cube so large that a box meets, by its axis-aligned bound, about 1.2 pairs' worth of
 // others.
 [[nodiscard]] std::vector<Obb> crowd(std::size_t count);

@@ -62,6 +62,9 @@ BENCHMARK_CAPTURE(fcl_sat, random, random_pairs)->Name("sat/4096 pairs one by on
 BENCHMARK_CAPTURE(fcl_sat, stacked, stacked_pairs)
     ->Name("sat/4096 stacked crates one by one/fcl")
     ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(fcl_sat, grid, grid_pairs)
+    ->Name("sat/4096 crates on a grid one by one/fcl")
+    ->Unit(benchmark::kMicrosecond);
 
 using FclMesh = fcl::BVHModel<fcl::OBBRSSd>;
 
@@ -327,6 +330,9 @@ void ode_sat(benchmark::State& state, BoxPairs (*pairs_of)(std::size_t)) {
 BENCHMARK_CAPTURE(ode_sat, random, random_pairs)->Name("sat/4096 pairs one by one/ode")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(ode_sat, stacked, stacked_pairs)
     ->Name("sat/4096 stacked crates one by one/ode")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(ode_sat, grid, grid_pairs)
+    ->Name("sat/4096 crates on a grid one by one/ode")
     ->Unit(benchmark::kMicrosecond);
 
 #endif

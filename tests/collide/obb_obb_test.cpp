@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
 #include <limits>
@@ -32,6 +33,34 @@ TEST_SUITE("collide/obb_obb") {
         bad = unit_box({});
         bad.axes[1].x = std::numeric_limits<float>::infinity();
         CHECK_FALSE(intersects(bad, unit_box({})));
+    }
+
+    TEST_CASE("one number that is not finite, whichever it is, and a box meets nothing") {
+        std::mt19937_64 random(8);
+        const double infinity = std::numeric_limits<double>::infinity();
+        for (int trial = 0; trial < 20; ++trial) {
+            const Obb other = trial % 2 == 0 ? unit_box({}) : random_box(random, 0.1);
+            Obb box = trial % 4 < 2 ? unit_box({}) : random_box(random, 0.1);
+            if (trial % 5 == 0) box.half_extents[trial % 3] = 0.0f;
+            REQUIRE(intersects(box, other));
+            for (const double value : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
+                for (int number = 0; number < 15; ++number) {
+                    CAPTURE(number);
+                    CAPTURE(value);
+                    Obb bad = box;
+                    if (number < 3)
+                        bad.center[number] = value;
+                    else if (number < 6)
+                        bad.half_extents[number - 3] = float(value);
+                    else
+                        bad.axes[(number - 6) / 3][(number - 6) % 3] = float(value);
+                    CHECK_FALSE(intersects(bad, other));
+                    CHECK_FALSE(intersects(other, bad));
+                    CHECK_FALSE(intersects(bad, bad));
+                    CHECK(separating_axis(bad, other) != kNotSeparated);
+                    CHECK(separating_axis(other, bad, 3) != kNotSeparated);
+                }
+        }
     }
 
     TEST_CASE("points, segments and rectangles are boxes with zero extents") {
@@ -102,6 +131,40 @@ TEST_SUITE("collide/obb_obb") {
         CHECK(wrong == 0);
         CHECK(hits > 6000);
         CHECK(hits < 14000);
+    }
+
+    TEST_CASE("20,000 crates that share a frame, its axes in any order and sign, touching or nearly so: none wrong") {
+        std::mt19937_64 random(78);
+        int wrong = 0, hits = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const auto [a, b] = crates_of_one_frame(random);
+            const bool truth = oracle::boxes_meet_by_integers(a, b);
+            wrong += intersects(a, b) != truth;
+            wrong += (separating_axis(b, a) == kNotSeparated) != truth;
+            hits += truth;
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > 6000);
+        CHECK(hits < 16000);
+    }
+
+    TEST_CASE("gives the same axis on every instruction set") {
+        std::vector<int> expected;
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            std::vector<int> axes;
+            std::mt19937_64 random(9);
+            for (int trial = 0; trial < 12000; ++trial) {
+                const auto [a, b] =
+                    trial % 4 == 3 ? crates_of_one_frame(random)
+                                   : nearly_touching(random, {.parallel = trial % 2 == 0, .no_gap = trial % 3 == 0});
+                axes.push_back(separating_axis(a, b));
+                axes.push_back(separating_axis(a, b, trial % kAxisCount));
+            }
+            if (expected.empty()) expected = axes;
+            CHECK(axes == expected);
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("tells each of the fifteen axes apart, in either order of the boxes") {

@@ -78,4 +78,23 @@ inline std::pair<Obb, Obb> nearly_touching(std::mt19937_64& random, const NearTo
     return {a, b};
 }
 
+// Neighbours with the very same edges, perhaps in another order or turned about; face to face, as near as double can
+// put them or one step further. Half of the frames are upright, where all numbers are exact.
+inline std::pair<Obb, Obb> crates_of_one_frame(std::mt19937_64& random) {
+    const auto grid = [&](double low, double high) {
+        return glm::round(random_vector(random, low, high) * 64.0) / 64.0;
+    };
+    const bool upright = random() % 2 == 0;
+    Obb a{grid(-4.0, 4.0), glm::mat3(1.0f), glm::vec3(grid(0.25, 1.0))}, b = a;
+    if (!upright) a.axes = glm::mat3(glm::mat3_cast(random_rotation(random)));
+    b.half_extents = glm::vec3(grid(0.25, 1.0));
+    const int turn = int(random() % 3), up = int(random() % 3);
+    glm::dvec3 offset = grid(-1.0, 1.0);
+    for (int k = 0; k < 3; ++k) b.axes[(k + turn) % 3] = a.axes[k] * (random() % 2 == 0 ? 1.0f : -1.0f);
+    offset[up] = double(a.half_extents[up]) + double(b.half_extents[(up + turn) % 3]);
+    if (random() % 2 == 0) offset[up] = std::nextafter(offset[up], random() % 4 == 0 ? 0.0 : 9.0);
+    b.center = a.center + glm::dmat3(a.axes) * offset;
+    return {a, b};
+}
+
 }  // namespace crofton::testing

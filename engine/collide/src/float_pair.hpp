@@ -1,78 +1,76 @@
-// Two boxes in float, four lanes at a time: gaps along the axes of the separating-axis test.
+// Two boxes in float, in the layout of pair_columns.hpp: gaps along the fifteen axes.
 #pragma once
 #include <crofton/geometry/obb.hpp>
 #include <cstddef>
+#include <cstring>
 
-#include "block_filter.hpp"
 #include "float_lanes.hpp"
+#include "pair_columns.hpp"
 
 namespace crofton::collide {
 
-// A box with its axes side by side: component i of all three.
+// A box with its axes side by side: component c of all three.
 struct FloatBox {
     explicit FloatBox(const Obb& box) {
-        // The last of these runs into the extents.
+        // The last axis runs into the extents, and these are read from one float before them.
         const char* const axes = reinterpret_cast<const char*>(&box) + offsetof(Obb, axes);
         transpose(load4(axes), load4(axes + 12), load4(axes + 24), axis[0], axis[1], axis[2]);
-        half = Lanes4{box.half_extents.x, box.half_extents.y, box.half_extents.z, 0.0f};
+        const Lanes4 end = load4(axes + 32);
+        half = __builtin_shufflevector(end, end, 1, 2, 3, 3);
     }
-    [[nodiscard]] Lanes4 along(float x, float y, float z) const { return axis[0] * x + axis[1] * y + axis[2] * z; }
-    // The sum over the first three lanes is at least |axes[i]·axes[j] − δij| for any i and j; NaN where an axis is not
-    // finite.
-    [[nodiscard]] Lanes4 deviation() const {
-        Lanes4 square = {-1.0f, -1.0f, -1.0f, 0.0f}, product = {};
-        for (const Lanes4& a : axis) {
-            square += a * a;
-            product += a * next(a);
-        }
-        return magnitude(square) + magnitude(product);
-    }
-
     Lanes4 axis[3];
     Lanes4 half;
 };
+static_assert(offsetof(Obb, half_extents) == offsetof(Obb, axes) + 36 && sizeof(Obb) == offsetof(Obb, axes) + 48);
 
-// The test on R = AᵀB in three stages, with the error bounds that are derived in block_filter.cpp. Lane j of face_a is
-// the gap along face normal j of a, of edge[i] along edge i of a × edge j of b; `parallel` bounds the latter, as unit
-// vector, from above by the face normals.
+[[nodiscard]] inline Lanes4 dot(const Lanes4 (&u)[3], Lanes4 x, Lanes4 y, Lanes4 z) {
+    return u[0] * x + u[1] * y + u[2] * z;
+}
+
+// Gottschalk's test on R = AᵀB, whose diagonals are the groups: lane i of r[k] is axis i of a · axis i + k of b.
 struct FloatPair {
-    FloatPair(const Obb& first, const Obb& second) : a(first), b(second), p(first), q(second) {
-        x = static_cast<float>(b.center.x - a.center.x);
-        y = static_cast<float>(b.center.y - a.center.y);
-        z = static_cast<float>(b.center.z - a.center.z);
-        size = sum3(magnitude(Lanes4{x, y, z, 0.0f}) + (p.half + q.half));
-        along_a = p.along(x, y, z);
-        Lanes4 reach = p.half;
-        for (int k = 0; k < 3; ++k)
-            reach += magnitude(p.along(b.axes[k].x, b.axes[k].y, b.axes[k].z)) * b.half_extents[k];
-        face_a = magnitude(along_a) - reach;
-    }
-    void face_normals_of_b() {
-        Lanes4 reach = q.half;
-        for (int k = 0; k < 3; ++k) {
-            r[k] = q.along(a.axes[k].x, a.axes[k].y, a.axes[k].z);
-            m[k] = magnitude(r[k]);
-            reach += m[k] * a.half_extents[k];
-        }
-        face_b = magnitude(q.along(x, y, z)) - reach;
-    }
-    void edges() {
-        share = kRounding + kPerDeviation * (sum3(p.deviation() + q.deviation()) + 4e-7f);
-        const float shallow = largest3(larger(face_a, face_b));
-        const Lanes4 half_1 = next(q.half), half_2 = after_next(q.half);
-        for (int i = 0; i < 3; ++i) {
-            const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-            const Lanes4 reach = m[i2] * a.half_extents[i1] + m[i1] * a.half_extents[i2] + after_next(m[i]) * half_1 +
-                                 next(m[i]) * half_2;
-            edge[i] = magnitude(r[i1] * along_a[i2] - r[i2] * along_a[i1]) - reach;
-            parallel[i] = (m[i1] + m[i2] + share) * (kPerSine * size) + shallow;
-        }
+    FloatPair(const Obb& first, const Obb& second) : a(first), b(second) {
+        const glm::dvec3 offset = second.center - first.center;
+        const Lanes4 x = all_lanes(static_cast<float>(offset.x)), y = all_lanes(static_cast<float>(offset.y)),
+                     z = all_lanes(static_cast<float>(offset.z));
+        along_a = dot(a.axis, x, y, z);
+        r[0] = dot(a.axis, b.axis[0], b.axis[1], b.axis[2]);
+        r[1] = dot(a.axis, next(b.axis[0]), next(b.axis[1]), next(b.axis[2]));
+        r[2] = dot(a.axis, after_next(b.axis[0]), after_next(b.axis[1]), after_next(b.axis[2]));
+        for (int k = 0; k < 3; ++k) m[k] = magnitude(r[k]);
+        const Lanes4 h = a.half + b.half;
+        size = (h + next(h) + after_next(h)) + (magnitude(x) + magnitude(y) + magnitude(z));
+        face_a = magnitude(along_a) - ((m[0] * b.half + m[1] * next(b.half)) + (m[2] * after_next(b.half) + a.half));
+        face_b = magnitude(dot(b.axis, x, y, z)) -
+                 ((m[0] * a.half + after_next(m[1] * a.half)) + (next(m[2] * a.half) + b.half));
     }
 
-    const Obb &a, &b;
-    FloatBox p, q;
-    float x, y, z, size, share = 0.0f;
-    Lanes4 along_a, face_a, face_b = {}, edge[3] = {}, parallel[3] = {}, r[3] = {}, m[3] = {};
+    // Edge i of a × edge j = i + k of b. With i + 1 and i + 2 in a circle, R's entry (i + 1, j) is lane i + 1 of
+    // r[k − 1], and (i + 2, j) is lane i + 2 of r[k − 2]; (i, j + 1) and (i, j + 2) are lane i of r[k + 1] and r[k +
+    // 2].
+    [[nodiscard]] Lanes4 edges(int k) const {
+        const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+        const Lanes4 half[3] = {b.half, next(b.half), after_next(b.half)};  // by k: those of edges i + k
+        const Lanes4 first = next(r[k2]), second = after_next(r[k1]);
+        const Lanes4 reach = (next(a.half) * magnitude(second) + after_next(a.half) * magnitude(first)) +
+                             (half[k1] * m[k2] + half[k2] * m[k1]);
+        return magnitude(first * after_next(along_a) - second * next(along_a)) - reach;
+    }
+
+    FloatBox a, b;
+    Lanes4 size, along_a, face_a, face_b, r[3], m[3];
 };
+
+[[nodiscard]] inline PairColumns columns_of(const FloatBox& a, const FloatBox& b, const glm::dvec3& offset) {
+    PairColumns columns;
+    for (int c = 0; c < 3; ++c) {
+        std::memcpy(columns.a[c], &a.axis[c], sizeof(Lanes4));
+        std::memcpy(columns.b[c], &b.axis[c], sizeof(Lanes4));
+        columns.offset[c] = offset[c];
+    }
+    std::memcpy(columns.half_a, &a.half, sizeof(Lanes4));
+    std::memcpy(columns.half_b, &b.half, sizeof(Lanes4));
+    return columns;
+}
 
 }  // namespace crofton::collide

@@ -8,6 +8,7 @@
 
 #include "block_filter.hpp"
 #include "box_lanes.hpp"
+#include "careful_axis.hpp"
 
 namespace crofton::collide {
 namespace {
@@ -28,7 +29,7 @@ void finish(const BlockVerdict& verdict, std::size_t count, Boxes box, std::uint
     for (std::size_t lane = 0; lane < count; ++lane) hits[lane] = static_cast<std::uint8_t>(verdict.hit >> lane & 1u);
     for (std::uint32_t open = ~decided & lanes; open != 0; open &= open - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(open));
-        const int axis = separating_axis(box(0, lane), box(1, lane));
+        const int axis = careful_axis(box(0, lane), box(1, lane));
         ++statistics.refined;
         hits[lane] = axis == kNotSeparated;
         ++(axis == kNotSeparated ? statistics.hits

@@ -1,13 +1,16 @@
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/geometry/expansion.hpp>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <limits>
 
-#include "box_pair.hpp"
+#include "block_filter.hpp"
+#include "careful_axis.hpp"
 #include "float_pair.hpp"
+#include "integer_axis.hpp"
 
 // Why fifteen axes suffice, for stored axes that are only nearly orthonormal and extents that may be zero.
 // The boxes meet iff T = center_b − center_a lies in the zonotope Z = { Σ t_k h_k g_k : |t_k| ≤ 1 } of the six
@@ -20,31 +23,19 @@
 namespace crofton::collide {
 namespace {
 
-// (p, q) of the 15 axes: generators 0-2 are the axes of a, 3-5 those of b.
-struct GeneratorPair {
-    std::uint8_t p, q;
+// The boxes as the exact tier reads them.
+struct BoxPair {
+    BoxPair(const Obb& a, const Obb& b) : center_a(a.center), center_b(b.center) {
+        for (int k = 0; k < 6; ++k) {
+            const Obb& box = k < 3 ? a : b;
+            edge[k] = glm::dvec3(box.axes[k % 3]);
+            half[k] = static_cast<double>(box.half_extents[k % 3]);
+        }
+    }
+    glm::dvec3 center_a, center_b;
+    glm::dvec3 edge[6];  // axes of a, then of b: exact
+    double half[6];
 };
-constexpr GeneratorPair kAxes[kAxisCount] = {{1, 2}, {2, 0}, {0, 1}, {4, 5}, {5, 3}, {3, 4}, {0, 3}, {0, 4},
-                                             {0, 5}, {1, 3}, {1, 4}, {1, 5}, {2, 3}, {2, 4}, {2, 5}};
-
-enum class Answer : std::uint8_t { separated, overlapping, unknown };
-
-// n is exact up to one rounding per component, because products of two floats are exact in double. With u = 2^-53,
-// T carries one rounding, T·n three more and the two of its sum: |error| ≤ 6u Σ|T_i n_i|. Each g·n carries
-// 4 roundings, times h one, summing four at most 3: |error| ≤ 9u Σ h Σ|g_i n_i|; the last subtraction adds u of the
-// difference. With W = |T| + Σ h |g| (componentwise) all stay below 16u·(|n|·W), the bound's own 8 roundings included.
-// Underflow adds at most 1e-300: axes are floats, so no product without T can underflow.
-Answer filter(const BoxPair& pair, const GeneratorPair axis) {
-    const glm::dvec3 n = glm::cross(pair.edge[axis.p], pair.edge[axis.q]);
-    if (n.x == 0.0 && n.y == 0.0 && n.z == 0.0) return Answer::overlapping;  // exactly zero: parallel edges
-    double reach = 0.0;
-    for (int k = 0; k < 6; ++k)
-        if (k != axis.p && k != axis.q) reach += pair.half[k] * std::abs(glm::dot(pair.edge[k], n));
-    const double gap = std::abs(glm::dot(pair.offset, n)) - reach;
-    const double error = 0x1p-49 * glm::dot(glm::abs(n), pair.magnitude) + 1e-300;
-    if (gap > error) return Answer::separated;
-    return gap < -error ? Answer::overlapping : Answer::unknown;
-}
 
 using Exact3 = std::array<Expansion<2>, 3>;
 
@@ -58,6 +49,7 @@ Exact3 exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
 bool separated_exactly(const BoxPair& pair, const GeneratorPair axis) {
     constexpr double kScale = 0x1p600;
     const Exact3 n = exact_cross(pair.edge[axis.p], pair.edge[axis.q]);
+    if (n[0].count + n[1].count + n[2].count == 0) return false;  // parallel edges
     const auto offset_along = [&](int i) {
         return (exact_difference(pair.center_b[i], pair.center_a[i]) * kScale) * n[static_cast<std::size_t>(i)];
     };
@@ -75,80 +67,75 @@ bool separated_exactly(const BoxPair& pair, const GeneratorPair axis) {
     return (distance - ((reach[0] + reach[1]) + (reach[2] + reach[3]))).sign() > 0;
 }
 
-constexpr int kUndecided = -2;
-
-// Clear cases only: the first axis that surely separates them (some such axis unless kWhich), or none; else `open` has
-// a bit for every axis that may separate.
-template <bool kWhich>
-int decide_roughly(const Obb& first, const Obb& second, std::uint32_t& open) {
-    FloatPair pair(first, second);
-    const auto separates = [&](Lanes4 gap, int at, float error) {
-        if (!(largest3(gap) > error)) return kUndecided;
-        if constexpr (!kWhich) return at;
-        return at + (gap[0] > error ? 0 : gap[1] > error ? 1 : 2);
-    };
-    const float most = pair.size * (kRounding + 2.0f * kPerDeviation * static_cast<float>(kMaxAxisDeviation)) + 1e-36f;
-    if (const int axis = separates(pair.face_a, 0, most); axis != kUndecided) return axis;
-    pair.face_normals_of_b();
-    if (const int axis = separates(pair.face_b, 3, most); axis != kUndecided) return axis;
-    pair.edges();
-    const float error = pair.size * pair.share + 1e-36f;
-    const Lanes4 gap[] = {pair.face_a, pair.face_b, pair.edge[0], pair.edge[1], pair.edge[2]};
-    Lanes4 doubtful[] = {pair.face_a, pair.face_b, {}, {}, {}};
-    for (int i = 0; i < 3; ++i) doubtful[2 + i] = smaller(pair.edge[i], pair.parallel[i]);
-    const Lanes4 worst =
-        larger(larger(larger(doubtful[0], doubtful[1]), larger(doubtful[2], doubtful[3])), doubtful[4]);
-    if (largest3(worst) < -error) return kNotSeparated;
-    for (int i = 0; i < 5; ++i)
-        if (const int axis = separates(gap[i], 3 * i, error); axis != kUndecided) return axis;
-    for (int i = 0; i < kAxisCount; ++i)
-        if (!(doubtful[i / 3][i % 3] < -error)) open |= 1u << i;
-    return kUndecided;
+bool is_finite(const PairColumns& pair) {
+    Lanes4 sum = {};
+    for (const float* column :
+         {pair.a[0], pair.a[1], pair.a[2], pair.b[0], pair.b[1], pair.b[2], pair.half_a, pair.half_b})
+        sum += magnitude(load4(reinterpret_cast<const char*>(column)));
+    const double offset = std::abs(pair.offset[0]) + std::abs(pair.offset[1]) + std::abs(pair.offset[2]);
+    return lanes_where(sum < all_lanes(std::numeric_limits<float>::infinity())) == 7u &&
+           offset < std::numeric_limits<double>::infinity();
 }
 
-}  // namespace
-
-BoxPair::BoxPair(const Obb& a, const Obb& b) : center_a(a.center), center_b(b.center), offset(b.center - a.center) {
-    magnitude = glm::abs(offset);
-    for (int k = 0; k < 6; ++k) {
-        const Obb& box = k < 3 ? a : b;
-        edge[k] = glm::dvec3(box.axes[k % 3]);
-        half[k] = static_cast<double>(box.half_extents[k % 3]);
-        magnitude += half[k] * glm::abs(edge[k]);
-    }
+int first_of(std::uint32_t axes) {
+    return std::countr_zero(axes);
 }
 
-namespace {
-
-// The first of the axes in `open` that separates, those that double can tell before those that it cannot.
-int decide_carefully(const Obb& a, const Obb& b, std::uint32_t open) {
+int careful_axis(const Obb& a, const Obb& b, const PairColumns& columns, int hint) {
+    const AxisVerdicts verdicts = judge_axes(columns);
+    if (verdicts.separated != 0)
+        return hint >= 0 && (verdicts.separated >> hint & 1u) != 0 ? hint : first_of(verdicts.separated);
+    if (verdicts.unknown == 0) return kNotSeparated;
+    if (!is_finite(columns)) return 0;
+    if (const int axis = first_separating(a, b, columns, verdicts.unknown); axis != kTooWide) return axis;
     const BoxPair pair(a, b);
-    if (!(pair.magnitude.x + pair.magnitude.y + pair.magnitude.z < std::numeric_limits<double>::infinity())) return 0;
-    std::uint32_t unknown = 0;
-    for (; open != 0; open &= open - 1) {
-        const int i = std::countr_zero(open);
-        const Answer answer = filter(pair, kAxes[i]);
-        if (answer == Answer::separated) return i;
-        if (answer == Answer::unknown) unknown |= 1u << i;
-    }
-    for (; unknown != 0; unknown &= unknown - 1)
-        if (const int i = std::countr_zero(unknown); separated_exactly(pair, kAxes[i])) return i;
+    for (std::uint32_t unknown = verdicts.unknown; unknown != 0; unknown &= unknown - 1)
+        if (const int axis = first_of(unknown); separated_exactly(pair, kGenerators[axis])) return axis;
     return kNotSeparated;
 }
 
+// The errors of block_filter.cpp, for axes as far from orthonormal as they may be: measuring them costs more than it
+// settles. In float nearly parallel edges stay open, unless they are far apart.
+constexpr float kMostError = kRounding + 2.0f * kPerDeviation * static_cast<float>(kMaxAxisDeviation);
+
+// kWhich: the first of the groups of axes that have one that surely separates, and its first such axis; else any axis.
+//
+// Boxes that are not finite never meet here. Where an offset or extent is not finite, neither is the error. Where axis
+// p of a is not, lanes i ≠ p of the last group of edges are NaN, as both the distance and the reach along the product
+// of edges i and i + 2 are infinite or NaN; where axis q of b is not, lane q + 1 is. `larger` keeps the last one's NaN.
+template <bool kWhich>
+int axis_of(const Obb& a, const Obb& b) {
+    const FloatPair pair(a, b);
+    const Lanes4 error = pair.size * all_lanes(kMostError) + all_lanes(1e-36f);
+    if (const unsigned lanes = lanes_where(larger(pair.face_a, pair.face_b) > error); lanes != 0) {
+        if constexpr (!kWhich) return 0;
+        const unsigned by_a = lanes_where(pair.face_a > error);
+        return by_a != 0 ? first_of(by_a) : 3 + first_of(lanes);
+    }
+    const Lanes4 edges[3] = {pair.edges(0), pair.edges(1), pair.edges(2)};
+    const Lanes4 worst = larger(larger(larger(pair.face_a, pair.face_b), edges[0]), larger(edges[1], edges[2]));
+    if (lanes_where(worst < -error) == 7u) return kNotSeparated;
+    if (lanes_where(worst > error) != 0) {
+        if constexpr (!kWhich) return 0;
+        const std::uint32_t lanes[5] = {0, 0, lanes_where(edges[0] > error), lanes_where(edges[1] > error),
+                                        lanes_where(edges[2] > error)};
+        return first_of(axis_set(lanes));
+    }
+    return careful_axis(a, b, columns_of(pair.a, pair.b, b.center - a.center), kNotSeparated);
+}
+
 }  // namespace
 
+int careful_axis(const Obb& a, const Obb& b, int hint) {
+    return careful_axis(a, b, columns_of(FloatBox(a), FloatBox(b), b.center - a.center), hint);
+}
+
 int separating_axis(const Obb& a, const Obb& b, int hint) {
-    if (hint >= 0 && hint < kAxisCount && filter(BoxPair(a, b), kAxes[hint]) == Answer::separated) return hint;
-    std::uint32_t open = 0;
-    const int axis = decide_roughly<true>(a, b, open);
-    return axis == kUndecided ? decide_carefully(a, b, open) : axis;
+    return hint >= 0 && hint < kAxisCount ? careful_axis(a, b, hint) : axis_of<true>(a, b);
 }
 
 bool intersects(const Obb& a, const Obb& b) {
-    std::uint32_t open = 0;
-    const int axis = decide_roughly<false>(a, b, open);
-    return (axis == kUndecided ? decide_carefully(a, b, open) : axis) == kNotSeparated;
+    return axis_of<false>(a, b) == kNotSeparated;
 }
 
 }  // namespace crofton::collide

@@ -1,0 +1,102 @@
+// The fifteen axes of one pair of boxes in double, compiled for each instruction set and chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "axes_in_double.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include <hwy/highway.h>
+
+#include "pair_columns.hpp"
+#include "three_lanes-inl.hpp"
+
+// The test of obb_obb.cpp with N_l = a_{l+1} × a_{l+2} and M_l = b_{l+1} × b_{l+2}, the face normals, and T the offset:
+//     face l of a:   |N_l·T| − h_l |N_l·a_l| − Σ_j g_j |N_l·b_j|,   h and g the half extents of a and b; b likewise
+//     edges i, j:    |(T × a_i)·b_j| − h_{i+1} |N_{i+2}·b_j| − h_{i+2} |N_{i+1}·b_j| − g_{j+1} |M_{j+2}·a_i|
+//                                    − g_{j+2} |M_{j+1}·a_i|
+// for a_{i+1}·(a_i × b_j) = −N_{i+2}·b_j and so on: eighteen products of normals and edges serve all reaches.
+//
+// The error, with u = 2^-53, S = |T|₁ + Σh + Σg, and axes no longer than 1 + 10^-4. Products of two floats are exact in
+// double, so a normal has one rounding a component: |error of N·v| ≤ 4u |N| |v|, of h |N·v| ≤ 5.01 u h; adding the four
+// terms of a reach and their differences makes 8.1 u Σ. T has one rounding, so N·T is off by at most 5.01 u |T|₁. T ×
+// a: 3u of its six products, which times b sum to at most |T|₁ |a| |b|; with the product and two sums 6.01 u |T|₁. The
+// last subtraction adds u. Every gap is off by less than 10 u S; 16 u S covers the roundings of S itself. Underflow:
+// 1e-300.
+//
+// No operation is fused, so the verdicts are the same on every machine. Boxes that are not finite never overlap along
+// all axes: where T or an extent is not finite, neither is S; where a_1 is not, N_0·T is NaN or infinite, and gap 0 NaN
+// or +inf.
+HWY_BEFORE_NAMESPACE();
+namespace crofton::collide::HWY_NAMESPACE {
+
+struct Columns {
+    Three x, y, z;
+};
+
+HWY_INLINE Columns columns(const float (&rows)[3][4]) {
+    return {load3(rows[0]), load3(rows[1]), load3(rows[2])};
+}
+HWY_INLINE Columns next(const Columns& u) {
+    return {next(u.x), next(u.y), next(u.z)};
+}
+HWY_INLINE Columns after_next(const Columns& u) {
+    return {after_next(u.x), after_next(u.y), after_next(u.z)};
+}
+HWY_INLINE Three dot(const Columns& u, const Columns& v) {
+    return u.x * v.x + u.y * v.y + u.z * v.z;
+}
+HWY_INLINE Columns cross(const Columns& u, const Columns& v) {
+    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+AxisVerdicts JudgeAxes(const PairColumns& pair) {
+    const Columns a[3] = {columns(pair.a), next(columns(pair.a)), after_next(columns(pair.a))};
+    const Columns b[3] = {columns(pair.b), next(columns(pair.b)), after_next(columns(pair.b))};
+    const Columns offset = {all3(pair.offset[0]), all3(pair.offset[1]), all3(pair.offset[2])};
+    const Three ha = load3(pair.half_a), hb = load3(pair.half_b);
+    const Three ha1 = next(ha), ha2 = after_next(ha), hb1 = next(hb), hb2 = after_next(hb);
+    const Columns normal_a = cross(a[1], a[2]), normal_b = cross(b[1], b[2]), moment = cross(offset, a[0]);
+    Three p[3], q[3];  // lane l of p[k]: |normal l of a · edge l + k of b|; of q[k]: |normal l of b · edge l + k of a|
+    for (int k = 0; k < 3; ++k) {
+        p[k] = magnitude(dot(normal_a, b[k]));
+        q[k] = magnitude(dot(normal_b, a[k]));
+    }
+    const Three own_a = magnitude(dot(normal_a, a[0])) * ha, own_b = magnitude(dot(normal_b, b[0])) * hb;
+    // |normal j of b · edge i of a| with j − i = 1, 2, in lanes i; for 0 it is q[0].
+    const Three s1 = next(q[2]), s2 = after_next(q[1]);
+    const Three gap[5] = {
+        magnitude(dot(normal_a, offset)) - ((own_a + p[0] * hb) + (p[1] * hb1 + p[2] * hb2)),
+        magnitude(dot(normal_b, offset)) - ((own_b + q[0] * ha) + (q[1] * ha1 + q[2] * ha2)),
+        magnitude(dot(moment, b[0])) - ((ha1 * after_next(p[1]) + ha2 * next(p[2])) + (hb1 * s2 + hb2 * s1)),
+        magnitude(dot(moment, b[1])) - ((ha1 * after_next(p[2]) + ha2 * next(p[0])) + (hb2 * q[0] + hb * s2)),
+        magnitude(dot(moment, b[2])) - ((ha1 * after_next(p[0]) + ha2 * next(p[1])) + (hb * s1 + hb1 * q[0])),
+    };
+    const Three h = ha + hb;
+    const Three size =
+        (h + next(h) + after_next(h)) + (magnitude(offset.x) + magnitude(offset.y) + magnitude(offset.z));
+    const Three error = size * all3(0x1p-49) + all3(1e-300);
+    const Three overlap = all3(0.0) - error;
+    if (lanes_all_below(gap, overlap) == 7u) return {};
+    std::uint32_t separated[5], overlapping[5];
+    for (int g = 0; g < 5; ++g) {
+        separated[g] = lanes_below(error, gap[g]);
+        overlapping[g] = lanes_below(gap[g], overlap);
+    }
+    AxisVerdicts verdicts;
+    verdicts.separated = axis_set(separated);
+    verdicts.unknown = kAllAxes & ~(verdicts.separated | axis_set(overlapping));
+    return verdicts;
+}
+
+}  // namespace crofton::collide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::collide {
+
+HWY_EXPORT(JudgeAxes);
+
+AxisVerdicts judge_axes(const PairColumns& pair) {
+    return HWY_DYNAMIC_DISPATCH(JudgeAxes)(pair);
+}
+
+}  // namespace crofton::collide
+#endif
