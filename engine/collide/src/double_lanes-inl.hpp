@@ -39,6 +39,19 @@ HWY_INLINE VD dot(const VD* u, const VD* v) {
     return hn::MulAdd(u[0], v[0], hn::MulAdd(u[1], v[1], hn::Mul(u[2], v[2])));
 }
 
+// The same with every product rounded, as without fused operations: for numbers that are answers, not filters, and so
+// the same bits on every instruction set.
+HWY_INLINE void rounded_cross(const VD* u, const VD* v, VD* out) {
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = hn::Sub(hn::Mul(u[j], v[k]), hn::Mul(u[k], v[j]));
+    }
+}
+
+HWY_INLINE VD rounded_dot(const VD* u, const VD* v) {
+    return hn::Add(hn::Add(hn::Mul(u[0], v[0]), hn::Mul(u[1], v[1])), hn::Mul(u[2], v[2]));
+}
+
 HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, mask, bits);

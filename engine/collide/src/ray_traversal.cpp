@@ -58,11 +58,12 @@ HWY_INLINE VD parameters(DD d, const VD (&p)[3][3], const VD* direction) {
         u[i] = hn::Sub(p[1][i], p[0][i]);
         v[i] = hn::Sub(p[2][i], p[0][i]);
     }
-    cross(u, v, n);
-    const VD by_plane = hn::Div(dot(n, p[0]), dot(n, direction));
-    const VD per_length = hn::Div(hn::Set(d, 1.0), dot(direction, direction));
-    const VD at[3] = {hn::Mul(dot(p[0], direction), per_length), hn::Mul(dot(p[1], direction), per_length),
-                      hn::Mul(dot(p[2], direction), per_length)};
+    rounded_cross(u, v, n);
+    const VD by_plane = hn::Div(rounded_dot(n, p[0]), rounded_dot(n, direction));
+    const VD per_length = hn::Div(hn::Set(d, 1.0), rounded_dot(direction, direction));
+    const VD at[3] = {hn::Mul(rounded_dot(p[0], direction), per_length),
+                      hn::Mul(rounded_dot(p[1], direction), per_length),
+                      hn::Mul(rounded_dot(p[2], direction), per_length)};
     const VD low = hn::Min(at[0], hn::Min(at[1], at[2])), high = hn::Max(at[0], hn::Max(at[1], at[2]));
     const VD margin = hn::Mul(hn::Max(hn::Abs(low), hn::Abs(high)), hn::Set(d, 1e-12));
     const VD least = hn::Sub(low, margin), most = hn::Add(high, margin);
