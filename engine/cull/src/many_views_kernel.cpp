@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <cstring>
 
-// Vectors of unknown size cannot be members.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "many_views_kernel.cpp"
 // clang-format off
