@@ -89,9 +89,10 @@ void BoundSet<Bound>::choose_frame(std::size_t c, std::span<const Bound> bounds)
         chunk.origin[j] = centers.center()[j];
         extent = std::max({extent, centers.max[j] - chunk.origin[j], chunk.origin[j] - centers.min[j]});
     }
-    const double typical = usable > 0 ? std::exp2(std::floor(exponents / static_cast<double>(usable))) : 0.0;
+    const double typical =
+        usable > 0 ? std::ldexp(1.0, static_cast<int>(std::floor(exponents / static_cast<double>(usable)))) : 0.0;
     const double quantum = std::max(extent * 1.0001 / kMaxRowCoordinate, typical / kTypicalRadius);
-    chunk.quantum = std::exp2(std::ilogb(quantum) + 1);
+    chunk.quantum = std::ldexp(1.0, std::ilogb(quantum) + 1);
 }
 
 // Writes all of a chunk whose frame is chosen. Returns the first that is not valid, or size().

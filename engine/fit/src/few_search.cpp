@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::fit {
@@ -68,8 +69,9 @@ struct DirectionTable {
             const double z = (static_cast<double>(i) + 0.5) / static_cast<double>(kCount), r = std::sqrt(1.0 - z * z);
             const double angle = 2.399963229728653 * static_cast<double>(i);
             kernels::Directions& set = sets[i / kLanes];
-            set.x[i % kLanes] = static_cast<float>(r * std::cos(angle));
-            set.y[i % kLanes] = static_cast<float>(r * std::sin(angle));
+            const glm::dvec2 around = r * cosine_sine(angle);
+            set.x[i % kLanes] = static_cast<float>(around.x);
+            set.y[i % kLanes] = static_cast<float>(around.y);
             set.z[i % kLanes] = static_cast<float>(z);
         }
     }

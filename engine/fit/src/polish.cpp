@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::fit {
@@ -18,8 +19,8 @@ struct Slide {
 
     [[nodiscard]] bool at(double angle, glm::dmat3& out) const {
         const glm::dvec3 start = frame[first.axis];
-        const glm::dvec3 n =
-            glm::normalize(std::cos(angle) * start + std::sin(angle) * glm::cross(first.direction, start));
+        const glm::dvec2 turn = cosine_sine(angle);
+        const glm::dvec3 n = glm::normalize(turn.x * start + turn.y * glm::cross(first.direction, start));
         const glm::dvec3 across = glm::cross(second.direction, n);
         const double length = glm::length(across);
         if (!(length > 1e-6)) return false;

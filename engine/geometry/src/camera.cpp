@@ -1,5 +1,6 @@
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -48,7 +49,7 @@ glm::dmat4 view_to_clip(const Camera& camera, DepthRange depth) {
     // Depth row for clip z in [0, w] with near at 0: z_clip = −(a·z + b) as a function of the view's z ≤ 0.
     double z_scale, z_offset;
     if (camera.projection == Projection::perspective) {
-        const double y_scale = 1.0 / std::tan(0.5 * camera.fov_y);
+        const double y_scale = 1.0 / tangent(0.5 * camera.fov_y);
         m[0][0] = y_scale / camera.aspect;
         m[1][1] = y_scale;
         m[2][3] = -1.0;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -35,7 +36,7 @@ Result<Frustum> frustum_of(const Camera& camera) {
     Frustum frustum;
     frustum.origin = camera.position;
     if (camera.projection == Projection::perspective) {
-        const double tan_y = std::tan(0.5 * camera.fov_y);
+        const double tan_y = tangent(0.5 * camera.fov_y);
         const double tan_x = tan_y * camera.aspect;
         add(frustum, right + tan_x * forward, 0.0);
         add(frustum, -right + tan_x * forward, 0.0);

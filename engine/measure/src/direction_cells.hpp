@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/spatial_lines.hpp>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -27,7 +28,7 @@ struct CellBounds {
         const glm::dvec3 &a = t[(k + 1) % 3], &b = t[(k + 2) % 3];
         crossed[k] = glm::cross(a, b);
         const double sine = glm::length(crossed[k]);
-        integral += 0.5 * std::atan2(sine, glm::dot(a, b)) / sine * crossed[k];
+        integral += 0.5 * arc_tangent(sine, glm::dot(a, b)) / sine * crossed[k];
     }
     const double determinant = glm::dot(t[0], crossed[0]);
     std::array<double, 3> weights;
@@ -38,7 +39,7 @@ struct CellBounds {
 // The solid angle (van Oosterom and Strackee, 1983).
 [[nodiscard]] inline double solid_angle(const DirectionTriangle& t) {
     const double volume = glm::dot(t[0], glm::cross(t[1], t[2]));
-    return 2.0 * std::atan2(volume, 1.0 + glm::dot(t[0], t[1]) + glm::dot(t[1], t[2]) + glm::dot(t[2], t[0]));
+    return 2.0 * arc_tangent(volume, 1.0 + glm::dot(t[0], t[1]) + glm::dot(t[1], t[2]) + glm::dot(t[2], t[0]));
 }
 
 // bound(triangle) → CellBounds. Deterministic: ties by age.

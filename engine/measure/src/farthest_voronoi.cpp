@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <queue>
@@ -68,7 +69,7 @@ class Ring {
         const glm::dvec2 ab = b - a, bc = c - b, ac = c - a;
         const double twice_area = std::abs(ab.x * bc.y - ab.y * bc.x);
         const double radius = glm::length(ab) * glm::length(bc) * glm::length(ac) / (2.0 * twice_area);
-        heap_.push({radius, std::atan2(twice_area, -glm::dot(ab, bc)), i, ++version_[i]});
+        heap_.push({radius, arc_tangent(twice_area, -glm::dot(ab, bc)), i, ++version_[i]});
     }
     std::uint32_t pop() {
         for (;;) {

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -61,7 +62,7 @@ Result<IntrinsicVolumes> of_frustum(const Camera& camera) {
                     if (a == b && found < 2) ends[found++] = p[a];
             const glm::dvec3& m = frustum->planes[f].normal;
             const glm::dvec3& n = frustum->planes[g].normal;
-            const double angle = std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n));
+            const double angle = arc_tangent(glm::length(glm::cross(m, n)), glm::dot(m, n));
             result.mean_curvature += 0.5 * glm::length(ends[1] - ends[0]) * angle;
         }
     return result;

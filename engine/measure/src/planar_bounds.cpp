@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/planar.hpp>
 #include <crofton/measure/planar_bounds.hpp>
 #include <glm/geometric.hpp>
@@ -137,7 +138,7 @@ class DiscSearch {
 // --- rectangles ---
 
 Rectangle rectangle_at(std::span<const glm::dvec2> hull, double theta, const std::array<std::size_t, 4>& support) {
-    const glm::dvec2 axis(std::cos(theta), std::sin(theta)), across(-axis.y, axis.x);
+    const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
     const double right = glm::dot(hull[support[0]], axis), top = glm::dot(hull[support[1]], across);
     const double left = glm::dot(hull[support[2]], axis), bottom = glm::dot(hull[support[3]], across);
     return {0.5 * (right + left) * axis + 0.5 * (top + bottom) * across, axis,
@@ -146,7 +147,7 @@ Rectangle rectangle_at(std::span<const glm::dvec2> hull, double theta, const std
 
 // Corners that support directions θ, θ + 90°, …; found afresh, so that the result does not depend on the path to it.
 std::array<std::size_t, 4> support_corners(std::span<const glm::dvec2> hull, double theta) {
-    const glm::dvec2 axis(std::cos(theta), std::sin(theta)), across(-axis.y, axis.x);
+    const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
     const glm::dvec2 directions[4] = {axis, across, -axis, -across};
     std::array<std::size_t, 4> support{};
     for (std::size_t k = 0; k < 4; ++k)
@@ -178,7 +179,7 @@ class RectangleSearch {
         Vector<Event> events;
         for (std::size_t i = 0; i < hull.size(); ++i) {
             const glm::dvec2 side = hull[(i + 1) % hull.size()] - hull[i];
-            const double angle = std::atan2(-side.x, side.y);
+            const double angle = arc_tangent(-side.x, side.y);
             const double quarter = std::floor(angle / (0.5 * pi));
             events.push_back({angle - 0.5 * pi * quarter, i, static_cast<std::size_t>(static_cast<int>(quarter) & 3)});
         }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/planar_lines.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -41,14 +42,14 @@ double measure_of_lines_hitting_all(const PlanarSupport& envelope) {
 namespace {
 
 glm::dvec2 unit(double phi) {
-    return {std::cos(phi), std::sin(phi)};
+    return cosine_sine(phi);
 }
 
 // The angles at which dot(d, u(φ)) = r: outer tangents of two discs (d, r differences), inner ones (r minus their sum).
 void append_tangents(const glm::dvec2& d, double r, Vector<double>& angles) {
     const double distance = glm::length(d);
     if (distance <= std::abs(r)) return;
-    const double phase = std::atan2(d.y, d.x), offset = std::acos(r / distance);
+    const double phase = arc_tangent(d.y, d.x), offset = arc_cosine(r / distance);
     for (const double angle : {phase - offset, phase + offset})
         angles.push_back(angle - 2.0 * pi * std::floor(angle / (2.0 * pi)));
 }
@@ -88,7 +89,10 @@ double measure_of_lines_by_tangents(std::span<const Disc> discs) {
         const Disc& near = discs[lowest(discs, middle)];
         const Disc& far = discs[lowest(discs, middle + pi)];
         if (glm::dot(near.center - far.center, unit(middle)) + near.radius + far.radius <= 0.0) continue;
-        const auto along = [&](double phi) { return glm::dot(near.center, glm::dvec2(-std::sin(phi), std::cos(phi))); };
+        const auto along = [&](double phi) {
+            const glm::dvec2 u = unit(phi);
+            return glm::dot(near.center, glm::dvec2(-u.y, u.x));
+        };
         sum += near.radius * (beta - alpha) + along(alpha) - along(beta);
     }
     return sum;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/planar.hpp>
 #include <crofton/measure/planar_support.hpp>
 #include <glm/geometric.hpp>
@@ -21,7 +22,7 @@ PlanarSupport::PlanarSupport(const Rectangle& rectangle) {
     const glm::dvec2 corners[4] = {rectangle.center + x + y, rectangle.center - x + y, rectangle.center - x - y,
                                    rectangle.center + x - y};
     // Corner k supports the quarter of directions that begins k quarters after the axis.
-    const double turn = std::atan2(rectangle.axis.y, rectangle.axis.x);
+    const double turn = arc_tangent(rectangle.axis.y, rectangle.axis.x);
     const double quarters = std::floor(turn / (0.5 * pi));
     const double first = turn - quarters * (0.5 * pi);  // in [0, π/2): the first change of corner
     const auto corner = [&](int k) { return corners[static_cast<std::size_t>((k - static_cast<int>(quarters)) & 3)]; };
@@ -42,7 +43,7 @@ PlanarSupport PlanarSupport::of_convex_polygon(std::span<const glm::dvec2> corne
     changes.reserve(n);
     for (std::size_t i = 0; i < n && n > 1; ++i) {
         const glm::dvec2 side = corners[(i + 1) % n] - corners[i];
-        double angle = std::atan2(-side.x, side.y);
+        double angle = arc_tangent(-side.x, side.y);
         if (angle < 0.0) angle += 2.0 * pi;
         changes.push_back({std::min(angle, 2.0 * pi), corners[(i + 1) % n], 0.0});
     }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>
 
@@ -57,7 +58,7 @@ Result<IntrinsicVolumes> of_polytope(std::span<const glm::dvec3> vertices, std::
                         "polytope: an edge is not shared by exactly two triangles");
         const glm::dvec3& m = normals[edges[e].triangle];
         const glm::dvec3& n = normals[edges[e + 1].triangle];
-        const double angle = std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n));
+        const double angle = arc_tangent(glm::length(glm::cross(m, n)), glm::dot(m, n));
         result.mean_curvature += 0.5 * glm::length(vertices[edges[e].high] - vertices[edges[e].low]) * angle;
     }
     return result;

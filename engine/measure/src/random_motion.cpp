@@ -1,32 +1,15 @@
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/random_motion.hpp>
 #include <numbers>
 
 namespace crofton::measure {
 
 glm::dvec2 circle_point(double u) {
-    // To the nearest quarter turn exactly, then Taylor's series on [−π/4, π/4]: what is cut off is below 1e-19.
+    // The rest beyond the nearest quarter turn is exact.
     const double quarter = std::floor(4.0 * u + 0.5);
-    const double x = 2.0 * std::numbers::pi * (u - 0.25 * quarter);
-    const double y = x * x;
-    double sine = 0.0, cosine = 0.0;
-    for (int k = 8; k >= 1; --k) {
-        sine = (1.0 + sine) * (-y / (2 * k * (2 * k + 1)));
-        cosine = (1.0 + cosine) * (-y / ((2 * k - 1) * 2 * k));
-    }
-    sine = x + x * sine;
-    cosine = 1.0 + cosine;
-    switch (static_cast<int>(quarter) & 3) {
-        case 0:
-            return {cosine, sine};
-        case 1:
-            return {-sine, cosine};
-        case 2:
-            return {-cosine, -sine};
-        default:
-            return {sine, -cosine};
-    }
+    return detail::cosine_sine_beyond(static_cast<std::int64_t>(quarter), 2.0 * std::numbers::pi * (u - 0.25 * quarter));
 }
 
 glm::dvec3 direction(const std::array<double, 2>& u) {
@@ -40,15 +23,8 @@ glm::dvec2 disc_point(const std::array<double, 2>& u) {
 }
 
 glm::dvec3 ball_point(const std::array<double, 3>& u) {
-    // The radius has density 3r² : the largest of three uniform numbers has it, but one number is to do; its cube root
-    // by Newton's method from above, since std::cbrt differs between libraries.
-    double r = 1.0;
-    for (int step = 0; step < 100; ++step) {
-        const double next = (2.0 * r + u[2] / (r * r)) / 3.0;
-        if (!(next < r)) break;
-        r = next;
-    }
-    return (u[2] == 0.0 ? 0.0 : r) * direction({u[0], u[1]});
+    // The radius has density 3r² : the largest of three uniform numbers has it, but one number is to do.
+    return cube_root(u[2]) * direction({u[0], u[1]});
 }
 
 std::array<glm::dvec3, 2> orthonormal_frame(const glm::dvec3& axis) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/planar_support.hpp>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <span>
 
@@ -15,12 +17,12 @@ struct Sinusoid {
     Sinusoid(double x_, double y_, double r_) : x(x_), y(y_), r(r_) {}
     explicit Sinusoid(const PlanarSupport::Piece& piece) : x(piece.point.x), y(piece.point.y), r(piece.radius) {}
 
-    [[nodiscard]] double operator()(double phi) const { return x * std::cos(phi) + y * std::sin(phi) + r; }
+    [[nodiscard]] double operator()(double phi) const { return glm::dot(glm::dvec2(x, y), cosine_sine(phi)) + r; }
 
     // From a to b; written with half the difference, so that short intervals lose nothing to cancellation.
     [[nodiscard]] double integral(double a, double b) const {
         const double middle = 0.5 * (a + b);
-        return 2.0 * std::sin(0.5 * (b - a)) * (x * std::cos(middle) + y * std::sin(middle)) + r * (b - a);
+        return 2.0 * sine(0.5 * (b - a)) * glm::dot(glm::dvec2(x, y), cosine_sine(middle)) + r * (b - a);
     }
 
     [[nodiscard]] friend Sinusoid operator-(const Sinusoid& a, const Sinusoid& b) {
@@ -38,7 +40,7 @@ void for_signs(const Sinusoid& f, double begin, double end, Visit visit) {
     cuts[count++] = begin;
     const double amplitude = std::sqrt(f.x * f.x + f.y * f.y);
     if (amplitude > std::abs(f.r)) {
-        const double phase = std::atan2(f.y, f.x), offset = std::acos(-f.r / amplitude);
+        const double phase = arc_tangent(f.y, f.x), offset = arc_cosine(-f.r / amplitude);
         for (const double root : {phase - offset, phase + offset}) {
             const double turns = std::floor(root / (2.0 * std::numbers::pi));
             const double angle = root - turns * 2.0 * std::numbers::pi;

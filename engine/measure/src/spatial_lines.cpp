@@ -1,3 +1,4 @@
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/planar.hpp>
 #include <crofton/measure/random_motion.hpp>
 #include <numbers>
@@ -93,9 +94,9 @@ class Shadows {
         const double step = 2.0 * pi / kBallSides;
         // A sheared ball's outline is an ellipse of radii r and r/cos; the polygon around it reaches
         // r/(cos·cos(step/2)).
-        const double around = body.radius / (view.least_cosine * std::cos(0.5 * step));
-        const double same_area = body.radius * std::sqrt(step / std::sin(step));
-        if (body.radius > 0.0) ball_gap_ = same_area - body.radius * std::cos(0.5 * step);
+        const double around = body.radius / (view.least_cosine * cosine(0.5 * step));
+        const double same_area = body.radius * std::sqrt(step / sine(step));
+        if (body.radius > 0.0) ball_gap_ = same_area - body.radius * cosine(0.5 * step);
         for (const glm::dvec3& p : body.points) {
             const glm::dvec3 d = p - center_;
             const glm::dvec2 flat(glm::dot(d, view.right), glm::dot(d, view.up));

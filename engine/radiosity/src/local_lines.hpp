@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/measure/random_motion.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 namespace crofton::radiosity {
 
@@ -26,10 +26,10 @@ inline Ray local_ray(const Patches& patches, std::uint32_t triangle, double u, d
     const double root = std::sqrt(u);
     const glm::dvec3 point = t.a + root * (1.0 - v) * (t.b - t.a) + root * v * (t.c - t.a);
     const glm::dvec3 normal = glm::normalize(glm::cross(t.b - t.a, t.c - t.a)), side = glm::normalize(t.b - t.a);
-    const double angle = 2.0 * std::numbers::pi * turn, sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    const glm::dvec2 around = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) * measure::circle_point(turn);
     Ray ray;
     ray.line.point = point;
-    ray.line.direction = cosine * normal + sine * (std::cos(angle) * side + std::sin(angle) * glm::cross(normal, side));
+    ray.line.direction = cosine * normal + around.x * side + around.y * glm::cross(normal, side);
     ray.skip = triangle;
     return ray;
 }

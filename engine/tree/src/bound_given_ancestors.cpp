@@ -1,5 +1,6 @@
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/tree/bound_given_ancestors.hpp>
 #include <glm/geometric.hpp>
 
@@ -7,7 +8,8 @@ namespace crofton::tree {
 namespace {
 
 glm::mat3 turned(const glm::mat3& axes, int around, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
+    const glm::dvec2 turn = cosine_sine(angle);
+    const double c = turn.x, s = turn.y;
     const int i = (around + 1) % 3, j = (around + 2) % 3;
     glm::dmat3 result(axes);
     result[i] = c * glm::dvec3(axes[i]) + s * glm::dvec3(axes[j]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
 
 namespace crofton::tree {
 namespace {
@@ -9,7 +10,8 @@ namespace {
 constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
 // Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
 constexpr std::size_t kSmallCrowd = 32768;
-// A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis follow.
+// A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis
+// follow.
 constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
 constexpr double kCells = 1u << 20;
 constexpr std::size_t kCrowd = 256;  // more in one cell are sorted by smaller ones
@@ -40,7 +42,7 @@ Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion&
         for (int j = 0; j < 3; ++j) half_size_ = std::max(half_size_, scene.half_extents()[j]);
     // One scale for all axes, so that cells are cubes.
     if (half_size_ > 1e-30) cells_per_unit_ = kCells / (2.0 * half_size_);
-    cell_ = static_cast<float>(2.0 * half_size_ / std::cbrt(static_cast<double>(std::max<std::size_t>(items, 1))));
+    cell_ = static_cast<float>(2.0 * half_size_ / cube_root(static_cast<double>(std::max<std::size_t>(items, 1))));
     keys_.reserve(items);
     keys_next_.reserve(items);
 }
@@ -134,8 +136,8 @@ std::size_t Builder::sort_pass(std::size_t budget) {
     return spent;
 }
 
-// Cells that hold many items are sorted by smaller cells. Where those do not help either (a far outlier stretches them),
-// all is split from the top after all.
+// Cells that hold many items are sorted by smaller cells. Where those do not help either (a far outlier stretches
+// them), all is split from the top after all.
 std::size_t Builder::find_crowding(std::size_t budget, std::span<const Obb> boxes) {
     const std::size_t first = next_;
     while (next_ < keys_.size() && (next_ - first) / 4 < budget) {
