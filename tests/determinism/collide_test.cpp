@@ -1,0 +1,105 @@
+// What touches what, in the same bits everywhere.
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/ray.hpp>
+#include <oracle/exact_boxes.hpp>
+
+#include "crowd.hpp"
+#include "digest.hpp"
+#include "everywhere.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+
+namespace {
+
+// Two frames of a crowd in motion.
+std::uint64_t pairs(Executor& executor) {
+    Digest digest;
+    collide::Broadphase broadphase;
+    std::vector<Obb> boxes = crowd(3000, 1e5, 41);
+    Random random(42);
+    for (int frame = 0; frame < 3; ++frame) {
+        (void)broadphase.update(boxes, {}, executor);
+        for (const auto list : {broadphase.pairs(), broadphase.began(), broadphase.ended()})
+            for (const collide::Pair& pair : list) digest.add(pair.first).add(pair.second);
+        for (std::size_t i = 0; i < 500; ++i) boxes[i].center += 0.5 * measure::direction(random.point<2>());
+    }
+    return digest.value();
+}
+
+// Distances, depths, contact points and separating axes of the first few.
+std::uint64_t pairs_closely() {
+    Digest digest;
+    const std::vector<Obb> boxes = crowd(300, 0.0, 43);
+    for (std::size_t i = 1; i < boxes.size(); ++i) {
+        Obb a = boxes[i - 1], b = boxes[i];
+        b.center = a.center + 0.125 * (b.center - a.center);
+        digest.add(static_cast<std::uint32_t>(collide::separating_axis(a, b)));
+        const auto distance = collide::distance(a, b);
+        const auto penetration = collide::penetration(a, b);
+        const auto manifold = collide::contact_manifold(a, b);
+        digest.add(distance.distance)
+            .add(distance.on_a)
+            .add(distance.on_b)
+            .add(penetration.depth)
+            .add(penetration.axis);
+        for (int k = 0; k < manifold.count; ++k) digest.add(manifold.points[k].position).add(manifold.points[k].depth);
+    }
+    return digest.value();
+}
+
+std::uint64_t meshes() {
+    Digest digest;
+    const auto a = *tree::MeshTree::build(torus(60, 30, 0.2)), b = *tree::MeshTree::build(torus(30, 12, 0.0));
+    Random random(44);
+    for (int trial = 0; trial < 60; ++trial) {
+        const double apart = random.uniform(0.0, 3.5);
+        const collide::Pose pose{measure::rotation(random.point<3>()), apart * measure::direction(random.point<2>())};
+        Vector<collide::MeshContact> contacts;
+        collide::contacts(a, b, pose, contacts);
+        for (const auto& c : contacts)
+            digest.add(c.triangles.first).add(c.triangles.second).add(c.segment.begin).add(c.segment.end).add(c.normal);
+        const auto depth = collide::penetration(a, b, pose, contacts);
+        const auto distance = collide::distance(a, b, pose);
+        digest.add(depth.depth).add(depth.direction).add(distance.distance).add(distance.on_a).add(distance.on_b);
+        digest.add(distance.triangles.first).add(distance.triangles.second);
+        digest.add(static_cast<std::uint8_t>(collide::containment(a, b, pose)));
+        digest.add(static_cast<std::uint8_t>(collide::closer_than(a, b, pose, 0.5)));
+        const auto hit = collide::raycast({pose.translation, -pose.translation}, a);
+        if (hit) digest.add(hit->t).add(hit->triangle);
+    }
+    return digest.value();
+}
+
+}  // namespace
+
+TEST_SUITE("determinism/collide") {
+    TEST_CASE("pairs of moving boxes are the same everywhere") {
+        check_everywhere(0xc74938a5f930b243, [](Executor& e) { return pairs(e); });
+    }
+
+    TEST_CASE("distances, depths and contact points of boxes are the same bits everywhere") {
+        check_everywhere(0x82d315f9fde3fcab, [](Executor&) { return pairs_closely(); });
+    }
+
+    TEST_CASE("contacts, depths, distances and rays of meshes are the same bits everywhere") {
+        check_everywhere(0x7c1210d526119bd9, [](Executor&) { return meshes(); });
+    }
+
+    TEST_CASE("what was published are the pairs that rational arithmetic finds") {
+        const std::vector<Obb> boxes = crowd(3000, 1e5, 41);
+        collide::Broadphase broadphase;
+        REQUIRE(broadphase.update(boxes).has_value());
+        CHECK(broadphase.pairs().size() > 100);
+        for (const collide::Pair& pair : broadphase.pairs())
+            CHECK(oracle::boxes_meet_by_integers(boxes[pair.first], boxes[pair.second]));
+        std::size_t meet = 0;
+        for (std::size_t i = 0; i < 200; ++i)
+            for (std::size_t j = i + 1; j < 200; ++j) meet += oracle::boxes_meet_by_integers(boxes[i], boxes[j]);
+        CHECK(meet == static_cast<std::size_t>(std::ranges::count_if(
+                          broadphase.pairs(), [](const collide::Pair& pair) { return pair.second < 200; })));
+    }
+}

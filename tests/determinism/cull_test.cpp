@@ -1,0 +1,75 @@
+// What a camera sees, in the same bits everywhere.
+#include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/cull.hpp>
+#include <oracle/exact_frustum.hpp>
+
+#include "crowd.hpp"
+#include "digest.hpp"
+#include "everywhere.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+
+namespace {
+
+struct Scene {
+    std::vector<Frustum> frusta;
+    std::vector<Obb> boxes;  // some of which nearly touch one of the frusta
+};
+
+Scene scene_at(double offset) {
+    Random random(11);
+    Scene scene{{}, crowd(3000, offset, 12)};
+    for (int view = 0; view < 8; ++view) {
+        scene.frusta.push_back(*frustum_of(random_camera(random, offset)));
+        const auto corners = *frustum_corners(scene.frusta.back());
+        for (int i = 0; i < 200; ++i) scene.boxes.push_back(near_miss(random, scene.frusta.back(), corners));
+    }
+    return scene;
+}
+
+std::uint64_t verdicts(const Scene& scene, Executor& executor) {
+    Digest digest;
+    const auto tree = *tree::BoxTree::build(scene.boxes, {}, executor);
+    cull::BoxSet set;
+    set.assign(scene.boxes, executor);
+    std::vector<cull::View> views;
+    for (const Frustum& frustum : scene.frusta) {
+        views.push_back({frustum});
+        digest.add(frustum.origin).add(frustum.view());
+        std::vector<cull::Verdict> verdicts(scene.boxes.size());
+        cull::classify(frustum, scene.boxes, verdicts);
+        for (const cull::Verdict verdict : verdicts) digest.add(static_cast<std::uint8_t>(verdict));
+        cull::VisibleSet visible;
+        for (const auto order : {cull::Order::ascending, cull::Order::tree}) {
+            cull::cull(tree, views.back(), visible, {cull::Mode::exact, order}, executor);
+            digest.add(visible.ids()).add(std::uint64_t{visible.inside_count()});
+        }
+        cull::VerdictBits bits;
+        cull::cull(set, scene.boxes, views.back(), bits, cull::Mode::conservative, executor);
+        digest.add(bits.visible).add(bits.inside);
+    }
+    std::vector<std::uint32_t> masks(scene.boxes.size());
+    cull::cull(set, scene.boxes, {}, views, masks, cull::Mode::exact, executor);
+    return digest.add(masks).value();
+}
+
+}  // namespace
+
+TEST_SUITE("determinism/cull") {
+    TEST_CASE("frusta, verdicts, orders and bits are the same everywhere, far from the origin too") {
+        check_everywhere(0x59b034fd2f61321d, [scene = scene_at(0.0)](Executor& e) { return verdicts(scene, e); });
+        check_everywhere(0xf01de044c2f1b43a, [scene = scene_at(1e6)](Executor& e) { return verdicts(scene, e); });
+    }
+
+    TEST_CASE("what was published are the verdicts of rational arithmetic") {
+        for (const double offset : {0.0, 1e6}) {
+            const Scene scene = scene_at(offset);
+            for (std::size_t view = 0; view < scene.frusta.size(); ++view)
+                for (std::size_t i = 0; i < 40; ++i) {
+                    const Obb& box = scene.boxes[3000 + 200 * view + i];
+                    CHECK(cull::classify(scene.frusta[view], box) == oracle::classify(scene.frusta[view], box));
+                }
+        }
+    }
+}
