@@ -12,5 +12,7 @@ list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CROFTON_ARM64_ROOT)
 if(CROFTON_ARM64_ROOT)
     list(PREPEND CMAKE_PREFIX_PATH ${CROFTON_ARM64_ROOT}/usr)
     include_directories(SYSTEM ${CROFTON_ARM64_ROOT}/usr/include ${CROFTON_ARM64_ROOT}/usr/include/aarch64-linux-gnu)
-    link_directories(${CROFTON_ARM64_ROOT}/usr/lib/aarch64-linux-gnu)
+    set(CMAKE_EXE_LINKER_FLAGS_INIT -L${CROFTON_ARM64_ROOT}/usr/lib/aarch64-linux-gnu)
+    # qemu looks here for shared libraries.
+    list(APPEND CMAKE_CROSSCOMPILING_EMULATOR -E LD_LIBRARY_PATH=${CROFTON_ARM64_ROOT}/usr/lib/aarch64-linux-gnu)
 endif()
