@@ -62,9 +62,10 @@ HWY_INLINE VI add_products(VI sum, VU a, VU b) {
     return sum;
 #else
     const hn::Repartition<std::int16_t, DI> d16;
+    // Where products come out in another order than their lanes', what is rearranged may hold nothing else.
     VI rest = hn::Zero(di);
-    sum = hn::ReorderWidenMulAccumulate(di, hn::BitCast(d16, a), hn::BitCast(d16, b), sum, rest);
-    return hn::RearrangeToOddPlusEven(sum, rest);
+    const VI products = hn::ReorderWidenMulAccumulate(di, hn::BitCast(d16, a), hn::BitCast(d16, b), hn::Zero(di), rest);
+    return hn::Add(sum, hn::RearrangeToOddPlusEven(products, rest));
 #endif
 }
 
