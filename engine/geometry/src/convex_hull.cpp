@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <crofton/geometry/convex_hull.hpp>
 #include <crofton/geometry/obb.hpp>
@@ -186,6 +187,7 @@ bool solid_hull(Prepared& prepared, ConvexHull& hull) {
     qhT* qh = solid.state();
     vertexT *vertex, **vertexp;
     facetT* facet;
+    Vector<std::array<std::uint32_t, 3>> faces;
     FORALLvertices hull.vertices.push_back(static_cast<std::uint32_t>(qh_pointid(qh, vertex->point)));
     FORALLfacets {
         std::uint32_t corner[3] = {0, 0, 0};
@@ -196,8 +198,12 @@ bool solid_hull(Prepared& prepared, ConvexHull& hull) {
         const glm::dvec3 a = prepared.points[corner[0]], b = prepared.points[corner[1]], c = prepared.points[corner[2]];
         if (glm::dot(glm::cross(b - a, c - a), glm::dvec3(facet->normal[0], facet->normal[1], facet->normal[2])) < 0.0)
             std::swap(corner[1], corner[2]);
-        hull.triangles.insert(hull.triangles.end(), corner, corner + 3);
+        std::rotate(corner, std::min_element(corner, corner + 3), corner + 3);
+        faces.push_back({corner[0], corner[1], corner[2]});
     }
+    // Qhull's order of faces follows roundings that are not ours.
+    std::sort(faces.begin(), faces.end());
+    for (const auto& face : faces) hull.triangles.insert(hull.triangles.end(), face.begin(), face.end());
     return true;
 }
 
