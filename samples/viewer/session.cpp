@@ -71,7 +71,7 @@ Result<void> Session::try_turn() {
     last_turn_ = start;
     handle_events();
     run_script();
-    if (std::exchange(lose_device_, false)) return tl::unexpected(render::vulkan_error(VK_ERROR_DEVICE_LOST, "script"));
+    if (std::exchange(lose_device_, false)) return render::vulkan_failure(VK_ERROR_DEVICE_LOST, "script");
     if (auto followed = follow_settings(); !followed) return followed;
     if (auto resized = resize(); !resized) return resized;
     advance(seconds);

@@ -2,47 +2,28 @@
 
 #include <algorithm>
 #include <array>
+#include <crofton/render/graphics_pipeline.hpp>
 #include <cstddef>
 #include <cstring>
+
+#include "shaders/ui.frag.h"
+#include "shaders/ui.vert.h"
 
 namespace crofton::viewer {
 namespace {
 
-tl::unexpected<Error> vulkan_failure(VkResult result, const char* what) {
-    return tl::unexpected(render::vulkan_error(result, what));
-}
-
-// Grows a buffer that is written anew each frame.
-Result<void> reserve(const render::VulkanContext& context, render::Buffer& buffer, VkDeviceSize size,
-                     VkBufferUsageFlags usage) {
-    if (buffer.size >= size) return {};
-    auto grown = render::create_host_buffer(context, std::max(size, buffer.size * 2), usage);
-    if (!grown) return tl::unexpected(std::move(grown.error()));
-    buffer = std::move(*grown);
-    return {};
-}
-
-void record_layout_change(const render::VulkanContext& context, VkCommandBuffer commands, VkImage image,
-                          VkImageLayout from, VkImageLayout to) {
-    VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.oldLayout = from;
-    barrier.newLayout = to;
-    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    context.vk.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
-                                    0, nullptr, 0, nullptr, 1, &barrier);
-}
+constexpr VkVertexInputBindingDescription kBinding{0, sizeof(ImDrawVert), VK_VERTEX_INPUT_RATE_VERTEX};
+constexpr std::array<VkVertexInputAttributeDescription, 3> kAttributes{{
+    {0, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(ImDrawVert, pos)},
+    {1, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(ImDrawVert, uv)},
+    {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(ImDrawVert, col)},
+}};
 
 }  // namespace
 
 Result<std::unique_ptr<UiRenderer>> UiRenderer::create(const render::VulkanContext& context) {
     std::unique_ptr<UiRenderer> ui(new UiRenderer(context));
     auto made = ui->create_layouts();
-    if (made) made = ui->create_render_pass();
     if (made) made = ui->create_pipeline();
     if (made) made = ui->upload_font();
     if (!made) return tl::unexpected(std::move(made.error()));
@@ -67,7 +48,7 @@ Result<void> UiRenderer::create_layouts() {
     sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
     sampler.addressModeU = sampler.addressModeV = sampler.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     VkResult result = vk.vkCreateSampler(context_.device, &sampler, nullptr, &sampler_);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateSampler");
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateSampler");
 
     const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
                                                VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
@@ -75,7 +56,7 @@ Result<void> UiRenderer::create_layouts() {
     set_layout.bindingCount = 1;
     set_layout.pBindings = &binding;
     result = vk.vkCreateDescriptorSetLayout(context_.device, &set_layout, nullptr, &set_layout_);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateDescriptorSetLayout");
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateDescriptorSetLayout");
 
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2};
     VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
@@ -83,14 +64,14 @@ Result<void> UiRenderer::create_layouts() {
     pool.poolSizeCount = 1;
     pool.pPoolSizes = &size;
     result = vk.vkCreateDescriptorPool(context_.device, &pool, nullptr, &pool_);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateDescriptorPool");
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateDescriptorPool");
     VkDescriptorSetAllocateInfo sets{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     sets.descriptorPool = pool_;
     sets.descriptorSetCount = 1;
     sets.pSetLayouts = &set_layout_;
     for (VkDescriptorSet* set : {&font_set_, &shown_set_}) {
         result = vk.vkAllocateDescriptorSets(context_.device, &sets, set);
-        if (result != VK_SUCCESS) return vulkan_failure(result, "vkAllocateDescriptorSets");
+        if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkAllocateDescriptorSets");
     }
 
     const VkPushConstantRange constants{VK_SHADER_STAGE_VERTEX_BIT, 0, 4 * sizeof(float)};
@@ -100,40 +81,20 @@ Result<void> UiRenderer::create_layouts() {
     layout.pushConstantRangeCount = 1;
     layout.pPushConstantRanges = &constants;
     result = vk.vkCreatePipelineLayout(context_.device, &layout, nullptr, &layout_);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreatePipelineLayout");
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreatePipelineLayout");
     return {};
 }
 
-Result<void> UiRenderer::create_render_pass() {
-    VkAttachmentDescription color{};
-    color.format = render::kColorFormat;
-    color.samples = VK_SAMPLE_COUNT_1_BIT;
-    color.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    color.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    color.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    color.initialLayout = color.finalLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass{};
-    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    subpass.colorAttachmentCount = 1;
-    subpass.pColorAttachments = &reference;
-    constexpr VkPipelineStageFlags kColor = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-    constexpr VkPipelineStageFlags kReaders = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    constexpr VkAccessFlags kColorAccess = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-    const std::array<VkSubpassDependency, 2> dependencies{
-        {{VK_SUBPASS_EXTERNAL, 0, kColor | kReaders, kColor, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, kColorAccess, 0},
-         {0, VK_SUBPASS_EXTERNAL, kColor, kReaders, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT, 0}}};
-    VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-    info.attachmentCount = 1;
-    info.pAttachments = &color;
-    info.subpassCount = 1;
-    info.pSubpasses = &subpass;
-    info.dependencyCount = static_cast<std::uint32_t>(dependencies.size());
-    info.pDependencies = dependencies.data();
-    const VkResult result = context_.vk.vkCreateRenderPass(context_.device, &info, nullptr, &pass_);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateRenderPass");
+Result<void> UiRenderer::create_pipeline() {
+    auto pass = render::create_render_pass(context_, {.keep_color = true});
+    if (!pass) return tl::unexpected(std::move(pass.error()));
+    pass_ = *pass;
+    render::PipelineDescription description{
+        render::shaders::ui_vert, render::shaders::ui_frag, kAttributes, {&kBinding, 1}};
+    description.blend = true;
+    auto made = render::create_pipeline(context_, description, layout_, pass_);
+    if (!made) return tl::unexpected(std::move(made.error()));
+    pipeline_ = *made;
     return {};
 }
 
@@ -141,15 +102,9 @@ Result<void> UiRenderer::set_target(VkImageView picture, VkExtent2D extent) {
     context_.vk.vkDestroyFramebuffer(context_.device, framebuffer_, nullptr);
     framebuffer_ = VK_NULL_HANDLE;
     extent_ = extent;
-    VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-    info.renderPass = pass_;
-    info.attachmentCount = 1;
-    info.pAttachments = &picture;
-    info.width = extent.width;
-    info.height = extent.height;
-    info.layers = 1;
-    const VkResult result = context_.vk.vkCreateFramebuffer(context_.device, &info, nullptr, &framebuffer_);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateFramebuffer");
+    auto made = render::create_framebuffer(context_, pass_, {&picture, 1}, extent);
+    if (!made) return tl::unexpected(std::move(made.error()));
+    framebuffer_ = *made;
     return {};
 }
 
@@ -185,15 +140,23 @@ Result<void> UiRenderer::upload_font() {
     auto commands = render::Commands::create(context_);
     if (!commands) return tl::unexpected(std::move(commands.error()));
     if (auto begun = commands->begin(); !begun) return begun;
-    record_layout_change(context_, commands->handle, font_.handle, VK_IMAGE_LAYOUT_UNDEFINED,
-                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    constexpr VkPipelineStageFlags kTransfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    const auto barrier = [&](VkPipelineStageFlags before, VkPipelineStageFlags after,
+                             const VkImageMemoryBarrier& what) {
+        context_.vk.vkCmdPipelineBarrier(commands->handle, before, after, 0, 0, nullptr, 0, nullptr, 1, &what);
+    };
+    barrier(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, kTransfer,
+            render::color_barrier(font_.handle, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
+                                  VK_ACCESS_TRANSFER_WRITE_BIT));
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {extent.width, extent.height, 1};
     context_.vk.vkCmdCopyBufferToImage(commands->handle, staging->handle, font_.handle,
                                        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-    record_layout_change(context_, commands->handle, font_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    barrier(kTransfer, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+            render::color_barrier(font_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
+                                  VK_ACCESS_SHADER_READ_BIT));
     if (auto done = commands->submit_and_wait(); !done) return done;
     point_at(font_set_, font_.view);
     point_at(shown_set_, font_.view);
@@ -204,9 +167,12 @@ Result<void> UiRenderer::upload_font() {
 Result<void> UiRenderer::upload_lists(const ImDrawData& data) {
     const auto vertex_bytes = static_cast<VkDeviceSize>(data.TotalVtxCount) * sizeof(ImDrawVert);
     const auto index_bytes = static_cast<VkDeviceSize>(data.TotalIdxCount) * sizeof(ImDrawIdx);
-    if (auto grown = reserve(context_, vertices_, vertex_bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !grown)
+    if (auto grown = render::reserve_host_buffer(context_, vertices_, vertex_bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+        !grown)
         return grown;
-    if (auto grown = reserve(context_, indices_, index_bytes, VK_BUFFER_USAGE_INDEX_BUFFER_BIT); !grown) return grown;
+    if (auto grown = render::reserve_host_buffer(context_, indices_, index_bytes, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+        !grown)
+        return grown;
     std::byte* vertex = vertices_.mapped;
     std::byte* index = indices_.mapped;
     for (int i = 0; i < data.CmdListsCount; ++i) {

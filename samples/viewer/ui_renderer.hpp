@@ -28,7 +28,6 @@ class UiRenderer {
   private:
     explicit UiRenderer(const render::VulkanContext& context) : context_(context) {}
     [[nodiscard]] Result<void> create_layouts();
-    [[nodiscard]] Result<void> create_render_pass();
     [[nodiscard]] Result<void> create_pipeline();
     [[nodiscard]] Result<void> upload_font();
     [[nodiscard]] Result<void> upload_lists(const ImDrawData& data);

@@ -55,7 +55,6 @@ class Window {
     Window() = default;
     friend struct WindowCallbacks;
     [[nodiscard]] Result<void> create_swapchain();
-    [[nodiscard]] VkResult try_present(VkImage picture, VkExtent2D size);
     void record_copy(VkCommandBuffer commands, VkImage picture, VkExtent2D size, VkImage onto) const;
 
     GLFWwindow* window_ = nullptr;
@@ -67,9 +66,8 @@ class Window {
     std::vector<VkImage> images_;
     VkExtent2D extent_{};
     VkFormat format_ = VK_FORMAT_UNDEFINED;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    render::Commands commands_;
     VkSemaphore acquired_ = VK_NULL_HANDLE, copied_ = VK_NULL_HANDLE;
-    VkFence done_ = VK_NULL_HANDLE;
 };
 
 }  // namespace crofton::viewer

@@ -35,7 +35,7 @@ Result<void> create_logical_device(VulkanContext& context, const DeviceOptions& 
     info.ppEnabledExtensionNames = extensions.data();
     if (const VkResult result = vkCreateDevice(context.physical_device, &info, nullptr, &context.device);
         result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkCreateDevice"));
+        return vulkan_failure(result, "vkCreateDevice");
     volkLoadDeviceTable(&context.vk, context.device);
     context.vk.vkGetDeviceQueue(context.device, context.queue_family, 0, &context.queue);
 
@@ -44,7 +44,7 @@ Result<void> create_logical_device(VulkanContext& context, const DeviceOptions& 
     pool.queueFamilyIndex = context.queue_family;
     if (const VkResult result = context.vk.vkCreateCommandPool(context.device, &pool, nullptr, &context.command_pool);
         result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkCreateCommandPool"));
+        return vulkan_failure(result, "vkCreateCommandPool");
     return {};
 }
 

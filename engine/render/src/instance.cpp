@@ -88,7 +88,7 @@ Result<void> create_instance(VulkanContext& context, const DeviceOptions& option
     volkLoadInstanceOnly(context.instance);
     if (options.validation) {
         const VkResult made = vkCreateDebugUtilsMessengerEXT(context.instance, &messenger, nullptr, &context.messenger);
-        if (made != VK_SUCCESS) return tl::unexpected(vulkan_error(made, "vkCreateDebugUtilsMessengerEXT"));
+        if (made != VK_SUCCESS) return vulkan_failure(made, "vkCreateDebugUtilsMessengerEXT");
     }
     return {};
 }

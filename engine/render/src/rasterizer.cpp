@@ -65,15 +65,7 @@ Result<void> Rasterizer::State::create_queries() {
         info.pipelineStatistics = 0;
         result = context.vk.vkCreateQueryPool(context.device, &info, nullptr, &stamps);
     }
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateQueryPool"));
-    return {};
-}
-
-Result<void> Rasterizer::State::reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const {
-    if (buffer.size >= size) return {};
-    auto grown = create_host_buffer(context, std::max<VkDeviceSize>(size, buffer.size * 2), usage);
-    if (!grown) return tl::unexpected(std::move(grown.error()));
-    buffer = std::move(*grown);
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateQueryPool");
     return {};
 }
 
@@ -86,15 +78,16 @@ Result<void> Rasterizer::State::prepare(const Frame& frame) {
 
     if (!draws.empty()) {
         const std::size_t bytes = frame.transforms.size_bytes();
-        if (auto made = reserve(transforms, bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !made) return made;
+        if (auto made = reserve_host_buffer(context, transforms, bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !made)
+            return made;
         std::memcpy(transforms.mapped, frame.transforms.data(), bytes);
     }
     if (context.max_multi_draws > 0) {
         multi_draws.clear();
         for (const MergedDraw& draw : draws) multi_draws.push_back({draw.first_index, draw.index_count, 0});
     } else if (context.multi_draw_indirect && !draws.empty()) {
-        if (auto made = reserve(indirect, draws.size() * sizeof(VkDrawIndexedIndirectCommand),
-                                VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+        if (auto made = reserve_host_buffer(context, indirect, draws.size() * sizeof(VkDrawIndexedIndirectCommand),
+                                            VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
             !made)
             return made;
         for (std::size_t i = 0; i < draws.size(); ++i) {
@@ -104,7 +97,10 @@ Result<void> Rasterizer::State::prepare(const Frame& frame) {
         }
     }
     if (!frame.lines.empty()) {
-        if (auto made = reserve(lines, frame.lines.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT); !made) return made;
+        if (auto made =
+                reserve_host_buffer(context, lines, frame.lines.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+            !made)
+            return made;
         std::memcpy(lines.mapped, frame.lines.data(), frame.lines.size_bytes());
     }
     return {};
@@ -119,7 +115,7 @@ Result<GpuCounters> Rasterizer::State::read_counters() const {
     std::array<std::uint64_t, 3> statistic{};
     VkResult result = read(occlusion, {&counters.samples_passed, 1});
     if (result == VK_SUCCESS && statistics != VK_NULL_HANDLE) result = read(statistics, statistic);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkGetQueryPoolResults"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkGetQueryPoolResults");
     counters.input_assembly_primitives = statistic[0];
     counters.clipping_invocations = statistic[1];
     counters.clipping_primitives = statistic[2];

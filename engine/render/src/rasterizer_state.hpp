@@ -41,8 +41,6 @@ struct Rasterizer::State {
 
     [[nodiscard]] Result<void> create(const RasterizerOptions& options);
     [[nodiscard]] Result<void> create_queries();
-    // Makes `buffer` at least `size` bytes.
-    [[nodiscard]] Result<void> reserve(Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) const;
     // Fills draws, transforms, indirect and lines.
     [[nodiscard]] Result<void> prepare(const Frame& frame);
     void record(const Frame& frame, const Target& target);

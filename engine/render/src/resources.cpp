@@ -1,5 +1,6 @@
 #include <crofton/render/resources.hpp>
 
+#include <algorithm>
 #include <cstring>
 
 namespace crofton::render {
@@ -17,7 +18,7 @@ Result<VkDeviceMemory> allocate(const VulkanContext& context, const VkMemoryRequ
     VkDeviceMemory memory = VK_NULL_HANDLE;
     if (const VkResult result = context.vk.vkAllocateMemory(context.device, &info, nullptr, &memory);
         result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkAllocateMemory"));
+        return vulkan_failure(result, "vkAllocateMemory");
     return memory;
 }
 
@@ -39,7 +40,7 @@ Result<Buffer> Buffer::create(const VulkanContext& context, VkDeviceSize size, V
     info.usage = usage;
     const auto& vk = context.vk;
     if (const VkResult result = vk.vkCreateBuffer(context.device, &info, nullptr, &buffer.handle); result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkCreateBuffer"));
+        return vulkan_failure(result, "vkCreateBuffer");
     VkMemoryRequirements needs;
     vk.vkGetBufferMemoryRequirements(context.device, buffer.handle, &needs);
     bool host_visible = false;
@@ -48,12 +49,12 @@ Result<Buffer> Buffer::create(const VulkanContext& context, VkDeviceSize size, V
     buffer.memory_ = *memory;
     if (const VkResult result = vk.vkBindBufferMemory(context.device, buffer.handle, buffer.memory_, 0);
         result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkBindBufferMemory"));
+        return vulkan_failure(result, "vkBindBufferMemory");
     if (host_visible && (wanted & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
         void* data = nullptr;
         if (const VkResult result = vk.vkMapMemory(context.device, buffer.memory_, 0, VK_WHOLE_SIZE, 0, &data);
             result != VK_SUCCESS)
-            return tl::unexpected(vulkan_error(result, "vkMapMemory"));
+            return vulkan_failure(result, "vkMapMemory");
         buffer.mapped = static_cast<std::byte*>(data);
     }
     return buffer;
@@ -66,6 +67,15 @@ Result<Buffer> create_host_buffer(const VulkanContext& context, VkDeviceSize siz
                                             ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
                                             : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
     return Buffer::create(context, size, usage, kHost | extra, kHost);
+}
+
+Result<void> reserve_host_buffer(const VulkanContext& context, Buffer& buffer, VkDeviceSize size,
+                                 VkBufferUsageFlags usage) {
+    if (buffer.size >= size) return {};
+    auto grown = create_host_buffer(context, std::max(size, buffer.size * 2), usage);
+    if (!grown) return tl::unexpected(std::move(grown.error()));
+    buffer = std::move(*grown);
+    return {};
 }
 
 Result<Buffer> create_static_buffer(const VulkanContext& context, const void* data, VkDeviceSize size,
@@ -107,7 +117,7 @@ Result<ImageResource> ImageResource::create(const VulkanContext& context, VkExte
     info.usage = usage;
     const auto& vk = context.vk;
     if (const VkResult result = vk.vkCreateImage(context.device, &info, nullptr, &image.handle); result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkCreateImage"));
+        return vulkan_failure(result, "vkCreateImage");
     VkMemoryRequirements needs;
     vk.vkGetImageMemoryRequirements(context.device, image.handle, &needs);
     bool host_visible = false;
@@ -116,15 +126,29 @@ Result<ImageResource> ImageResource::create(const VulkanContext& context, VkExte
     image.memory_ = *memory;
     if (const VkResult result = vk.vkBindImageMemory(context.device, image.handle, image.memory_, 0);
         result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkBindImageMemory"));
+        return vulkan_failure(result, "vkBindImageMemory");
     VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     view.image = image.handle;
     view.viewType = VK_IMAGE_VIEW_TYPE_2D;
     view.format = format;
     view.subresourceRange = {aspect, 0, 1, 0, 1};
     if (const VkResult result = vk.vkCreateImageView(context.device, &view, nullptr, &image.view); result != VK_SUCCESS)
-        return tl::unexpected(vulkan_error(result, "vkCreateImageView"));
+        return vulkan_failure(result, "vkCreateImageView");
     return image;
+}
+
+VkImageMemoryBarrier color_barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags before,
+                                   VkAccessFlags after) {
+    VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+    barrier.srcAccessMask = before;
+    barrier.dstAccessMask = after;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    return barrier;
 }
 
 Commands::~Commands() {
@@ -142,10 +166,10 @@ Result<Commands> Commands::create(const VulkanContext& context) {
     info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     info.commandBufferCount = 1;
     VkResult result = context.vk.vkAllocateCommandBuffers(context.device, &info, &commands.handle);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkAllocateCommandBuffers"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkAllocateCommandBuffers");
     const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     result = context.vk.vkCreateFence(context.device, &fence, nullptr, &commands.fence_);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkCreateFence"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateFence");
     return commands;
 }
 
@@ -153,7 +177,7 @@ Result<void> Commands::begin() {
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     const VkResult result = context_->vk.vkBeginCommandBuffer(handle, &info);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkBeginCommandBuffer"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkBeginCommandBuffer");
     return {};
 }
 
@@ -162,24 +186,30 @@ Result<void> Commands::submit_and_wait() {
     return wait();
 }
 
-Result<void> Commands::submit() {
+Result<void> Commands::submit(VkSemaphore wait, VkSemaphore signal) {
     const auto& vk = context_->vk;
     VkResult result = vk.vkEndCommandBuffer(handle);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkEndCommandBuffer"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkEndCommandBuffer");
     VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
     info.pCommandBuffers = &handle;
+    constexpr VkPipelineStageFlags kWaiting = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    info.waitSemaphoreCount = wait != VK_NULL_HANDLE ? 1 : 0;
+    info.pWaitSemaphores = &wait;
+    info.pWaitDstStageMask = &kWaiting;
+    info.signalSemaphoreCount = signal != VK_NULL_HANDLE ? 1 : 0;
+    info.pSignalSemaphores = &signal;
     result = vk.vkQueueSubmit(context_->queue, 1, &info, fence_);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkQueueSubmit"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkQueueSubmit");
     return {};
 }
 
 Result<void> Commands::wait() {
     const auto& vk = context_->vk;
     VkResult result = vk.vkWaitForFences(context_->device, 1, &fence_, VK_TRUE, ~std::uint64_t{0});
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkWaitForFences"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkWaitForFences");
     result = vk.vkResetFences(context_->device, 1, &fence_);
-    if (result != VK_SUCCESS) return tl::unexpected(vulkan_error(result, "vkResetFences"));
+    if (result != VK_SUCCESS) return vulkan_failure(result, "vkResetFences");
     return {};
 }
 

@@ -41,6 +41,9 @@ class Buffer {
 // Memory that the host writes and the device reads (or the other way round), coherent.
 [[nodiscard]] Result<Buffer> create_host_buffer(const VulkanContext& context, VkDeviceSize size,
                                                 VkBufferUsageFlags usage);
+// Makes a host buffer at least `size` bytes; what it held is lost where it grows.
+[[nodiscard]] Result<void> reserve_host_buffer(const VulkanContext& context, Buffer& buffer, VkDeviceSize size,
+                                               VkBufferUsageFlags usage);
 // Memory that only the device touches, filled once through a staging copy.
 [[nodiscard]] Result<Buffer> create_static_buffer(const VulkanContext& context, const void* data, VkDeviceSize size,
                                                   VkBufferUsageFlags usage);
@@ -76,6 +79,10 @@ class ImageResource {
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
 };
 
+// Of a colour image's one level: `before` is made visible to `after`, in another layout.
+[[nodiscard]] VkImageMemoryBarrier color_barrier(VkImage image, VkImageLayout from, VkImageLayout to,
+                                                 VkAccessFlags before, VkAccessFlags after);
+
 // A command buffer and its fence: recorded, submitted, waited for.
 class Commands {
   public:
@@ -89,7 +96,8 @@ class Commands {
 
     [[nodiscard]] static Result<Commands> create(const VulkanContext& context);
     [[nodiscard]] Result<void> begin();
-    [[nodiscard]] Result<void> submit();
+    // Transfers wait for `wait`; `signal` tells that all is done. Either may be null.
+    [[nodiscard]] Result<void> submit(VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
     [[nodiscard]] Result<void> wait();  // once after each submit()
     [[nodiscard]] Result<void> submit_and_wait();
 

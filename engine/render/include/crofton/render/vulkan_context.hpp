@@ -40,6 +40,9 @@ struct VulkanContext {
 
 // "what: VK_ERROR_…": `unavailable` for a lost device or a lost surface, `internal` for the rest.
 [[nodiscard]] Error vulkan_error(VkResult result, const char* what);
+[[nodiscard]] inline tl::unexpected<Error> vulkan_failure(VkResult result, const char* what) {
+    return tl::unexpected(vulkan_error(result, what));
+}
 [[nodiscard]] const char* vulkan_result_name(VkResult result);
 
 }  // namespace crofton::render

@@ -1,0 +1,38 @@
+// Passes and pipelines by what differs between them, for the rasterizer and for those who draw beside it.
+#pragma once
+#include <crofton/render/vulkan_context.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::render {
+
+// One pass over a picture of kColorFormat, which ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment
+// shaders that follow; one that is kept must be in that layout before.
+struct PassDescription {
+    bool keep_color = false;                      // false: cleared
+    VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and gone after the pass; UNDEFINED: the pass has no depth
+};
+[[nodiscard]] Result<VkRenderPass> create_render_pass(const VulkanContext& context, const PassDescription& description);
+
+// `views`: colour, then depth where the pass has one.
+[[nodiscard]] Result<VkFramebuffer> create_framebuffer(const VulkanContext& context, VkRenderPass pass,
+                                                       std::span<const VkImageView> views, VkExtent2D extent);
+
+// A pipeline with one colour attachment, dynamic viewport and scissor, front faces counter-clockwise.
+struct PipelineDescription {
+    std::span<const std::uint32_t> vertex_shader, fragment_shader;  // SPIR-V
+    std::span<const VkVertexInputAttributeDescription> attributes;
+    std::span<const VkVertexInputBindingDescription> bindings;
+    VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkPolygonMode mode = VK_POLYGON_MODE_FILL;
+    VkCullModeFlags cull = VK_CULL_MODE_NONE;
+    std::uint32_t variant = 0;                          // what the shaders read as constant_id 0
+    VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  // reversed-Z; of no effect in a pass without depth
+    bool depth_write = true;
+    bool depth_bias = false;
+    bool blend = false;  // by the source's alpha
+};
+[[nodiscard]] Result<VkPipeline> create_pipeline(const VulkanContext& context, const PipelineDescription& description,
+                                                 VkPipelineLayout layout, VkRenderPass pass);
+
+}  // namespace crofton::render
