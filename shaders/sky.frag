@@ -1,5 +1,6 @@
 #version 460
-// A clear sky: horizon to zenith by height, and the sun's disc with its glow.
+// A clear sky: horizon to zenith by height, and the sun's disc with its glow. All colours are given as they appear: each
+// root costs software devices as much as the rest of the sky.
 
 layout(push_constant) uniform Frame {
     vec4 to_sun;
@@ -16,15 +17,16 @@ layout(location = 0) in vec3 direction;
 layout(location = 0) out vec4 pixel;
 
 void main() {
-    vec3 d = normalize(direction);
-    float height = sqrt(clamp(d.y, 0.0, 1.0));
+    float scale = inversesqrt(dot(direction, direction));
+    float up = direction.y * scale;
+    float height = sqrt(clamp(up, 0.0, 1.0));
     vec3 color = mix(frame.horizon.rgb, frame.zenith.rgb, height);
-    color = mix(color, frame.ground.rgb, clamp(-8.0 * d.y, 0.0, 1.0));
-    float toward = max(dot(d, frame.to_sun.xyz), 0.0);
+    color = mix(color, frame.ground.rgb, clamp(-8.0 * up, 0.0, 1.0));
+    float toward = max(dot(direction, frame.to_sun.xyz) * scale, 0.0);
     float glow = toward * toward;
     glow *= glow;
     glow *= glow;
     glow *= glow;
-    color += frame.sun.rgb * (0.15 * glow + smoothstep(0.9993, 0.9996, toward));
-    pixel = vec4(sqrt(min(color, vec3(1.0))), 1.0);
+    color += frame.sun.rgb * (0.1 * glow + clamp((toward - 0.9993) * 3333.0, 0.0, 1.0));
+    pixel = vec4(color, 1.0);
 }

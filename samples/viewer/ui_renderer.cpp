@@ -45,7 +45,8 @@ UiRenderer::~UiRenderer() {
 Result<void> UiRenderer::create_layouts() {
     const auto& vk = context_.vk;
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-    sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
+    // Texts and pictures are shown pixel by pixel.
+    sampler.magFilter = sampler.minFilter = VK_FILTER_NEAREST;
     sampler.addressModeU = sampler.addressModeV = sampler.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     VkResult result = vk.vkCreateSampler(context_.device, &sampler, nullptr, &sampler_);
     if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateSampler");

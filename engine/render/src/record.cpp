@@ -42,10 +42,10 @@ SkyConstants sky_constants(const Frame& frame) {
     // The sky is infinitely far: an orthographic view sees one point of it.
     const double half_height = perspective ? std::tan(0.5 * frame.camera.fov_y) : 0.0;
     return {wide(glm::normalize(e.to_sun)),
-            wide(e.zenith),
-            wide(e.horizon),
-            wide(e.ground),
-            wide(e.sun),
+            wide(glm::sqrt(e.zenith)),
+            wide(glm::sqrt(e.horizon)),
+            wide(glm::sqrt(e.ground)),
+            wide(glm::sqrt(e.sun)),
             wide(glm::vec3(to_world[0] * (half_height * frame.camera.aspect))),
             wide(glm::vec3(to_world[1] * half_height)),
             wide(glm::vec3(-to_world[2]))};
