@@ -14,7 +14,7 @@ layout(push_constant) uniform Frame {
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-layout(location = 2) in vec3 color;
+layout(location = 2) in vec3 root_color;  // square roots of linear RGB
 // One per draw, stepped by instance: the draw's transform.
 layout(location = 3) in mat4 to_clip;
 layout(location = 7) in mat3x4 to_world_normal;  // cofactors of the linear part; .w of the columns: the tint
@@ -40,7 +40,7 @@ void main() {
 
     vec3 n = normalize(mat3(to_world_normal) * normal);
     vec3 tint = vec3(to_world_normal[0].w, to_world_normal[1].w, to_world_normal[2].w);
-    vec3 albedo = mix(color, tint, options.x);
+    vec3 albedo = mix(root_color * root_color, tint, options.x);
     vec3 ambient = 0.5 * (frame.sky_ambient.rgb + frame.ground_ambient.rgb);
     vec3 slope = (0.5 * n.y) * (frame.sky_ambient.rgb - frame.ground_ambient.rgb);
     float facing = dot(n, frame.to_sun.xyz);

@@ -5,6 +5,7 @@
 #include <crofton/render/rasterizer.hpp>
 #include <cstddef>
 
+#include "packed_vertex.hpp"
 #include "shaders/line.frag.h"
 #include "shaders/line.vert.h"
 #include "shaders/scene.frag.h"
@@ -30,14 +31,14 @@ Result<void> create_layout(Pipelines& pipelines) {
 // The draw's transform comes as attributes that step once an instance: software devices fetch those once for eight
 // vertices, and a storage buffer once for each.
 constexpr std::array<VkVertexInputBindingDescription, 2> kVertexBindings{{
-    {0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX},
+    {0, sizeof(PackedVertex), VK_VERTEX_INPUT_RATE_VERTEX},
     {1, sizeof(DrawTransform), VK_VERTEX_INPUT_RATE_INSTANCE},
 }};
 constexpr VkFormat kFloat4 = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr std::array<VkVertexInputAttributeDescription, 11> kVertexAttributes{{
-    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
-    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
-    {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(PackedVertex, position)},
+    {1, 0, VK_FORMAT_A2B10G10R10_SNORM_PACK32, offsetof(PackedVertex, normal)},
+    {2, 0, VK_FORMAT_A2B10G10R10_UNORM_PACK32, offsetof(PackedVertex, color)},
     {3, 1, kFloat4, offsetof(DrawTransform, to_clip)},
     {4, 1, kFloat4, offsetof(DrawTransform, to_clip) + 16},
     {5, 1, kFloat4, offsetof(DrawTransform, to_clip) + 32},

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
+#include "packed_vertex.hpp"
 #include "rasterizer_state.hpp"
 
 namespace crofton::render {
@@ -142,8 +143,11 @@ Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::spa
     Buffer new_vertices, new_indices;
     if (!indices.empty()) {
         const VulkanContext& context = state_->context;
+        Vector<PackedVertex> packed_vertices(vertices.size());
+        std::transform(vertices.begin(), vertices.end(), packed_vertices.begin(), packed);
         auto made_vertices =
-            create_static_buffer(context, vertices.data(), vertices.size_bytes(), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+            create_static_buffer(context, packed_vertices.data(), packed_vertices.size() * sizeof(PackedVertex),
+                                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
         if (!made_vertices) return tl::unexpected(std::move(made_vertices.error()));
         auto made_indices =
             create_static_buffer(context, indices.data(), indices.size_bytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
