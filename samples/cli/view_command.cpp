@@ -48,6 +48,7 @@ constexpr const char* kScriptHelp =
     "  click [640, 360], resize [800, 600]   in pixels\n"
     "  drop \"scene.glb\"                a file opened as if dropped on the window\n"
     "  screenshot \"a.png\"              the picture of this frame, with panels\n"
+    "  scale 2.0                       as if the window had come onto a display of that scale\n"
     "  lose_device true, quit true\n";
 constexpr const char* kExamples =
     "Examples:\n"

@@ -110,6 +110,7 @@ void Eye::handle(const Event& event) {
             }
             break;
         case Event::Kind::drop:
+        case Event::Kind::scale:
             break;
     }
 }

@@ -30,6 +30,10 @@ void Session::handle_events() {
 
 void Session::handle(const Event& event) {
     if (event.kind == Event::Kind::cursor) cursor_ = event.at;
+    if (event.kind == Event::Kind::scale) {
+        wanted_scale_ = static_cast<float>(event.at.x);
+        return;
+    }
     if (event.kind == Event::Kind::drop) {
         SceneRequest request;
         request.source = event.text;

@@ -43,6 +43,8 @@ Result<void> Session::build_interface() {
     }
     io.DisplaySize = pixels;
     ImGui::NewFrame();
+    const bool narrow = is_narrow(pixels);
+    const bool folds = std::exchange(folded_, narrow).value_or(false) != narrow;
     const render::ImageResource* inset = settings_.inset ? rasterizer_->native_image(1) : nullptr;
     const ImTextureID shown = inset != nullptr ? ui_->show(inset->view) : nullptr;
     const ImVec2 inset_size =
@@ -68,7 +70,8 @@ Result<void> Session::build_interface() {
                          is_recording_,
                          replaying_,
                          notices_,
-                         std::exchange(laid_out_, size) != size});
+                         std::exchange(laid_out_, size) != size,
+                         folds ? std::optional(narrow) : std::nullopt});
     ImGui::Render();
     if (auto begun = ui_commands_.begin(); !begun) return begun;
     if (auto recorded = ui_->record(ui_commands_.handle, *ImGui::GetDrawData()); !recorded) return recorded;

@@ -18,7 +18,7 @@ constexpr KeyHelp kMoving[] = {
 };
 constexpr KeyHelp kSeeing[] = {
     {"left click", "", "pick an instance; the sky: none"},
-    {"C", "C", "next colouring: lit, verdict, improper, collision, depth, shape"},
+    {"C", "C", "next colouring; what it means is said beside the statistics"},
     {"B", "B", "bounds of what is visible, as boxes"},
     {"O", "O", "what is culled, as red boxes"},
     {"T", "T", "bounds of the tree's nodes, level by level"},
@@ -43,10 +43,10 @@ constexpr KeyHelp kTime[] = {
     {"+ -", "+ -", "twice, half the speed of time"},
 };
 constexpr KeyHelp kFiles[] = {
-    {"R", "R", "record the camera's path; again: stop and save camera_path.json"},
+    {"R", "R", "record the camera's path; again: save camera_path.json"},
     {"F6", "F6", "replay the path last recorded or loaded"},
     {"F2", "F2", "save the picture as PNG"},
-    {"F5", "F5", "save statistics.json, statistics.csv and statistics_trace.json"},
+    {"F5", "F5", "save statistics as JSON, CSV and Chrome trace"},
     {"drop a file", "", "open it as the scene"},
     {"Escape, Ctrl+Q", "Escape Ctrl+Q", "quit"},
 };

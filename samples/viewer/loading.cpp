@@ -72,7 +72,9 @@ Result<void> Session::start_interface() {
     imgui_ = true;
     ImGui::GetIO().IniFilename = nullptr;
     if (window_) imgui_window_ = ImGui_ImplGlfw_InitForOther(window_->handle(), true);
-    apply_style(options_.scale > 0.0f ? options_.scale : window_ ? window_->content_scale() : 1.0f);
+    if (window_) wanted_scale_ = window_->content_scale();
+    scale_ = options_.scale > 0.0f ? options_.scale : wanted_scale_;
+    apply_style(scale_);
     return start_ui_renderer();
 }
 

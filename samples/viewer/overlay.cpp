@@ -41,32 +41,51 @@ void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage
                    const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades,
                    scene::InstanceId selected, bool show_frustum) {
     const scene::Scene& scene = stage.scene();
-    const auto verdicts = stage.pipeline().verdicts();
-    const auto boxes = stage.pipeline().bounds().boxes();
-    if (settings.outside)
-        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-            if (!scene.is_removed(i) && verdicts[i] == cull::Verdict::outside) lines.box(boxes[i], kOutside);
-    if (settings.bounds)
-        for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
+    legend_.clear();
+    draw_bounds(lines, settings, stage, frame);
     if (settings.tree_level >= 0) draw_tree_level(lines, stage.pipeline().tree(), settings.tree_level);
     contacts_ = separations_ = 0;
     if (settings.coloring == Coloring::collision && settings.collisions) {
+        legend_.push_back({"boxes that meet, and their centres", kPair});
         draw_pairs(lines, stage, frame);
+        legend_.push_back({"contacts between triangles", kContact, contacts_});
         draw_separations(lines, stage, frame);
+        legend_.push_back({"near misses, separating axis", kSeparation, separations_});
     }
     if (selected < scene.instance_count() && !scene.is_removed(selected)) {
-        lines.box(boxes[selected], kSelection);
+        legend_.push_back({"bound of the selected instance; its own axes", kSelection});
+        lines.box(stage.pipeline().bounds().boxes()[selected], kSelection);
         lines.axes(scene.world_boxes()[selected]);
     }
     const double reach = 1.5 * glm::length(stage.extent().half_extents());
-    if (show_frustum && cascades.size() < 2) lines.frustum(frame.camera, reach, kFrustum);
+    if (show_frustum && cascades.size() < 2) {
+        legend_.push_back({"view that culls", kFrustum});
+        lines.frustum(frame.camera, reach, kFrustum);
+    }
     if (show_frustum || settings.freeze)
         for (const Cascade& cascade : cascades)
             if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far, cascade.color);
 }
 
-void Overlay::draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const {
+void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Stage& stage,
+                          const pipeline::FrameStatistics& frame) {
+    const scene::Scene& scene = stage.scene();
+    const auto verdicts = stage.pipeline().verdicts();
+    const auto boxes = stage.pipeline().bounds().boxes();
+    if (settings.outside) {
+        legend_.push_back({"bounds of what is culled", kOutside});
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+            if (!scene.is_removed(i) && verdicts[i] == cull::Verdict::outside) lines.box(boxes[i], kOutside);
+    }
+    if (settings.bounds) {
+        legend_.push_back({"bounds of what is visible", kBound});
+        for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
+    }
+}
+
+void Overlay::draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) {
     if (tree.nodes().empty()) return;
+    legend_.push_back({"bounds of the tree's nodes", kTree});
     Aabb all;
     for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) all.include(tree.child_bounds(0, lane));
     if (level == 0 && !all.is_empty()) lines.box(obb_of(all), kTree);

@@ -1,5 +1,7 @@
 // What is drawn over the scene as lines: bounds, frusta, contacts.
 #pragma once
+#include <optional>
+
 #include "contact_finder.hpp"
 #include "line_list.hpp"
 #include "settings.hpp"
@@ -16,6 +18,13 @@ struct Cascade {
 // The camera's range [near, far or `reach`] in `count` parts, halfway between even and geometric spacing.
 [[nodiscard]] std::vector<Cascade> split_view(const Camera& camera, int count, double reach);
 
+// What a kind of line in the picture stands for.
+struct LineMeaning {
+    const char* name;
+    std::uint32_t color;
+    std::optional<std::uint64_t> count{};
+};
+
 class Overlay {
   public:
     // All lines that the settings ask for, for an eye at `eye`. `frame` is what culling said; its camera culled.
@@ -23,18 +32,23 @@ class Overlay {
               std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum);
     // Forgets what belongs to a scene that is gone.
     void clear() { finder_.clear(); }
+    // Of the lines last drawn.
+    [[nodiscard]] std::span<const LineMeaning> legend() const { return legend_; }
     [[nodiscard]] std::uint64_t contact_count() const { return contacts_; }
     [[nodiscard]] std::uint64_t separation_count() const { return separations_; }
 
   private:
+    void draw_bounds(LineList& lines, const Settings& settings, const Stage& stage,
+                     const pipeline::FrameStatistics& frame);
     // The root is level 0.
-    void draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level) const;
+    void draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level);
     void draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
     void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);
     void draw_separations(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
 
     ContactFinder finder_;
     std::vector<Segment> found_;
+    std::vector<LineMeaning> legend_;
     std::uint64_t contacts_ = 0, separations_ = 0;
 };
 

@@ -1,13 +1,13 @@
 #include "panels.hpp"
 
 #include <algorithm>
-#include <cinttypes>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "help_panel.hpp"
 #include "scene_panel.hpp"
+#include "shape_colors.hpp"
 #include "statistics_panel.hpp"
 #include "switches_panel.hpp"
 
@@ -24,25 +24,55 @@ ImVec4 display_color(std::uint32_t rgba) {
     return ImGui::ColorConvertU32ToFloat4(rgba);
 }
 
+// A sample of a colour at the line's beginning; `height` of a line of text.
+void sample(const ImVec4& color, float height) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float font = ImGui::GetFontSize();
+    const float top = at.y + 0.5f * (1.0f - height) * font;
+    ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + font, top + height * font),
+                                              ImGui::GetColorU32(color));
+    ImGui::Dummy(ImVec2(font, font));
+    ImGui::SameLine();
+}
+
+// From slivers to equilateral triangles, as color_by_shape() has them.
+void shape_legend() {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFontSize();
+    constexpr int kSteps = 32;
+    for (int i = 0; i < kSteps; ++i) {
+        const float left = width * static_cast<float>(i) / kSteps, right = width * static_cast<float>(i + 1) / kSteps;
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            ImVec2(at.x + left, at.y), ImVec2(at.x + right, at.y + height),
+            ImGui::GetColorU32(display_color(shape_color((static_cast<float>(i) + 0.5f) / kSteps))));
+    }
+    ImGui::Dummy(ImVec2(width, height));
+    ImGui::TextUnformatted("0: sliver");
+    ImGui::SameLine(ImGui::GetCursorPosX() + width - ImGui::CalcTextSize("equilateral: 1").x);
+    ImGui::TextUnformatted("equilateral: 1");
+}
+
 void legend(const PanelInput& input) {
     for (const Painter::Count& tint : input.painter.counts()) {
-        ImGui::ColorButton(tint.name, display_color(tint.color), ImGuiColorEditFlags_NoTooltip,
-                           ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
-        ImGui::SameLine();
-        ImGui::Text("%s: %" PRIu64, tint.name, tint.instances);
+        if (tint.instances == 0 && input.settings.coloring == Coloring::depth) continue;
+        sample(display_color(tint.color), 1.0f);
+        ImGui::Text("%s: %s", tint.name, with_thousands(tint.instances).c_str());
+    }
+    for (const LineMeaning& line : input.overlay.legend()) {
+        sample(display_color(line.color), 0.2f);
+        if (line.count)
+            ImGui::Text("%s: %s", line.name, with_thousands(*line.count).c_str());
+        else
+            ImGui::TextUnformatted(line.name);
     }
     if (input.cascades.size() > 1)
         for (std::size_t i = 0; i < input.cascades.size(); ++i) {
             const Cascade& cascade = input.cascades[i];
-            ImGui::TextColored(display_color(cascade.color), "view %zu: %.1f to %.1f m, %" PRIu64 " visible", i + 1,
-                               cascade.camera.near, cascade.camera.far, cascade.visible);
+            sample(display_color(cascade.color), 0.2f);
+            ImGui::Text("view %zu: %.1f to %.1f m, %s visible", i + 1, cascade.camera.near, cascade.camera.far,
+                        with_thousands(cascade.visible).c_str());
         }
-    if (input.settings.coloring == Coloring::shape)
-        ImGui::TextUnformatted("triangles: red = slivers, green = equilateral");
-    if (input.settings.coloring == Coloring::collision) {
-        ImGui::Text("contacts between triangles: %" PRIu64, input.overlay.contact_count());
-        ImGui::Text("near misses with their separating axis: %" PRIu64, input.overlay.separation_count());
-    }
+    if (input.settings.coloring == Coloring::shape) shape_legend();
 }
 
 void heading(const PanelInput& input) {
@@ -83,6 +113,7 @@ void main_panel(const PanelInput& input, PanelWish& wish) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), when);
     ImGui::SetNextWindowSize(ImVec2(main_panel_width(), display.y - 2.0f * kMargin), when);
+    if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
     if (ImGui::Begin("Crofton")) {
         heading(input);
         statistics_panel(input);
@@ -98,6 +129,7 @@ void main_panel(const PanelInput& input, PanelWish& wish) {
 void inset_panel(const PanelInput& input, PanelWish& wish) {
     if (input.inset == nullptr) return;
     const ImVec2 display = ImGui::GetIO().DisplaySize;
+    if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
     const float wide = input.inset_size.x + 2.0f * ImGui::GetStyle().WindowPadding.x;
     const float high = input.inset_size.y + ImGui::GetFrameHeight() + 2.0f * ImGui::GetStyle().WindowPadding.y;
     ImGui::SetNextWindowPos(ImVec2(display.x - wide - kMargin, display.y - high - kMargin),
@@ -114,15 +146,22 @@ float main_panel_width() {
     return std::min(27.0f * ImGui::GetFontSize(), 0.52f * ImGui::GetIO().DisplaySize.x);
 }
 
+bool is_narrow(const ImVec2& display) {
+    return display.x < 32.0f * ImGui::GetFontSize() || display.y < 16.0f * ImGui::GetFontSize();
+}
+
 void apply_style(float scale) {
-    ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
+    style = ImGuiStyle();
+    ImGui::StyleColorsDark();
     style.WindowRounding = 4.0f;
+    style.AntiAliasedLinesUseTex = false;  // textures are not filtered
     style.Colors[ImGuiCol_WindowBg].w = 0.88f;
     style.ScaleAllSizes(scale);
     // Drawn at its size, not enlarged.
     ImFontConfig font;
     font.SizePixels = std::round(kFontPixels * scale);
+    ImGui::GetIO().Fonts->Clear();
     ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 

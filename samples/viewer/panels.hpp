@@ -58,7 +58,8 @@ struct PanelInput {
     const std::string& device;
     bool recording, replaying;
     const std::deque<Notice>& notices;
-    bool relayout;  // the window has another size: every panel goes back to its place
+    bool relayout;             // the window or the texts have another size: every panel goes back to its place
+    std::optional<bool> fold;  // where that leaves no room for a picture beside the panels, or room again
 };
 
 // What the user asked for with a button, and where the panels lie.
@@ -71,7 +72,10 @@ struct PanelWish {
     std::optional<scene::InstanceId> select;
 };
 
+// Sizes and fonts for a display of this scale; the font's texture must be made anew.
 void apply_style(float scale);
+// True where panels side by side would leave nothing of the picture.
+[[nodiscard]] bool is_narrow(const ImVec2& display);
 [[nodiscard]] float main_panel_width();
 [[nodiscard]] PanelWish draw_panels(const PanelInput& input);
 

@@ -1,7 +1,8 @@
 #include "scene_panel.hpp"
 
 #include <algorithm>
-#include <cinttypes>
+
+#include "statistics_panel.hpp"
 
 namespace crofton::viewer {
 namespace {
@@ -64,13 +65,14 @@ void show_selection(const PanelInput& input) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::Text("instance %u of node %u, mesh %u %s", instance, scene.node_of(instance), mesh,
                 scene.mesh_name(mesh).c_str());
-    ImGui::Text("%zu triangles, bound %s", scene.mesh(mesh).triangle_count(),
+    ImGui::Text("%s triangles, bound %s", with_thousands(scene.mesh(mesh).triangle_count()).c_str(),
                 verdict_name(input.stage.pipeline().verdicts()[instance]));
     const glm::vec3 edge = 2.0f * box.half_extents;
-    ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m at %.2f %.2f %.2f m", static_cast<double>(edge.x),
-                static_cast<double>(edge.y), static_cast<double>(edge.z), box.center.x, box.center.y, box.center.z);
-    ImGui::Text("volume %.3g m\u00b3, surface %.3g m\u00b2, edges a+b+c %.3g m", volume(box), surface_area(box),
-                edge_sum(box));
+    ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m", static_cast<double>(edge.x), static_cast<double>(edge.y),
+                static_cast<double>(edge.z));
+    ImGui::Text("centre %.2f %.2f %.2f m", box.center.x, box.center.y, box.center.z);
+    ImGui::Text("volume %.3g m\u00b3, surface %.3g m\u00b2", volume(box), surface_area(box));
+    ImGui::Text("sum of its three edges %.3g m", edge_sum(box));
     if (input.pick && input.pick->instance == instance)
         ImGui::Text("picked: triangle %u, %.2f m away", input.pick->triangle, input.pick->distance);
     ImGui::PopTextWrapPos();
@@ -116,9 +118,12 @@ void scene_panel(const PanelInput& input, PanelWish& wish) {
     const float width = std::min(26.0f * font, std::max(free, 8.0f * font));
     ImGui::SetNextWindowPos(ImVec2(display.x - width - 8.0f, 8.0f), when);
     ImGui::SetNextWindowSize(ImVec2(width, std::min(18.0f * font, 0.45f * display.y)), when);
+    if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
     if (ImGui::Begin("Scene")) {
-        ImGui::TextWrapped("%zu nodes, %zu instances, %" PRIu64 " triangles", input.stage.scene().node_count(),
-                           input.stage.scene().instance_count(), input.stage.triangle_count());
+        ImGui::TextWrapped("%s nodes, %s instances, %s triangles",
+                           with_thousands(input.stage.scene().node_count()).c_str(),
+                           with_thousands(input.stage.scene().instance_count()).c_str(),
+                           with_thousands(input.stage.triangle_count()).c_str());
         show_selection(input);
         ImGui::Separator();
         if (ImGui::BeginChild("nodes")) show_children(input, wish, scene::kNone, 0);

@@ -50,15 +50,19 @@ Result<Action> parse_action(const std::string& name, const nlohmann::json& value
         action.at = {value[0].get<int>(), value[1].get<int>()};
         if (name == "resize" && (action.at.x < 1 || action.at.y < 1 || action.at.x > 16384 || action.at.y > 16384))
             return bad_event("a size must be from 1 to 16384");
+    } else if (name == "scale") {
+        if (!value.is_number() || !(value.get<double>() >= 0.5 && value.get<double>() <= 8.0))
+            return bad_event("'scale' takes a number from 0.5 to 8");
+        action.event.kind = Event::Kind::scale;
+        action.event.at = glm::dvec2(value.get<double>());
     } else if (name == "lose_device") {
         action.kind = Action::Kind::lose_device;
     } else if (name == "quit") {
         action.kind = Action::Kind::quit;
     } else {
-        return bad_event(
-            "unknown action '" + name +
-            "'; there are key, key_down, key_up, set, camera, click, resize, drop, screenshot, lose_device "
-            "and quit");
+        return bad_event("unknown action '" + name +
+                         "'; there are key, key_down, key_up, set, camera, click, resize, scale, drop, screenshot, "
+                         "lose_device and quit");
     }
     return action;
 }

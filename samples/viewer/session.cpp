@@ -16,7 +16,7 @@
 namespace crofton::viewer {
 namespace {
 
-constexpr VkExtent2D kInsetSize{400, 225};
+constexpr double kInsetAspect = 16.0 / 9.0;
 // A driver that loses its device again and again is given up on.
 constexpr int kMaxRecoveries = 5;
 // How long a message stays.
@@ -39,7 +39,7 @@ Camera from_outside(const Camera& camera, double reach) {
     outside.position = bounds.center() - outside.forward * (radius / std::sin(0.5 * outside.fov_y));
     outside.near = std::max(radius * 0.01, 1e-3);
     outside.far = 20.0 * radius;
-    outside.aspect = static_cast<double>(kInsetSize.width) / kInsetSize.height;
+    outside.aspect = kInsetAspect;
     return outside;
 }
 
@@ -74,6 +74,7 @@ Result<void> Session::try_turn() {
     if (std::exchange(lose_device_, false)) return render::vulkan_failure(VK_ERROR_DEVICE_LOST, "script");
     if (auto followed = follow_settings(); !followed) return followed;
     if (auto resized = resize(); !resized) return resized;
+    if (auto scaled = follow_scale(); !scaled) return scaled;
     advance(seconds);
     if (auto culled = cull(); !culled) return culled;
     if (auto started = start_drawing(); !started) return started;
@@ -106,6 +107,16 @@ Result<void> Session::resize() {
     stale_size_ = false;
     eye_.camera.aspect = static_cast<double>(wanted_size_.width) / wanted_size_.height;
     return ui_->set_target(rasterizer_->native_image()->view, wanted_size_);
+}
+
+// The window may come onto a display of another scale.
+Result<void> Session::follow_scale() {
+    const float wanted = options_.scale > 0.0f ? options_.scale : wanted_scale_;
+    if (wanted == scale_) return {};
+    scale_ = wanted;
+    apply_style(scale_);
+    laid_out_ = glm::uvec2(0);
+    return ui_->upload_font();
 }
 
 void Session::advance(double seconds) {
@@ -168,7 +179,7 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
         frame.environment.sky = false;
         frame.environment.horizon = glm::vec3(0.012f, 0.014f, 0.02f);
     } else {
-        const bool hazy = stage_->source().unlit.empty();
+        const bool hazy = stage_->source().unlit.empty() && picture == 0;
         const double distance = hazy ? 2.5 * glm::length(stage_->extent().half_extents()) : 0.0;
         frame.environment.haze_distance = static_cast<float>(distance);
     }
@@ -177,8 +188,13 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
 
 Result<void> Session::start_drawing() {
     if (settings_.inset) {
-        if (auto sized = rasterizer_->resize(kInsetSize.width, kInsetSize.height, 1); !sized) return sized;
-        const double reach = 1.5 * glm::length(stage_->extent().half_extents());
+        // As texts are scaled, but no larger than a third of the picture.
+        const double width = std::min(400.0 * static_cast<double>(scale_), wanted_size_.width / 3.0);
+        const auto columns = static_cast<std::uint32_t>(std::max(width, 16.0));
+        const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
+        if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
+        // What most triangles are in; the far landscape would make it a speck.
+        const double reach = 2.0 * glm::length(stage_->focus().half_extents());
         if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }

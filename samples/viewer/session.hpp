@@ -66,6 +66,7 @@ class Session {
     [[nodiscard]] bool unattended() const { return options_.frames > 0 || !options_.script.empty(); }
     [[nodiscard]] Result<void> try_turn();
     [[nodiscard]] Result<void> resize();
+    [[nodiscard]] Result<void> follow_scale();
     void advance(double seconds);
     [[nodiscard]] Result<void> cull();
     [[nodiscard]] Result<void> start_drawing();
@@ -117,10 +118,12 @@ class Session {
     double seconds_ = 0.0;     // that the session has run
     std::deque<Notice> notices_;
     VkExtent2D wanted_size_{};
+    float wanted_scale_ = 1.0f, scale_ = 0.0f;  // of texts and panels: the display's, and what they have
     Clock::time_point last_turn_ = Clock::now(), draw_start_;
     double ui_us_ = 0.0;
     PanelWish wish_;
     glm::uvec2 laid_out_{0};  // the picture's size that the panels lie in
+    std::optional<bool> folded_;
     glm::dvec2 cursor_{0.0};
     std::vector<std::string> screenshots_;  // to be taken this turn
     nlohmann::json pictures_ = nlohmann::json::array();

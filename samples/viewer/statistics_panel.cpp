@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cfloat>
-#include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <string>
@@ -26,10 +26,10 @@ constexpr StatisticsRow kMainRows[] = {
     {"triangles submitted", "triangles_submitted", "of the visible instances"},
     {"triangles in view", "triangles_passed", "that meet the view"},
     {"colliding pairs", "colliding_pairs", "of instances whose boxes meet, where one of them moves"},
-    {"update \xb5s", "update_us", "to move what moves, and to follow it in the tree"},
-    {"cull \xb5s", "cull_us", "to find what is visible"},
-    {"collide \xb5s", "collide_us", "to find what collides"},
-    {"draw \xb5s", "draw_us", "of the last frame: from submitting until the device is done"},
+    {"update \u00b5s", "update_us", "to move what moves, and to follow it in the tree"},
+    {"cull \u00b5s", "cull_us", "to find what is visible"},
+    {"collide \u00b5s", "collide_us", "to find what collides"},
+    {"draw \u00b5s", "draw_us", "of the last frame: from submitting until the device is done"},
 };
 constexpr StatisticsRow kMoreRows[] = {
     {"triangles clipped", "triangles_clipped", "predicted: what is left of the submitted ones after clipping"},
@@ -55,30 +55,15 @@ const pipeline::StatisticsColumn& column_named(const char* name) {
     return kByName.at(name);
 }
 
-// With blanks between thousands, ending at the column's right edge.
-void number(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.0f", value);
-    std::string text;
-    const std::string plain = digits;
-    for (std::size_t i = 0; i < plain.size(); ++i) {
-        if (i > 0 && (plain.size() - i) % 3 == 0) text += ' ';
-        text += plain[i];
-    }
+// Ends at the column's right edge.
+void right_aligned(const std::string& text) {
     const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
     if (room > 0.0f) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
     ImGui::TextUnformatted(text.c_str());
 }
 
-// ImGui wants UTF-8, sources are plain ASCII.
-std::string utf8(const char* latin) {
-    std::string text;
-    for (; *latin != 0; ++latin) {
-        const auto c = static_cast<unsigned char>(*latin);
-        if (c >= 0x80) text += static_cast<char>(0xc0 | c >> 6);
-        text += static_cast<char>(c >= 0x80 ? 0x80 | (c & 0x3f) : c);
-    }
-    return text;
+void number(double value) {
+    right_aligned(with_thousands(static_cast<std::uint64_t>(std::llround(value))));
 }
 
 // The device's numbers are those of the last frame that it has drawn.
@@ -89,16 +74,22 @@ bool is_counted_later(const std::string& column) {
 void table(const char* id, const PanelInput& input, std::span<const StatisticsRow> rows) {
     const bool compare = input.other != nullptr;
     if (!ImGui::BeginTable(id, 3, ImGuiTableFlags_RowBg)) return;
-    ImGui::TableSetupColumn("per frame", ImGuiTableColumnFlags_WidthStretch, 2.0f);
-    ImGui::TableSetupColumn(compare ? "A" : "now", ImGuiTableColumnFlags_WidthStretch, 1.0f);
-    ImGui::TableSetupColumn(compare ? "B" : "mean of 60", ImGuiTableColumnFlags_WidthStretch, 1.0f);
-    ImGui::TableHeadersRow();
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 2.0f);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("per frame");
+    ImGui::TableNextColumn();
+    right_aligned(compare ? "A" : "now");
+    ImGui::TableNextColumn();
+    right_aligned(compare ? "B" : "mean of 60");
     for (const StatisticsRow& row : rows) {
         const Value value = column_named(row.column).value;
         const bool later = is_counted_later(row.column);
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(utf8(row.label).c_str());
+        ImGui::TextUnformatted(row.label);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.hint);
         ImGui::TableNextColumn();
         if (!later)
@@ -119,13 +110,23 @@ void prediction(const PanelInput& input) {
     const Frame& frame = *input.drawn;
     const bool same = frame.triangles_clipped == frame.gpu->clipping_primitives;
     ImGui::TextColored(same ? ImVec4(0.4f, 0.9f, 0.4f, 1.0f) : ImVec4(1.0f, 0.5f, 0.3f, 1.0f),
-                       "clipped: predicted %" PRIu64 " %s %" PRIu64 " counted", frame.triangles_clipped,
-                       same ? "=" : "but", frame.gpu->clipping_primitives);
+                       "clipped: predicted %s %s %s counted", with_thousands(frame.triangles_clipped).c_str(),
+                       same ? "=" : "but", with_thousands(frame.gpu->clipping_primitives).c_str());
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("triangles that clipping leaves, as computed on the CPU and as the device's counter says");
 }
 
 }  // namespace
+
+std::string with_thousands(std::uint64_t value) {
+    const std::string digits = std::to_string(value);
+    std::string text;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0) text += ' ';
+        text += digits[i];
+    }
+    return text;
+}
 
 std::span<const StatisticsRow> main_rows() {
     return kMainRows;
@@ -157,8 +158,8 @@ void history_plots(const Journal& journal) {
     ImGui::TextDisabled("last %zu frames, each from 0 up", Journal::kHistory);
     plot("frame", "%.1f ms", [](const JournalEntry& e) { return e.frame_us * 1e-3; });
     plot("draw", "%.1f ms", [](const JournalEntry& e) { return e.frame.draw_us * 1e-3; });
-    plot("cull", "%.0f us", [](const JournalEntry& e) { return e.frame.cull_us; });
-    plot("collide", "%.0f us", [](const JournalEntry& e) { return e.frame.collide_us; });
+    plot("cull", "%.0f \u00b5s", [](const JournalEntry& e) { return e.frame.cull_us; });
+    plot("collide", "%.0f \u00b5s", [](const JournalEntry& e) { return e.frame.collide_us; });
     plot("visible", "%.0f instances", [](const JournalEntry& e) { return static_cast<double>(e.frame.visible); });
     plot("in view", "%.0f triangles",
          [](const JournalEntry& e) { return static_cast<double>(e.frame.triangles_passed); });

@@ -13,6 +13,9 @@ struct StatisticsRow {
 [[nodiscard]] std::span<const StatisticsRow> main_rows();
 [[nodiscard]] std::span<const StatisticsRow> more_rows();
 
+// With blanks between thousands.
+[[nodiscard]] std::string with_thousands(std::uint64_t value);
+
 // The main rows: this frame and the mean of the last 60; or A and B where two methods are compared.
 void statistics_panel(const PanelInput& input);
 void more_statistics(const PanelInput& input);

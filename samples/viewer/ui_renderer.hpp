@@ -10,11 +10,14 @@ namespace crofton::viewer {
 
 class UiRenderer {
   public:
-    // Uploads ImGui's font atlas: an ImGui context with its fonts is current.
+    // Uploads the font atlas: an ImGui context with its fonts is current.
     [[nodiscard]] static Result<std::unique_ptr<UiRenderer>> create(const render::VulkanContext& context);
     ~UiRenderer();
     UiRenderer(const UiRenderer&) = delete;
     UiRenderer& operator=(const UiRenderer&) = delete;
+
+    // Takes over ImGui's font atlas after it has changed; nothing is being drawn.
+    [[nodiscard]] Result<void> upload_font();
 
     // The picture to draw over; again after each change of its size.
     [[nodiscard]] Result<void> set_target(VkImageView picture, VkExtent2D extent);
@@ -29,7 +32,6 @@ class UiRenderer {
     explicit UiRenderer(const render::VulkanContext& context) : context_(context) {}
     [[nodiscard]] Result<void> create_layouts();
     [[nodiscard]] Result<void> create_pipeline();
-    [[nodiscard]] Result<void> upload_font();
     [[nodiscard]] Result<void> upload_lists(const ImDrawData& data);
     void point_at(VkDescriptorSet set, VkImageView view) const;
 

@@ -72,6 +72,9 @@ struct WindowCallbacks {
     static void scroll(GLFWwindow* window, double x, double y) {
         of(window).events_.push_back({Event::Kind::scroll, {}, 0, {x, y}});
     }
+    static void scale(GLFWwindow* window, float x, float y) {
+        of(window).events_.push_back({Event::Kind::scale, {}, 0, {x, y}});
+    }
     static void drop(GLFWwindow* window, int count, const char** paths) {
         for (int i = 0; i < count; ++i) of(window).events_.push_back({Event::Kind::drop, paths[i], 0, {}});
     }
@@ -98,6 +101,7 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, int wid
     glfwSetCursorPosCallback(window->window_, WindowCallbacks::cursor);
     glfwSetScrollCallback(window->window_, WindowCallbacks::scroll);
     glfwSetDropCallback(window->window_, WindowCallbacks::drop);
+    glfwSetWindowContentScaleCallback(window->window_, WindowCallbacks::scale);
     double x = 0.0, y = 0.0;
     glfwGetCursorPos(window->window_, &x, &y);
     window->cursor_ = WindowCallbacks::in_pixels(window->window_, x, y);

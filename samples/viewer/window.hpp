@@ -13,10 +13,10 @@ namespace crofton::viewer {
 // What the user did, whether by hand or by script. Keys by name: "A", "1", "F5", "Space", "Ctrl+S" as a modifier
 // prefix.
 struct Event {
-    enum class Kind { key_down, key_up, button_down, button_up, cursor, scroll, drop } kind = Kind::key_down;
+    enum class Kind { key_down, key_up, button_down, button_up, cursor, scroll, drop, scale } kind = Kind::key_down;
     std::string text;    // the key's name, or a dropped file
     int button = 0;      // 0 left, 1 right, 2 middle
-    glm::dvec2 at{0.0};  // cursor in pixels of the picture, or the wheel's steps
+    glm::dvec2 at{0.0};  // cursor in pixels of the picture, the wheel's steps, or the display's scale
 };
 
 class Window {

@@ -104,8 +104,8 @@ TEST_SUITE("viewer/docs") {
             }
             check_clean(view(events, {}, false));
         }
-        CHECK(kinds == std::set<std::string>{"key", "key_down", "key_up", "set", "camera", "click", "resize", "drop",
-                                             "screenshot", "lose_device", "quit"});
+        CHECK(kinds == std::set<std::string>{"key", "key_down", "key_up", "set", "camera", "click", "resize", "scale",
+                                             "drop", "screenshot", "lose_device", "quit"});
         // The same kinds are in the help.
         const CliRun help = run_cli("view --help");
         for (const std::string& kind : kinds) CHECK_MESSAGE(help.out.find(kind) != std::string::npos, kind);

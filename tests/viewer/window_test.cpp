@@ -83,4 +83,45 @@ TEST_SUITE("viewer/window") {
         CHECK(covered[1] > 3 * covered[0] / 2);
         CHECK(covered[1] < 4 * covered[0]);
     }
+    TEST_CASE("a window that comes onto another display takes over its scale, and back; --scale has the last word") {
+        json script{set(0, {{"paused", true}}), {{"frame", 0}, {"resize", {1600, 900}}}};
+        const auto at = [&](int frame, double scale, const char* name) {
+            script.push_back({{"frame", frame}, {"scale", scale}});
+            script.push_back(set(frame, {{"panels", true}}));
+            script.push_back(shot(frame + 1, std::string(name) + ".png"));
+            script.push_back(set(frame + 2, {{"panels", false}}));
+            script.push_back(shot(frame + 3, std::string(name) + "_plain.png"));
+        };
+        at(1, 1.0, "one"), at(5, 2.0, "two"), at(9, 1.0, "back");
+        const auto covered = [](const std::string& name) {
+            return Pixels(scratch().file(name + ".png")).different(Pixels(scratch().file(name + "_plain.png")));
+        };
+        const auto nearly = [](int a, int b) { return std::abs(a - b) < b / 20; };
+        check_clean(view(script, {}, false));
+        const int one = covered("one"), two = covered("two");
+        CHECK(two > 3 * one / 2);
+        CHECK(nearly(covered("back"), one));
+        check_clean(view(script, "--scale 2", false));
+        for (const char* name : {"one", "two", "back"}) CHECK(nearly(covered(name), two));
+    }
+    TEST_CASE("panels fold where a window is too small for them and a picture, and unfold again") {
+        const auto shots = [](int frame, int width, int height, const std::string& name) {
+            return json{{{"frame", frame}, {"resize", {width, height}}},
+                        set(frame, {{"panels", true}}),
+                        shot(frame + 2, name + ".png"),
+                        set(frame + 3, {{"panels", false}}),
+                        shot(frame + 4, name + "_plain.png")};
+        };
+        json script{set(0, {{"paused", true}})};
+        for (const json& event : shots(1, 320, 200, "small")) script.push_back(event);
+        for (const json& event : shots(6, 1280, 720, "large")) script.push_back(event);
+        check_clean(view(script, {}, false));
+        const auto share = [](const std::string& name) {
+            const Pixels panels(scratch().file(name + ".png")), plain(scratch().file(name + "_plain.png"));
+            return static_cast<double>(panels.different(plain)) / (panels.width * panels.height);
+        };
+        CHECK(share("small") < 0.2);
+        CHECK(share("large") > 0.2);
+        CHECK(share("large") < 0.5);
+    }
 }
