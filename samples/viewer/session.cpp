@@ -188,8 +188,8 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
 
 Result<void> Session::start_drawing() {
     if (settings_.inset) {
-        // As texts are scaled, but no larger than a third of the picture.
-        const double width = std::min(400.0 * static_cast<double>(scale_), wanted_size_.width / 3.0);
+        // As texts are scaled, but no wider than half the picture.
+        const double width = std::min(400.0 * static_cast<double>(scale_), 0.45 * wanted_size_.width);
         const auto columns = static_cast<std::uint32_t>(std::max(width, 16.0));
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
         if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;

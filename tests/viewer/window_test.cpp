@@ -9,10 +9,10 @@ TEST_SUITE("viewer/window") {
         CHECK(run_cli("view --no-window --screenshot x.png").status == 2);
         CHECK(run_cli("view --size big --after 1").status == 2);
         const CliRun missing =
-            run_cli("view nowhere.glb --no-window --after 1 --screenshot " + scratch().file("none.png"));
+            run_cli("view nowhere.glb --no-window --after 1 --screenshot " + scratch().file("never.png"));
         CHECK(missing.status == 2);
         CHECK(missing.err.find("nowhere.glb") != std::string::npos);
-        CHECK_FALSE(std::filesystem::exists(scratch().file("none.png")));
+        CHECK_FALSE(std::filesystem::exists(scratch().file("never.png")));
         write_contents(scratch().file("bad.json"), R"({"events": [{"frame": 0, "set": {"coloring": "plaid"}}]})");
         const CliRun script = run_cli("view --no-window --script " + scratch().file("bad.json"));
         CHECK(script.status == 2);
