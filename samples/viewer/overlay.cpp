@@ -53,7 +53,7 @@ void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage
         legend_.push_back({"near misses, separating axis", kSeparation, separations_});
     }
     if (selected < scene.instance_count() && !scene.is_removed(selected)) {
-        legend_.push_back({"bound of the selected instance; its own axes", kSelection});
+        legend_.push_back({"its bound and its own axes", kSelection});
         lines.box(stage.pipeline().bounds().boxes()[selected], kSelection);
         lines.axes(scene.world_boxes()[selected]);
     }

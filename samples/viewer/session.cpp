@@ -194,7 +194,7 @@ Result<void> Session::start_drawing() {
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
         if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
         // What most triangles are in; the far landscape would make it a speck.
-        const double reach = 2.0 * glm::length(stage_->focus().half_extents());
+        const double reach = glm::length(stage_->focus().half_extents());
         if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }

@@ -83,7 +83,7 @@ TEST_SUITE("viewer/window") {
         CHECK(covered[1] > 3 * covered[0] / 2);
         CHECK(covered[1] < 4 * covered[0]);
     }
-    TEST_CASE("a window that comes onto another display takes over its scale, and back; --scale has the last word") {
+    TEST_CASE("a window that comes onto another display takes over its scale, and back, unless --scale says otherwise") {
         json script{set(0, {{"paused", true}}), {{"frame", 0}, {"resize", {1600, 900}}}};
         const auto at = [&](int frame, double scale, const char* name) {
             script.push_back({{"frame", frame}, {"scale", scale}});
