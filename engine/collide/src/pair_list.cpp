@@ -32,6 +32,7 @@ void PairList::add(std::span<const std::uint32_t> first, std::span<const std::ui
 }
 
 // Partners of one item stand together but in any order: most have none or few, and insertion mends those in one pass.
+// One number a pair: whether items or only partners differ is not worth a branch.
 void PairList::finish(Vector<Pair>& sorted) const {
     constexpr std::size_t kFew = 12;
     std::size_t begin = 0;
@@ -41,10 +42,16 @@ void PairList::finish(Vector<Pair>& sorted) const {
                       sorted.begin() + static_cast<std::ptrdiff_t>(end));
         begin = end;
     }
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const auto key = [](const Pair& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
+    std::uint64_t before = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
         const Pair pair = sorted[i];
+        if (key(pair) >= before) {
+            before = key(pair);
+            continue;
+        }
         std::size_t j = i;
-        for (; j > 0 && pair < sorted[j - 1]; --j) sorted[j] = sorted[j - 1];
+        for (; j > 0 && key(pair) < key(sorted[j - 1]); --j) sorted[j] = sorted[j - 1];
         sorted[j] = pair;
     }
 }
