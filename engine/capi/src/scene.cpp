@@ -1,19 +1,11 @@
 #include <crofton/capi/scene.h>
 
-#include <crofton/scene/scene.hpp>
-
-#include "call.hpp"
 #include "convert.hpp"
 #include "mesh.hpp"
+#include "scene.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-struct crofton_scene {
-    static constexpr std::uint32_t kKind = 0x43724f01;
-    Header header;
-    scene::Scene scene{};
-};
 
 namespace crofton::capi {
 

@@ -9,6 +9,7 @@
  */
 #ifndef CROFTON_CAPI_CROFTON_H
 #define CROFTON_CAPI_CROFTON_H
+#include <crofton/capi/bake.h>
 #include <crofton/capi/base.h>
 #include <crofton/capi/collide.h>
 #include <crofton/capi/contacts.h>
