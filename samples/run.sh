@@ -4,6 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 third_party/install.sh
+[[ -x build/release/bin/crofton ]] || echo "Building; the first time this takes ten minutes of one core." >&2
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 if ! { cmake --preset release && cmake --build --preset release --target crofton_cli; } >"$log" 2>&1; then

@@ -244,6 +244,12 @@ class FramesRun {
 };
 
 constexpr const char* kExamples =
+    "The table, a line per frame: instances whose bound meets the view (visible), meets its surface\n"
+    "(straddle), or does so while the object's triangles lie inside or outside as a whole (improper); tree\n"
+    "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
+    "clipping leaves (clipped); pairs of instances whose boxes meet; microseconds to update, cull, collide\n"
+    "(hits) and draw.\n\n"
+    "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written.\n\n"
     "Examples:\n"
     "  crofton frames                                     the built-in town, 120 frames around it\n"
     "  crofton frames town --camera street --verify       every frame checked by brute force\n"

@@ -146,6 +146,11 @@ void add_lines_command(CLI::App& app, Outcome& outcome) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("lines", "Compare the ways to draw global lines on a scene");
     command->footer(
+        "Each way of drawing uniform lines counts the scene's surface S, a number known exactly, as\n"
+        "S = crossings a line * F / 2, where F is the surface of the body that the lines fill (docs/theory.md).\n"
+        "Columns: lines a second; crossings a line, and their deviation; lines that meet nothing (wasted); the\n"
+        "relative error of an estimate of S; 1 / (error^2 seconds), which does not depend on how many lines\n"
+        "were spent (efficiency).\n\n"
         "Examples:\n"
         "  crofton lines                       the built-in town\n"
         "  crofton lines level.wad --map MAP07\n"

@@ -21,7 +21,7 @@ if(failed)
     message(FATAL_ERROR "dpkg --install: ${said}")
 endif()
 foreach(file usr/include/crofton/cull/cull.hpp usr/include/crofton/capi/crofton.h usr/share/doc/crofton/LICENSE
-        usr/share/doc/crofton/integrate.md)
+        usr/share/doc/crofton/README.md usr/share/doc/crofton/docs/integrate.md)
     if(NOT EXISTS ${ROOT}/${file})
         message(FATAL_ERROR "the package lacks ${file}")
     endif()
