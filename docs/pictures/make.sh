@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the README's pictures anew, beside this script. Needs a build (tests/run.sh or samples/run.sh), and Chromium for
+# Makes the pictures of the README and of theory.md anew, beside this script. Needs a build (tests/run.sh or samples/run.sh), and Chromium for
 # the report's.   docs/pictures/make.sh [CROFTON]
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -12,6 +12,7 @@ trap 'rm -rf "$work"' EXIT
 cp "$work"/town/*0003.png town.png
 "$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
 "$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
+./crofton.py >crofton.svg
 if command -v chromium >/dev/null; then
     "$crofton" frames town --frames 120 --size 480x270 --verify --report "$work/report.html"
     chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" \
