@@ -6,6 +6,7 @@
 
 #include "assets/data_uri.hpp"
 #include "assets/file.hpp"
+#include "assets/json_syntax.hpp"
 
 namespace crofton::assets {
 namespace {
@@ -83,7 +84,12 @@ bool nested_too_deeply(std::string_view text) {
 
 Result<Json> parse_json(std::string_view text) {
     Json root = Json::parse(text.begin(), text.end(), nullptr, false);
-    if (root.is_discarded()) return fail(ErrorCode::parse, kNoItem, "its JSON is damaged");
+    if (root.is_discarded()) {
+        const std::size_t end = syntax_error_position(text).value_or(text.size());
+        return fail(ErrorCode::parse, kNoItem,
+                    "its JSON is damaged " + (end == text.size() ? std::string("or cut off: it ends too early")
+                                                                 : "at byte " + std::to_string(end)));
+    }
     const Json* asset = member(root, "asset");
     const Json* version = asset ? member(*asset, "version") : nullptr;
     if (!version || !version->is_string()) return fail(ErrorCode::parse, kNoItem, "no glTF: asset.version is missing");

@@ -1,48 +1,23 @@
 #include "script_lines.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+
+#include "assets/json_syntax.hpp"
 
 namespace crofton::viewer {
 namespace {
-
-using nlohmann::json;
 
 std::size_t line_at(const std::string& text, std::size_t position) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(position, text.size()));
     return 1 + static_cast<std::size_t>(std::count(text.begin(), end, '\n'));
 }
 
-// Accepts everything, and remembers how far the text was JSON.
-class SyntaxCheck : public json::json_sax_t {
-  public:
-    std::size_t position = 0;
-
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
-    bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override { return true; }
-    bool key(string_t&) override { return true; }
-    bool end_object() override { return true; }
-    bool start_array(std::size_t) override { return true; }
-    bool end_array() override { return true; }
-    bool parse_error(std::size_t at, const std::string&, const json::exception&) override {
-        // The character read last is the wrong one, not the one after it.
-        position = at > 0 ? at - 1 : 0;
-        return false;
-    }
-};
-
 }  // namespace
 
 std::optional<std::size_t> line_of_syntax_error(const std::string& text) {
-    SyntaxCheck check;
-    if (json::sax_parse(text, &check)) return std::nullopt;
-    return line_at(text, check.position);
+    const auto position = assets::syntax_error_position(text);
+    if (!position) return std::nullopt;
+    return line_at(text, *position);
 }
 
 std::vector<std::size_t> lines_of_events(const std::string& text) {

@@ -35,7 +35,7 @@ TEST_SUITE("assets/obj_loader") {
         CHECK(says(message(load("v 0 0 0\nf 1 x 1\n")), "'x'"));
         CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n")), "line 4"));
         CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "nothing to draw"));
-        CHECK(says(message(load("")), "nothing to draw"));
+        CHECK(says(message(load("")), "the file is empty"));
     }
 
     TEST_CASE("missing files, folders and unknown kinds of file are refused by name") {

@@ -72,7 +72,7 @@ assets::WadLevel board(int columns, const std::vector<int>& sectors) {
 
 TEST_SUITE("assets/wad_loader") {
     TEST_CASE("damaged archives and levels are named by lump, line, side and sector") {
-        CHECK(says(message(load("")), "level.wad: not a WAD"));
+        CHECK(says(message(load("")), "level.wad: the file is empty"));
         CHECK(says(message(load("PWAD\xff\xff\xff\xff\x0c\0\0\0")), "not a WAD"));
         std::string file = Wad().file();
         CHECK(says(message(load(file.substr(0, file.size() - 5))), "directory"));
