@@ -19,6 +19,14 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/crofton-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/crofton-config.cmake ${PROJECT_BINARY_DIR}/crofton-config-version.cmake
         DESTINATION ${package_dir})
+# What the library itself needs is private to a shared one, and everybody's to link with an archive.
+if(BUILD_SHARED_LIBS)
+    set(pc_private ".private")
+    set(pc_libs "")
+else()
+    set(pc_private "")
+    set(pc_libs " -lstdc++ -lm -pthread")
+endif()
 file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton.pc.in ${PROJECT_BINARY_DIR}/crofton.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/crofton.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
