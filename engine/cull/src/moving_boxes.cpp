@@ -1,4 +1,5 @@
-#include <crofton/core/assert.hpp>
+#include <hwy/cache_control.h>
+#include <algorithm>
 #include <crofton/cull/moving_boxes.hpp>
 
 #include "query.hpp"
@@ -25,25 +26,35 @@ void cull(const tree::BoxTree& resting, const MovingBoxes& moving, const View& v
     Query(view, visible, options, &moving).run(resting, executor);
 }
 
-// Straddling ones go to `straddling`. What is in none of the view's layers is written, and overwritten by the next.
+// Straddling ones go to `straddling`.
 void Query::add_moving(const tree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor) {
     VerdictBits& bits = visible_.moving_bits_;
     cull(moving_->set(), moving_->boxes(), view_, bits, options_.mode, executor);
     if (kCountStatistics) visible_.statistics_ += bits.statistics;
     if (visible_.listed_.size() < moving_->size() + tree::kWidth) visible_.listed_.resize(moving_->size() + tree::kWidth);
-    const std::uint32_t* layers = tree.layer_masks().data();
-    const ItemId* items = moving_->items().data();
-    const auto append = [&](std::span<const std::uint64_t> of, ItemId* to, std::size_t& count) {
-        const std::size_t listed = list_bits(of, visible_.listed_);
-        for (std::size_t i = 0; i < listed; ++i) {
-            const ItemId item = items[visible_.listed_[i]];
-            to[count] = item;
-            count += (layers[item] & view_.layer_mask) != 0;
-        }
-    };
     for (std::size_t w = 0; w < bits.visible.size(); ++w) bits.visible[w] &= ~bits.inside[w];
-    append(bits.inside, visible_.ids_.data(), inside);
-    append(bits.visible, visible_.straddling_.data(), straddling);
+    append_moving(tree, bits.inside, visible_.ids_.data(), inside);
+    append_moving(tree, bits.visible, visible_.straddling_.data(), straddling);
+}
+
+// The items of the bits that are set, if they are in one of the view's layers.
+void Query::append_moving(const tree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
+                          std::size_t& count) {
+    std::uint32_t* listed = visible_.listed_.data();
+    const std::size_t found = list_bits(bits, visible_.listed_);
+    for (std::size_t i = 0; i < found; ++i) listed[i] = moving_->items()[listed[i]];
+    if (tree.lifted_layers() & view_.layer_mask) {
+        std::copy_n(listed, found, to + count);
+        count += found;
+        return;
+    }
+    // Layers lie anywhere: they are asked for ahead. What is in none is overwritten by the next.
+    constexpr std::size_t kAhead = 24;
+    for (std::size_t i = 0; i < found; ++i) {
+        hwy::Prefetch(&tree.layer_masks()[listed[std::min(i + kAhead, found - 1)]]);
+        to[count] = listed[i];
+        count += (tree.layer_masks()[listed[i]] & view_.layer_mask) != 0;
+    }
 }
 
 }  // namespace crofton::cull

@@ -33,6 +33,7 @@ class Query {
     [[nodiscard]] std::size_t decide(const tree::BoxTree& tree, TreeKernelOutput& output) const;
     void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
     void add_moving(const tree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
+    void append_moving(const tree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to, std::size_t& count);
     void finish(const tree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     void sort(std::size_t inside, std::size_t straddling, std::size_t items);

@@ -87,6 +87,7 @@ void BoxTree::mark_moved() {
 Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
     if (is_lifted(item)) {
         layer_masks_[item] = layer_mask;
+        lifted_layers_ &= layer_mask;
         return {};
     }
     if (auto known = check_item(item); !known) return known;

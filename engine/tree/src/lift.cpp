@@ -25,6 +25,8 @@ void BoxTree::set_lifted(ItemId item, bool lifted) {
     if (lifted_bits_.size() <= item / 64) lifted_bits_.resize(item / 64 + 1, 0);
     lifted_bits_[item / 64] ^= std::uint64_t{1} << item % 64;
     lifted_count_ += lifted ? 1 : std::size_t(-1);
+    if (lifted) lifted_layers_ &= layer_masks_[item];
+    if (lifted_count_ == 0) lifted_layers_ = ~std::uint32_t{0};
 }
 
 // In a tree that has been read: what is in no leaf, and whose id is not free.

@@ -62,6 +62,8 @@ class BoxTree {
     [[nodiscard]] bool is_lifted(ItemId item) const {
         return item / 64 < lifted_bits_.size() && (lifted_bits_[item / 64] >> item % 64 & 1) != 0;
     }
+    // Bits that the layer masks of all lifted items have, not necessarily every one.
+    [[nodiscard]] std::uint32_t lifted_layers() const { return lifted_layers_; }
 
     // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up to
     // date twice as many items' more as have changed since the call before (a build is worth about 10 per item). Call it
@@ -174,6 +176,7 @@ class BoxTree {
     Vector<ItemId> free_items_;
     Vector<std::uint64_t> lifted_bits_;  // one bit an item, up to the last that was ever lifted
     std::size_t lifted_count_ = 0;
+    std::uint32_t lifted_layers_ = ~std::uint32_t{0};
     Structure now_;
     Vector<std::uint32_t> moved_slots_;
     Vector<LeafId> dirty_list_;
