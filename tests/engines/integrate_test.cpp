@@ -7,7 +7,9 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/core/thread_pool.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/cull/moving_boxes.hpp>
 #include <crofton/scene/scene.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <glm/ext/matrix_clip_space.hpp>
@@ -145,15 +147,17 @@ TEST_SUITE("engines/integrate") {
 
         cull::VisibleSet visible;
         collide::Broadphase broadphase;
+        std::vector<Obb> moved_boxes;
         Camera camera;
         camera.position = {19.0, 1.5, 10.0};
         for (int frame = 0; frame < 3; ++frame) {
-            // 1. What moved: the scene says which boxes changed, the tree follows them.
+            // 1. What moved: the scene says which boxes changed, the tree follows them, all at once.
             const auto place = scene::from_trs({0.6 * frame, 0.0, 0.0}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0));
             if (!scene.set_local(nodes[0], place)) std::abort();
             scene.update();
-            for (const scene::InstanceId id : scene.moved_instances())
-                if (!tree.move(id, scene.world_boxes()[id])) std::abort();
+            moved_boxes.clear();
+            for (const scene::InstanceId id : scene.moved_instances()) moved_boxes.push_back(scene.world_boxes()[id]);
+            if (!tree.move(scene.moved_instances(), moved_boxes)) std::abort();
             tree.refit();
 
             // 2. What is seen.
@@ -174,6 +178,45 @@ TEST_SUITE("engines/integrate") {
         CHECK(drawn > 300);
         CHECK(drawn < 1200);
         CHECK(touching == 1);
+    }
+
+    TEST_CASE("what moves in every frame, beside the tree of what rests") {
+        using namespace crofton;
+        std::vector<Obb> boxes(300);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            boxes[i].center = {static_cast<double>(i % 20) - 10.0, 0.0, -5.0 - static_cast<double>(i / 20)};
+            boxes[i].half_extents = glm::vec3(0.3f);
+        }
+        tree::BoxTree tree = tree::BoxTree::build(boxes).value();
+        std::vector<tree::ItemId> moving_ids{3, 77, 290};
+        std::vector<Obb> moving_boxes{boxes[3], boxes[77], boxes[290]};
+        cull::MovingBoxes movers;
+        cull::VisibleSet visible, expected;
+        const Camera camera;
+        // Once: what begins to move leaves the tree, and keeps its id and its layers.
+        for (const tree::ItemId id : moving_ids)
+            if (!tree.lift(id)) std::abort();
+        tree.refit();
+
+        for (int frame = 0; frame < 30; ++frame) {
+            // Every frame: the boxes are yours and are not copied.
+            for (Obb& box : moving_boxes) box.center.y += 0.1;
+            if (!movers.update(tree, moving_ids, moving_boxes)) std::abort();
+            cull::cull(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
+
+            for (std::size_t k = 0; k < moving_ids.size(); ++k) boxes[moving_ids[k]] = moving_boxes[k];
+            cull::cull(boxes, {}, {.frustum = frustum_of(camera).value()}, expected);
+            CHECK(std::ranges::equal(visible.ids(), expected.ids()));
+        }
+        // What has come to rest goes back.
+        if (!tree.settle(moving_ids.back(), moving_boxes.back())) std::abort();
+        moving_ids.pop_back();
+        moving_boxes.pop_back();
+
+        CHECK(movers.update(tree, moving_ids, moving_boxes));
+        cull::cull(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
+        CHECK(std::ranges::equal(visible.ids(), expected.ids()));
+        CHECK(visible.size() > 100);
     }
 
     TEST_CASE("a baked scene is culled like the one it was baked from") {

@@ -114,6 +114,55 @@ TEST_SUITE("tree/box_tree changes") {
         CHECK(std::ranges::equal(tree.leaf_counts(), fresh.leaf_counts()));
     }
 
+    TEST_CASE("no step of a background rebuild handles more than its budget is worth, the last ones included") {
+        const oracle::Crowd crowd = oracle::random_crowd(50000, 0.0, 14);
+        BoxTree tree = *BoxTree::build(crowd.boxes);
+        std::vector<ItemId> items;
+        std::vector<Obb> boxes;
+        oracle::NearMisses random(15);
+        constexpr std::size_t kBudget = 1000, kMovedPerStep = 300;
+        // Twice the changes since the call before on top, and the items of one word of 64 more.
+        constexpr std::size_t kMost = kBudget + 2 * kMovedPerStep + 2 * 64;
+        tree::RebuildStep all;
+        for (bool done = false; !done;) {
+            items.clear();
+            boxes.clear();
+            for (std::size_t i = 0; i < kMovedPerStep; ++i) {
+                items.push_back(random.index(50000));
+                boxes.push_back(oracle::random_box(random, glm::dvec3(0.0), 40.0));
+            }
+            REQUIRE(tree.move(items, boxes).has_value());
+            tree.refit();
+            done = tree.maintain(kBudget);
+            const tree::RebuildStep& step = tree.last_rebuild_step();
+            REQUIRE(step.items_added <= kBudget);
+            REQUIRE(step.slots_cleared <= 16 * kBudget);
+            REQUIRE(32 * step.leaves_filled <= kBudget + 32);
+            REQUIRE(8 * step.nodes_linked + 32 * step.nodes_bounded <= kBudget + 40);
+            REQUIRE(2 * step.items_followed <= kMost);
+            REQUIRE(step.divisions <= 1);
+            // Kinds of work that follow each other within a step share its budget.
+            REQUIRE(step.items_added + 32 * step.leaves_filled + 8 * step.nodes_linked + 32 * step.nodes_bounded +
+                        2 * step.items_followed <= kMost + 40);
+            all.items_added += step.items_added;
+            all.items_followed += step.items_followed;
+            all.slots_cleared += step.slots_cleared;
+            all.leaves_filled += step.leaves_filled;
+            all.nodes_linked += step.nodes_linked;
+            all.nodes_bounded += step.nodes_bounded;
+            all.divisions += step.divisions;
+        }
+        CHECK(all.items_added == 50000);
+        CHECK(all.slots_cleared == 50000);
+        CHECK(all.leaves_filled == tree.leaves().size());
+        CHECK(all.nodes_linked == tree.nodes().size());
+        CHECK(all.nodes_bounded == tree.nodes().size());
+        CHECK(all.items_followed > 20000);
+        CHECK(all.divisions > 50);
+        CHECK(tree.validate().has_value());
+        CHECK(holds_all(tree));
+    }
+
     TEST_CASE("items that move share leaves with each other alone, whether they were named or found out") {
         const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 7);
         std::vector<ItemId> items;

@@ -22,6 +22,7 @@ std::size_t steps(std::size_t budget, std::size_t cost) {
 }  // namespace
 
 bool BoxTree::maintain(std::size_t budget) {
+    last_step_ = {};
     if (!rebuild_) {
         if (item_count() == 0) return false;
         rebuild_ = std::make_unique<Rebuild>();
@@ -61,6 +62,7 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
                 const std::uint32_t lanes = now.lanes_before[slot / kWidth] & now.lanes_long_before[slot / kWidth];
                 return (lanes >> slot % kWidth & 1) != 0;
             };
+            ++last_step_.divisions;
             if (!work.builder->step(budget, boxes_, {moves, this})) return budget;
             structure.height = topology.height;
             structure.item_slots.reserve(boxes_.size());
@@ -69,6 +71,7 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
         }
         case Stage::clear_slots: {
             const std::size_t end = std::min(boxes_.size(), work.next + budget * kSlotsPerItem);
+            last_step_.slots_cleared += end - work.next;
             structure.item_slots.resize(end, kNone);
             const std::size_t spent = (end - work.next) / kSlotsPerItem + 1;
             work.next = end;
@@ -83,7 +86,8 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
             const std::size_t spent = (end - work.next) * kNodeLinked;
             structure.nodes.resize(end);
             structure.ranges.resize(end);
-            for (; work.next < end; ++work.next) adopt_node(structure, static_cast<NodeId>(work.next), topology);
+            for (; work.next < end; ++work.next, ++last_step_.nodes_linked)
+                adopt_node(structure, static_cast<NodeId>(work.next), topology);
             if (end < topology.nodes.size()) return spent;
             structure.leaves.reserve(topology.leaves.size());
             structure.leaf_counts.reserve(topology.leaves.size());
@@ -101,7 +105,8 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
         case Stage::bound: {
             // Parents come before children.
             const std::size_t count = std::min(work.next, steps(budget, kNodeBounded));
-            for (std::size_t i = 0; i < count; ++i) finish_node(structure, static_cast<NodeId>(--work.next));
+            for (std::size_t i = 0; i < count; ++i, ++last_step_.nodes_bounded)
+                finish_node(structure, static_cast<NodeId>(--work.next));
             if (work.next == 0) go_on_to(Stage::follow);
             return count * kNodeBounded;
         }
@@ -110,21 +115,22 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
     }
 }
 
-std::size_t BoxTree::add_items(Rebuild& work, std::size_t budget) const {
+std::size_t BoxTree::add_items(Rebuild& work, std::size_t budget) {
     const std::size_t end = std::min(boxes_.size(), work.next + budget), spent = end - work.next;
-    for (; work.next < end; ++work.next)
+    for (; work.next < end; ++work.next, ++last_step_.items_added)
         if (now_.item_slots[work.next] != kNone) work.builder->add(static_cast<ItemId>(work.next), boxes_[work.next]);
     return spent;
 }
 
-std::size_t BoxTree::fill_leaves(Rebuild& work, std::size_t budget) const {
+std::size_t BoxTree::fill_leaves(Rebuild& work, std::size_t budget) {
     const Topology& topology = work.builder->result();
     const std::size_t end = std::min(topology.leaves.size(), work.next + steps(budget, kLeafFilled));
     const std::size_t spent = (end - work.next) * kLeafFilled;
     work.structure.leaves.resize(end);
     work.structure.leaf_counts.resize(end, 0);
     work.structure.slot_items.resize(end * kWidth, kNone);
-    for (; work.next < end; ++work.next) fill_leaf(work.structure, static_cast<LeafId>(work.next), topology);
+    for (; work.next < end; ++work.next, ++last_step_.leaves_filled)
+        fill_leaf(work.structure, static_cast<LeafId>(work.next), topology);
     return spent;
 }
 
@@ -144,6 +150,7 @@ std::size_t BoxTree::catch_up(Rebuild& work, std::size_t budget) {
             const bool present = old.item_slots[item] != kNone;
             spent += present && now_.item_slots[item] == kNone ? kItemPlaced : kItemMoved;
             follow(item, present);
+            ++last_step_.items_followed;
             --work.changed_count;
         }
     }

@@ -24,6 +24,13 @@ struct BuildOptions {
     std::span<const ItemId> lifted = {};
 };
 
+// A step of a rebuild in the background, counted where the work is done.
+struct RebuildStep {
+    std::size_t items_added = 0, items_followed = 0;  // for the new tree; into it, as they have changed since
+    std::size_t slots_cleared = 0, leaves_filled = 0, nodes_linked = 0, nodes_bounded = 0;
+    std::size_t divisions = 0;  // steps of dividing items among leaves and nodes, each of the budget's size
+};
+
 // What deserialise() may take on trust. `contents`: the bytes are what serialise() wrote, as a checksum has shown; then
 // only the links are checked, so that nothing leads out of the arrays, and a million items load in a tenth of the time.
 enum class Trust : std::uint8_t { nothing, contents };
@@ -71,6 +78,8 @@ class BoxTree {
     // of the last two refits are taken for such as move all the time (see BuildOptions). Needs refit() before and leaves
     // nothing to refit.
     bool maintain(std::size_t budget);
+    // What the last call of maintain() has handled, whatever it was worth.
+    [[nodiscard]] const RebuildStep& last_rebuild_step() const { return last_step_; }
 
     // Checks every invariant: links, counts, slots, bounds. Errors name the node, leaf or item.
     [[nodiscard]] Result<void> validate() const;
@@ -156,8 +165,8 @@ class BoxTree {
     void link(NodeId parent, unsigned lane, std::uint32_t child);
     NodeId split_node(NodeId node);
     std::size_t work_on(Rebuild& work, std::size_t budget);
-    std::size_t add_items(Rebuild& work, std::size_t budget) const;
-    std::size_t fill_leaves(Rebuild& work, std::size_t budget) const;
+    std::size_t add_items(Rebuild& work, std::size_t budget);
+    std::size_t fill_leaves(Rebuild& work, std::size_t budget);
     std::size_t catch_up(Rebuild& work, std::size_t budget);
     void follow(ItemId item, bool present);
     void set_lifted(ItemId item, bool lifted);
@@ -184,6 +193,7 @@ class BoxTree {
     Vector<std::uint64_t> dirty_node_bits_;
     bool layers_changed_ = false;  // since the last refit: then layers are looked at again, otherwise only bounds
     std::unique_ptr<Rebuild> rebuild_;
+    RebuildStep last_step_;
 };
 
 }  // namespace crofton::tree
