@@ -73,6 +73,9 @@ void add_view_command(CLI::App& app, Outcome& outcome) {
     command->add_option("--instances", options.scene.instances, "of the town, roughly");
     command->add_option("--scale", options.scale, "of texts and panels; as the display asks where absent")
         ->check(CLI::Range(0.5f, 8.0f));
+    command->add_option("--resolution", options.settings.resolution, "draw this share of the pixels each way, enlarged")
+        ->check(CLI::Range(viewer::kMinResolution, 1.0))
+        ->capture_default_str();
     command->add_option("--size", arguments->size, "of the window, as 1280x720")->capture_default_str();
     command
         ->add_option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")

@@ -101,9 +101,13 @@ Result<void> Session::resize() {
         const VkExtent2D now = window_->framebuffer_size();
         if (now.width > 0 && now.height > 0) wanted_size_ = now;
     }
-    if (!stale_size_ && wanted_size_.width == rasterizer_->width() && wanted_size_.height == rasterizer_->height())
+    if (!stale_size_ && wanted_size_.width == rasterizer_->width() && wanted_size_.height == rasterizer_->height() &&
+        settings_.resolution == drawn_resolution_)
         return {};
-    if (auto resized = rasterizer_->resize(wanted_size_.width, wanted_size_.height); !resized) return resized;
+    drawn_resolution_ = settings_.resolution;
+    auto resized =
+        rasterizer_->resize(wanted_size_.width, wanted_size_.height, 0, static_cast<float>(drawn_resolution_));
+    if (!resized) return resized;
     stale_size_ = false;
     eye_.camera.aspect = static_cast<double>(wanted_size_.width) / wanted_size_.height;
     return ui_->set_target(rasterizer_->native_image()->view, wanted_size_);

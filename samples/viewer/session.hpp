@@ -118,6 +118,7 @@ class Session {
     double seconds_ = 0.0;     // that the session has run
     std::deque<Notice> notices_;
     VkExtent2D wanted_size_{};
+    double drawn_resolution_ = 1.0;
     float wanted_scale_ = 1.0f, scale_ = 0.0f;  // of texts and panels: the display's, and what they have
     Clock::time_point last_turn_ = Clock::now(), draw_start_;
     double ui_us_ = 0.0;

@@ -83,6 +83,12 @@ Result<void> set_switch(Settings& settings, const std::string& name, const nlohm
         settings.time_scale = value.get<double>();
         return {};
     }
+    if (name == "resolution") {
+        if (!value.is_number() || !(value.get<double>() >= kMinResolution && value.get<double>() <= 1.0))
+            return bad_value(name, "a number from 0.25 to 1");
+        settings.resolution = value.get<double>();
+        return {};
+    }
     if (name == "coloring") return set_named(settings.coloring, name, kColoringNames, value);
     if (name == "triangulation") return set_named(settings.method.triangulation, name, kTriangulationNames, value);
     if (name == "other_triangulation") return set_named(settings.other.triangulation, name, kTriangulationNames, value);
@@ -99,7 +105,8 @@ nlohmann::json to_json(const Settings& settings) {
                           {"other_triangulation", to_string(settings.other.triangulation)},
                           {"tree_level", settings.tree_level},
                           {"cascades", settings.cascades},
-                          {"time_scale", settings.time_scale}};
+                          {"time_scale", settings.time_scale},
+                          {"resolution", settings.resolution}};
     for (const auto& [name, flag] : kFlags) result[name] = settings.*flag;
     return result;
 }

@@ -32,6 +32,8 @@ struct Method {
     return kTriangulationNames[static_cast<std::size_t>(triangulation)];
 }
 
+inline constexpr double kMinResolution = 0.25;
+
 struct Settings {
     Method method;
     Method other;  // B of the comparison
@@ -51,6 +53,7 @@ struct Settings {
     bool more = false, history = false;  // the panel's lower parts, unfolded
     bool paused = false;
     double time_scale = 1.0;
+    double resolution = 1.0;  // share of the picture's pixels each way that is drawn; the rest is enlarged
 };
 
 // One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "other_bounds_kind",

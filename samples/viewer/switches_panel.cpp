@@ -1,5 +1,8 @@
 #include "switches_panel.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "keys.hpp"
 
 namespace crofton::viewer {
@@ -69,6 +72,11 @@ void sliders(const PanelInput& input) {
     hint("T");
     ImGui::SliderInt("views (V)", &s.cascades, 1, 8);
     hint("V");
+    auto percent = static_cast<int>(std::lround(100.0 * s.resolution));
+    if (ImGui::SliderInt("resolution", &percent, static_cast<int>(100.0 * kMinResolution), 100, "%d %%"))
+        s.resolution = std::clamp(0.01 * percent, kMinResolution, 1.0);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("of what is drawn, each way, before it is enlarged: fewer pixels, more frames");
     auto scale = static_cast<float>(s.time_scale);
     if (ImGui::SliderFloat("time (+ -)", &scale, 0.0f, 4.0f, "%.2fx")) s.time_scale = static_cast<double>(scale);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("speed of what moves; + and -: %s", what_key_does("+"));

@@ -287,6 +287,29 @@ TEST_SUITE("render/rasterizer") {
         }
         CHECK(device->validation_messages().empty());
     }
+    TEST_CASE("a lower resolution draws fewer pixels of the same triangles, and fills the picture with them") {
+        CROFTON_REQUIRE_DEVICE(device);
+        Rasterizer rasterizer = make_rasterizer(*device);
+        for (const float bad : {0.0f, -1.0f, 1.5f, std::nanf("")}) CHECK_FALSE(rasterizer.resize(64, 64, 0, bad));
+        const Camera camera = camera_at(10.0);
+        const DrawTransform transform = flat_transform(camera, {}, {0, 0, 1});
+        const DrawRange whole{0, 6, 0};
+        for (const auto& [resolution, drawn] : {std::pair{0.5f, 32u}, {0.25f, 16u}, {0.001f, 1u}, {1.0f, 64u}}) {
+            REQUIRE(rasterizer.resize(64, 64, 0, resolution));
+            CHECK(rasterizer.width() == 64);
+            Image image;
+            CHECK_FALSE(rasterizer.read_pixels(image));
+            const auto counters = rasterizer.draw({camera, {&transform, 1}, {&whole, 1}});
+            REQUIRE(counters);
+            CHECK(counters->samples_passed == std::uint64_t{drawn} * drawn);
+            CHECK(counters->input_assembly_primitives == 2);
+            CHECK(counters->clipping_primitives == 2);
+            REQUIRE(rasterizer.read_pixels(image));
+            CHECK(image.width == 64);
+            CHECK(count_color(image, 0, 0, 255) == 64 * 64);
+        }
+        CHECK(device->validation_messages().empty());
+    }
     TEST_CASE("the same frame gives the same pixels") {
         CROFTON_REQUIRE_DEVICE(device);
         Rasterizer rasterizer = make_rasterizer(*device);

@@ -55,6 +55,25 @@ TEST_SUITE("viewer/window") {
         CHECK(Pixels(scratch().file("tiny.png")).width == 40);
         CHECK(picture(result, "large.png")["eye"]["aspect"] == doctest::Approx(1.6));
     }
+    TEST_CASE("a lower resolution leaves the counts, the picture's size and the panels as they are") {
+        const ViewRun result = view({set(0, {{"paused", true}}),
+                                     shot(2, "full.png"),
+                                     set(3, {{"resolution", 0.5}}),
+                                     shot(5, "half.png"),
+                                     {{"frame", 6}, {"quit", true}}},
+                                    "--size 800x450", false);
+        check_clean(result);
+        const json &full = picture(result, "full.png")["statistics"], &half = picture(result, "half.png")["statistics"];
+        for (const char* count : {"triangles_submitted", "triangles_passed", "triangles_clipped"})
+            CHECK(full[count] == half[count]);
+        const double share = half["gpu"]["samples_passed"].get<double>() / full["gpu"]["samples_passed"].get<double>();
+        CHECK(share > 0.2);
+        CHECK(share < 0.3);
+        const Pixels a(scratch().file("full.png")), b(scratch().file("half.png"));
+        CHECK(a.width == b.width);
+        // Edges differ between the two, most of the picture does not.
+        CHECK(a.different(b) < a.width * a.height / 2);
+    }
     TEST_CASE("a lost device is replaced: a message, the same picture, nothing to say for validation") {
         CROFTON_REQUIRE_DISPLAY();
         for (const bool window : {true, false}) {
@@ -83,7 +102,8 @@ TEST_SUITE("viewer/window") {
         CHECK(covered[1] > 3 * covered[0] / 2);
         CHECK(covered[1] < 4 * covered[0]);
     }
-    TEST_CASE("a window that comes onto another display takes over its scale, and back, unless --scale says otherwise") {
+    TEST_CASE(
+        "a window that comes onto another display takes over its scale, and back, unless --scale says otherwise") {
         json script{set(0, {{"paused", true}}), {{"frame", 0}, {"resize", {1600, 900}}}};
         const auto at = [&](int frame, double scale, const char* name) {
             script.push_back({{"frame", frame}, {"scale", scale}});

@@ -39,7 +39,7 @@ Rasterizer::State::~State() {
 Result<void> Rasterizer::State::create(const RasterizerOptions& options) {
     if (auto made = pipelines.create(); !made) return made;
     auto target = std::make_unique<Target>(context);
-    if (auto made = target->create(pipelines.render_pass, {options.width, options.height}); !made) return made;
+    if (auto made = target->create(pipelines.render_pass, {options.width, options.height}, 1.0f); !made) return made;
     targets.push_back(std::move(target));
     auto made_commands = Commands::create(context);
     if (!made_commands) return tl::unexpected(std::move(made_commands.error()));
@@ -161,14 +161,14 @@ Result<void> Rasterizer::set_geometry(std::span<const Vertex> vertices, std::spa
     return {};
 }
 
-Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture) {
+Result<void> Rasterizer::resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture, float resolution) {
     auto& targets = state_->targets;
     CROFTON_ASSERT(picture <= targets.size(), "pictures are made one after another");
     if (picture < targets.size() && width == targets[picture]->extent.width &&
-        height == targets[picture]->extent.height)
+        height == targets[picture]->extent.height && resolution == targets[picture]->resolution)
         return {};
     auto target = std::make_unique<Target>(state_->context);
-    if (auto made = target->create(state_->pipelines.render_pass, {width, height}); !made) return made;
+    if (auto made = target->create(state_->pipelines.render_pass, {width, height}, resolution); !made) return made;
     if (picture == targets.size()) targets.emplace_back();
     targets[picture] = std::move(target);
     return {};

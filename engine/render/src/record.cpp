@@ -119,14 +119,15 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
     VkRenderPassBeginInfo pass{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
     pass.renderPass = pipelines.render_pass;
     pass.framebuffer = target.framebuffer;
-    pass.renderArea.extent = target.extent;
+    pass.renderArea.extent = target.drawn_extent;
     pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
     pass.pClearValues = clear.data();
     vk.vkCmdBeginRenderPass(cmd, &pass, VK_SUBPASS_CONTENTS_INLINE);
     // Negative height: clip space's y points up.
-    const auto width = static_cast<float>(target.extent.width), height = static_cast<float>(target.extent.height);
+    const auto width = static_cast<float>(target.drawn_extent.width);
+    const auto height = static_cast<float>(target.drawn_extent.height);
     const VkViewport viewport{0.0f, height, width, -height, 0.0f, 1.0f};
-    const VkRect2D scissor{{0, 0}, target.extent};
+    const VkRect2D scissor{{0, 0}, target.drawn_extent};
     vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
     vk.vkCmdSetScissor(cmd, 0, 1, &scissor);
     const VkPipelineLayout layout = pipelines.layout;
@@ -168,6 +169,7 @@ void Rasterizer::State::record(const Frame& frame, const Target& target) {
         vk.vkCmdDraw(cmd, static_cast<std::uint32_t>(frame.lines.size() / 2 * 2), 1, 0, 0);
     }
     vk.vkCmdEndRenderPass(cmd);
+    target.record_enlargement(cmd);
 }
 
 }  // namespace crofton::render

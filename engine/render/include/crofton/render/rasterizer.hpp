@@ -107,8 +107,11 @@ class Rasterizer {
     [[nodiscard]] Result<void> set_geometry(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices);
 
     // Pictures are numbered; 0 is made by create(), others by their first resize(), one after another. They share the
-    // geometry, so that one scene can be seen from several sides.
-    [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture = 0);
+    // geometry, so that one scene can be seen from several sides. Where `resolution` is less than 1 only that share of
+    // the pixels each way is drawn, and enlarged; counts stay as they are, but for the samples passed.
+    // Errors: as create(); a resolution that is not above 0 and at most 1.
+    [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture = 0,
+                                      float resolution = 1.0f);
 
     // Draws and waits. Neighbouring ranges that continue each other with the same transform become one draw. Memory
     // grows on first need only. Errors: a range beyond the indices or transforms, not whole triangles (item = range);
