@@ -53,7 +53,9 @@ TEST_SUITE("cli/usage") {
     TEST_CASE("a place where nothing can be written is refused before the work") {
         const std::string folder = scratch().file("folder");
         std::filesystem::create_directories(folder);
-        for (const std::string& place : {folder, folder + "/missing/a.json", std::string("/proc/a.json")}) {
+        const std::string file = scratch().file("plain");
+        write_contents(file, "");
+        for (const std::string& place : {folder, folder + "/missing/a.json", file + "/a.json"}) {
             const CliRun run = run_cli("frames --no-draw --frames 1 --json '" + place + "'");
             CHECK(run.status == 2);
             CHECK(run.out.empty());
