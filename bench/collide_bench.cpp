@@ -7,6 +7,8 @@
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/collide/ray.hpp>
 
+#include <deque>
+
 #include "collide_inputs.hpp"
 
 namespace crofton::bench {
@@ -64,25 +66,38 @@ struct MeshCase {
     std::vector<collide::Pose> poses;
 };
 
-MeshCase* mesh_case(const std::string& name, benchmark::State& state) {
-    static std::vector<std::pair<std::string, MeshCase>> cases;
+using tree::MeshBoxes;
+
+// The poses are the same for all kinds of boxes.
+MeshCase* mesh_case(const std::string& name, benchmark::State& state, MeshBoxes boxes = MeshBoxes::small_perimeter) {
+    static std::deque<std::pair<std::string, MeshCase>> cases;
+    const std::string wanted = name + std::to_string(static_cast<int>(boxes));
     for (auto& [key, value] : cases)
-        if (key == name) return &value;
+        if (key == wanted) return &value;
     MeshCase made;
     made.mesh = shared_mesh(name);
-    auto tree = tree::MeshTree::build(made.mesh);
+    auto tree = tree::MeshTree::build(made.mesh, {boxes});
     if (!tree) {
         state.SkipWithError("shared data is absent");
         return nullptr;
     }
     made.tree = std::move(*tree);
-    made.poses = close_poses(made.tree, 1000);
-    cases.emplace_back(name, std::move(made));
+    made.poses = close_poses(*tree::MeshTree::build(made.mesh, {MeshBoxes::principal_axes}), 1000);
+    cases.emplace_back(wanted, std::move(made));
     return &cases.back().second;
 }
 
-void mesh_any(benchmark::State& state, const char* name) {
-    const MeshCase* input = mesh_case(name, state);
+// The mean edge sum of all boxes of a tree, for comparing kinds of boxes on the same splits.
+double mean_edge_sum(const tree::MeshTree& tree) {
+    double sum = 0.0, count = 0.0;
+    for (const tree::MeshNode& node : tree.nodes())
+        for (std::uint32_t lane = 0; lane < node.count; ++lane, count += 1.0)
+            for (int k = 0; k < 3; ++k) sum += 2.0 * static_cast<double>(node.half[k][lane]);
+    return sum / count;
+}
+
+void mesh_any(benchmark::State& state, const char* name, MeshBoxes boxes = MeshBoxes::small_perimeter) {
+    const MeshCase* input = mesh_case(name, state, boxes);
     if (input == nullptr) return;
     int hits = 0;
     collide::MeshStatistics statistics;
@@ -99,8 +114,8 @@ void mesh_any(benchmark::State& state, const char* name) {
     state.counters["exact"] = static_cast<double>(statistics.exact_tests) / 1000.0;
 }
 
-void mesh_all(benchmark::State& state, const char* name) {
-    const MeshCase* input = mesh_case(name, state);
+void mesh_all(benchmark::State& state, const char* name, MeshBoxes boxes = MeshBoxes::small_perimeter) {
+    const MeshCase* input = mesh_case(name, state, boxes);
     if (input == nullptr) return;
     Vector<collide::TrianglePair> pairs;
     std::size_t found = 0;
@@ -121,14 +136,15 @@ void mesh_all(benchmark::State& state, const char* name) {
     state.counters["exact"] = static_cast<double>(statistics.exact_tests) / 1000.0;
 }
 
-void mesh_build(benchmark::State& state, const char* name) {
-    const MeshCase* input = mesh_case(name, state);
+void mesh_build(benchmark::State& state, const char* name, MeshBoxes boxes = MeshBoxes::small_perimeter) {
+    const MeshCase* input = mesh_case(name, state, boxes);
     if (input == nullptr) return;
-    for (auto _ : state) benchmark::DoNotOptimize(tree::MeshTree::build(input->mesh));
+    for (auto _ : state) benchmark::DoNotOptimize(tree::MeshTree::build(input->mesh, {boxes}));
+    state.counters["edge sum"] = mean_edge_sum(input->tree);
 }
 
-void mesh_rays(benchmark::State& state) {
-    const MeshCase* input = mesh_case("bunny", state);
+void mesh_rays(benchmark::State& state, MeshBoxes boxes) {
+    const MeshCase* input = mesh_case("bunny", state, boxes);
     if (input == nullptr) return;
     const auto rays = random_rays(input->mesh, 10000);
     int hits = 0;
@@ -168,12 +184,31 @@ BENCHMARK_CAPTURE(all_pairs, boxes, true)
     ->Arg(100000)
     ->Arg(1000000)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(mesh_any, bunny, "bunny")->Name("mesh/bunny any/crofton")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(mesh_all, bunny, "bunny")->Name("mesh/bunny all/crofton")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(mesh_build, bunny, "bunny")->Name("mesh/bunny build/crofton")->Unit(benchmark::kMillisecond);
-BENCHMARK(mesh_rays)->Name("rays/bunny nearest/crofton")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(mesh_any, cow, "cow")->Name("mesh/cow any/crofton")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(mesh_all, cow, "cow")->Name("mesh/cow all/crofton")->Unit(benchmark::kMillisecond);
+
+// Kinds of boxes beside each other, the default under the name that the peers are compared with.
+void mesh_benchmarks() {
+    const struct {
+        MeshBoxes boxes;
+        const char* name;
+    } kinds[] = {{MeshBoxes::small_perimeter, "crofton"},
+                 {MeshBoxes::principal_axes, "principal axes"},
+                 {MeshBoxes::least_perimeter, "least perimeter"}};
+    for (const auto& kind : kinds) {
+        const auto add = [&](const std::string& name, auto measure) {
+            benchmark::RegisterBenchmark(("mesh/" + name + "/" + kind.name).c_str(), measure)
+                ->Unit(benchmark::kMillisecond);
+        };
+        const MeshBoxes boxes = kind.boxes;
+        for (const char* mesh : {"bunny", "cow"}) {
+            add(mesh + std::string(" any"), [=](benchmark::State& state) { mesh_any(state, mesh, boxes); });
+            add(mesh + std::string(" all"), [=](benchmark::State& state) { mesh_all(state, mesh, boxes); });
+            add(mesh + std::string(" build"), [=](benchmark::State& state) { mesh_build(state, mesh, boxes); });
+        }
+        benchmark::RegisterBenchmark((std::string("rays/bunny nearest/") + kind.name).c_str(), mesh_rays, boxes)
+            ->Unit(benchmark::kMillisecond);
+    }
+}
+const bool registered = (mesh_benchmarks(), true);
 
 }  // namespace
 }  // namespace crofton::bench

@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
 #include <crofton/tree/mesh_tree.hpp>
+#include <cstring>
 #include <limits>
 #include <random>
 #include <vector>
@@ -23,6 +25,29 @@ TriangleMesh random_triangles(std::size_t count, float spread) {
         }
     }
     return mesh;
+}
+
+// A ring of radius 2 and thickness 1.
+TriangleMesh torus(std::uint32_t around, std::uint32_t across) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < around; ++i)
+        for (std::uint32_t j = 0; j < across; ++j) {
+            const double a = 6.283185307 * i / around, b = 6.283185307 * j / across, r = 2.0 + 0.5 * std::cos(b);
+            mesh.positions.push_back(glm::vec3(glm::dvec3(r * std::cos(a), r * std::sin(a), 0.5 * std::sin(b))));
+            const std::uint32_t i1 = (i + 1) % around, j1 = (j + 1) % across;
+            for (const std::uint32_t v :
+                 {i * across + j, i1 * across + j, i1 * across + j1, i * across + j, i1 * across + j1, i * across + j1})
+                mesh.indices.push_back(v);
+        }
+    return mesh;
+}
+
+double edge_sum(const MeshTree& tree) {
+    double sum = 0.0;
+    for (const MeshNode& node : tree.nodes())
+        for (std::uint32_t lane = 0; lane < node.count; ++lane)
+            for (int k = 0; k < 3; ++k) sum += 2.0 * double(node.half[k][lane]);
+    return sum;
 }
 
 // By how much a point sticks out of lane `lane`'s box, along its axes.
@@ -94,17 +119,43 @@ TEST_SUITE("tree/mesh_tree") {
     TEST_CASE("every triangle is in exactly one leaf and in every box above it, only the root has few children") {
         for (const std::size_t count : {1u, 8u, 9u, 100u, 129u, 2049u, 2100u, 5000u}) {
             const TriangleMesh mesh = random_triangles(count, 30.0f);
-            const auto tree = MeshTree::build(mesh);
-            REQUIRE(tree.has_value());
-            std::vector<int> seen(count, 0);
-            int deepest = 0;
-            walk(*tree, 0, 1, seen, deepest, mesh);
-            CHECK(std::ranges::all_of(seen, [](int n) { return n == 1; }));
-            int levels = 1;
-            for (std::size_t leaves = 16; 8 * leaves < count; leaves *= 16) ++levels;
-            CHECK(deepest == levels);
-            for (const MeshNode& node : tree->nodes().subspan(1)) CHECK(node.count >= 8);
+            for (const MeshBoxes boxes :
+                 {MeshBoxes::small_perimeter, MeshBoxes::principal_axes, MeshBoxes::least_perimeter}) {
+                const auto tree = MeshTree::build(mesh, {boxes});
+                REQUIRE(tree.has_value());
+                std::vector<int> seen(count, 0);
+                int deepest = 0;
+                walk(*tree, 0, 1, seen, deepest, mesh);
+                CHECK(std::ranges::all_of(seen, [](int n) { return n == 1; }));
+                int levels = 1;
+                for (std::size_t leaves = 16; 8 * leaves < count; leaves *= 16) ++levels;
+                CHECK(deepest == levels);
+                for (const MeshNode& node : tree->nodes().subspan(1)) CHECK(node.count >= 8);
+            }
         }
+    }
+
+    TEST_CASE("boxes of small perimeter are near the least that fit finds, and well below principal axes") {
+        const TriangleMesh mesh = torus(40, 30);
+        const double principal = edge_sum(*MeshTree::build(mesh, {MeshBoxes::principal_axes}));
+        const double small = edge_sum(*MeshTree::build(mesh)),
+                     least = edge_sum(*MeshTree::build(mesh, {MeshBoxes::least_perimeter}));
+        CAPTURE(principal / least);
+        CAPTURE(small / least);
+        CHECK(least <= small);
+        CHECK(small < 1.02 * least);
+        CHECK(principal > 1.03 * least);
+    }
+
+    TEST_CASE("gives the same boxes on every instruction set") {
+        const TriangleMesh mesh = random_triangles(3000, 5.0f);
+        const MeshTree expected = *MeshTree::build(mesh);
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            const MeshTree tree = *MeshTree::build(mesh);
+            CHECK(std::memcmp(tree.nodes().data(), expected.nodes().data(), tree.nodes().size_bytes()) == 0);
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("identical triangles, points and segments build a tree of bounded depth") {

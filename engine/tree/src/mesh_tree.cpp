@@ -2,8 +2,9 @@
 #include <cmath>
 #include <crofton/tree/mesh_tree.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
+#include <utility>
 
+#include "mesh_box.hpp"
 #include "mesh_pieces.hpp"
 #include "symmetric_eigen.hpp"
 
@@ -43,12 +44,6 @@ struct Task {
     std::uint32_t node;
 };
 
-float float_above(double value) {
-    const float rounded = static_cast<float>(value);
-    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
-                                                : rounded;
-}
-
 bool is_usable(const glm::vec3& p) {
     return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
            std::abs(p.z) <= kMaxMeshCoordinate;
@@ -58,7 +53,8 @@ bool is_usable(const glm::vec3& p) {
 
 class MeshTreeBuilder {
   public:
-    explicit MeshTreeBuilder(const TriangleMesh& mesh) : mesh_(mesh) {}
+    MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
+        : mesh_(mesh), options_(options), last_range_(mesh.positions.size(), 0) {}
 
     Result<MeshTree> build();
 
@@ -66,17 +62,21 @@ class MeshTreeBuilder {
     void collect();
     void split_node(const Task& task);
     Part split(Part& part);
-    MeshBox fit(const Range& range) const;
-    MeshBox fit(const Range& range, const glm::dmat3& frame) const;
+    MeshBox fit(const Range& range);
     std::uint32_t add_leaf(const Range& range);
     [[nodiscard]] const glm::vec3& vertex(std::uint32_t triangle, std::size_t v) const {
         return mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + v]];
     }
 
     const TriangleMesh& mesh_;
+    MeshTreeOptions options_;
     MeshTree tree_;
     Vector<Reference> references_;
     Vector<Task> tasks_;
+    MeshBoxFitter fitter_;
+    Vector<glm::vec3> points_;
+    Vector<std::uint32_t> last_range_;  // by vertex: the last range whose points it was put among
+    std::uint32_t range_number_ = 0;
 };
 
 void MeshTreeBuilder::collect() {
@@ -138,53 +138,16 @@ Part MeshTreeBuilder::split(Part& part) {
     return upper;
 }
 
-// The box with this frame. Coordinates along axes that are orthonormal only to 3e-7 differ from those in the exact
-// parallelepiped by that share of their size; a margin of 1e-6 of all half extents covers it and the float rounding.
-MeshBox MeshTreeBuilder::fit(const Range& range, const glm::dmat3& frame) const {
-    MeshBox box{};
-    glm::dvec3 axis[3], low(std::numeric_limits<double>::infinity()), high(-low);
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec3 rounded(frame[k]);
-        axis[k] = glm::dvec3(rounded);
-        for (int i = 0; i < 3; ++i) box.axes[k][i] = rounded[i];
-    }
-    const glm::dmat3 rows =
-        glm::dmat3(axis[0].x, axis[1].x, axis[2].x, axis[0].y, axis[1].y, axis[2].y, axis[0].z, axis[1].z, axis[2].z);
+MeshBox MeshTreeBuilder::fit(const Range& range) {
+    ++range_number_;
+    points_.clear();
     for (std::size_t r = range.begin; r < range.end; ++r)
         for (std::size_t v = 0; v < 3; ++v) {
-            const glm::dvec3 along = rows * glm::dvec3(vertex(references_[r].triangle, v));
-            low = glm::min(low, along);
-            high = glm::max(high, along);
+            const std::uint32_t index = mesh_.indices[3 * std::size_t{references_[r].triangle} + v];
+            if (std::exchange(last_range_[index], range_number_) != range_number_)
+                points_.push_back(mesh_.positions[index]);
         }
-    const glm::dvec3 middle = 0.5 * (low + high);
-    const glm::vec3 center(axis[0] * middle.x + axis[1] * middle.y + axis[2] * middle.z);
-    const glm::dvec3 along = rows * glm::dvec3(center);
-    const glm::dvec3 half = glm::max(high - along, along - low);
-    const double margin = 1e-6 * (half.x + half.y + half.z) + 1e-37;
-    for (int k = 0; k < 3; ++k) {
-        box.center[k] = center[k];
-        box.half[k] = float_above(half[k] + margin);
-    }
-    return box;
-}
-
-MeshBox MeshTreeBuilder::fit(const Range& range) const {
-    const glm::vec3 origin = references_[range.begin].centroid;
-    glm::dvec3 sum(0.0), squares(0.0), products(0.0);
-    double weight = 0.0;
-    for (std::size_t r = range.begin; r < range.end; ++r)
-        for (std::size_t v = 0; v < 3; ++v) {
-            const glm::dvec3 p(vertex(references_[r].triangle, v) - origin);
-            sum += p;
-            squares += p * p;
-            products += glm::dvec3(p.x * p.y, p.y * p.z, p.z * p.x);
-            weight += 1.0;
-        }
-    const glm::dvec3 mean = sum / weight, diagonal = squares / weight - mean * mean;
-    const glm::dvec3 off = products / weight - glm::dvec3(mean.x * mean.y, mean.y * mean.z, mean.z * mean.x);
-    const glm::dmat3 principal =
-        eigenvectors(glm::dmat3(diagonal.x, off.x, off.z, off.x, diagonal.y, off.y, off.z, off.y, diagonal.z));
-    return fit(range, principal);
+    return fitter_.fit(points_, options_.boxes);
 }
 
 std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
@@ -254,8 +217,8 @@ Result<MeshTree> MeshTreeBuilder::build() {
     return std::move(tree_);
 }
 
-Result<MeshTree> MeshTree::build(const TriangleMesh& mesh) {
-    return MeshTreeBuilder(mesh).build();
+Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {
+    return MeshTreeBuilder(mesh, options).build();
 }
 
 }  // namespace crofton::tree

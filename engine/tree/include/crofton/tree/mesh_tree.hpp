@@ -12,15 +12,25 @@
 
 namespace crofton::tree {
 
-// The principal axes of a box's vertices are its frame: quick to find, and close to the best for the thin sheets that a
-// mesh's pieces are. Every node but the root has at least eight children, and the nodes make no more levels than
-// sixteen-way splits need: log16 of the number of leaves, rounded up.
+// How the boxes of the nodes are turned: the less perimeter they have, the fewer are met (docs/collide.md, "Meshes").
+enum class MeshBoxes : std::uint8_t {
+    principal_axes,   // of their vertices; the quickest to build
+    small_perimeter,  // turned from there about each axis to about the best angle: within a few per cent of the least
+    least_perimeter,  // the best that fit::fit_obb finds
+};
+
+struct MeshTreeOptions {
+    MeshBoxes boxes = MeshBoxes::small_perimeter;
+};
+
+// Every node but the root has at least eight children, and the nodes make no more levels than sixteen-way splits need:
+// log16 of the number of leaves, rounded up.
 class MeshTree {
   public:
     // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed
     // in rejected(); the others are unharmed. Errors: no valid triangle; index count no multiple of three; 2^28
     // triangles or more.
-    [[nodiscard]] static Result<MeshTree> build(const TriangleMesh& mesh);
+    [[nodiscard]] static Result<MeshTree> build(const TriangleMesh& mesh, const MeshTreeOptions& options = {});
 
     [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }  // the root is the first
     [[nodiscard]] std::span<const MeshLeaf> leaves() const { return leaves_; }
