@@ -1,7 +1,14 @@
 #include <doctest/doctest.h>
 #include <crofton/core/memory.hpp>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
+
+#if defined(__unix__)
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
 
 using namespace crofton;
 
@@ -52,4 +59,31 @@ TEST_SUITE("core/memory") {
         CHECK(counts.allocations == counts.releases);
         CHECK(counts.live_bytes == 0);
     }
+
+#if defined(__unix__)
+    TEST_CASE("a host without memory ends the program with a message, not with a write to nowhere") {
+        int ends[2];
+        REQUIRE(pipe(ends) == 0);
+        const pid_t child = fork();
+        if (child == 0) {
+            dup2(ends[1], STDERR_FILENO);
+            std::signal(SIGABRT, SIG_DFL);
+            set_memory_hooks(
+                {[](void*, std::size_t, std::size_t) -> void* { return nullptr; }, counting_release, nullptr});
+            const Vector<double> numbers(1000);
+            _exit(static_cast<int>(numbers.size() % 7));
+        }
+        REQUIRE(child > 0);
+        close(ends[1]);
+        std::string said;
+        char block[256];
+        for (ssize_t n; (n = read(ends[0], block, sizeof block)) > 0;) said.append(block, static_cast<std::size_t>(n));
+        close(ends[0]);
+        int status = 0;
+        REQUIRE(waitpid(child, &status, 0) == child);
+        CHECK(WIFSIGNALED(status));
+        CHECK(WTERMSIG(status) == SIGABRT);
+        CHECK(said.find("out of memory for 8000 bytes") != std::string::npos);
+    }
+#endif
 }

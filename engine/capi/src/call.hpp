@@ -5,6 +5,7 @@
 #include <atomic>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <new>
 #include <utility>
@@ -91,8 +92,18 @@ template <class Struct>
 [[nodiscard]] inline crofton_status check_pointer(const void* pointer, const char* function) {
     return pointer ? CROFTON_OK : report(CROFTON_INVALID_ARGUMENT, function, "a pointer is NULL");
 }
-[[nodiscard]] inline crofton_status check_array(const void* pointer, std::size_t count, const char* function) {
-    return pointer || count == 0 ? CROFTON_OK : report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
+// `count` items of `width` elements, to be read. More than memory can hold are a mistake in the count.
+template <class T>
+[[nodiscard]] crofton_status check_array(const T* pointer, std::size_t count, const char* function,
+                                         std::size_t width = 1) {
+    if (!pointer && count > 0) return report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
+    if (count > PTRDIFF_MAX / (width * sizeof(T)))
+        return report(CROFTON_OUT_OF_RANGE, function, "a count is larger than any array");
+    return CROFTON_OK;
+}
+// Room for up to `capacity` items, to be written.
+[[nodiscard]] inline crofton_status check_room(const void* pointer, std::size_t capacity, const char* function) {
+    return pointer || capacity == 0 ? CROFTON_OK : report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
 }
 
 // Handles live in the host's memory.

@@ -142,7 +142,7 @@ crofton_status crofton_colliders_triangle_pairs(const crofton_collider* a, const
                                                 size_t* count) {
     const PosedColliders posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
-    CROFTON_CHECK(check_array(pairs, capacity, __func__));
+    CROFTON_CHECK(check_room(pairs, capacity, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
     Vector<collide::TrianglePair> found;
     collide::intersecting_triangles(a->tree, b->tree, posed.pose, found);

@@ -44,7 +44,7 @@ crofton_status crofton_colliders_contacts(const crofton_collider* a, const croft
                                           size_t capacity, size_t* count) {
     const PosedColliders posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
-    CROFTON_CHECK(check_array(contacts, capacity, __func__));
+    CROFTON_CHECK(check_room(contacts, capacity, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
     Vector<collide::MeshContact> found;
     collide::contacts(a->tree, b->tree, posed.pose, found);

@@ -36,7 +36,7 @@ crofton_status give(const Result<Obb>& fitted, crofton_box* box, const char* fun
 template <class Point, class Number>
 crofton_status fit_points(const Number* points, std::size_t count, const crofton_fit_options* options, crofton_box* box,
                           const char* function) {
-    CROFTON_CHECK(check_array(points, count, function));
+    CROFTON_CHECK(check_array(points, count, function, 3));
     CROFTON_CHECK(check_pointer(box, function));
     fit::Options choice;
     CROFTON_CHECK(to_options(options, function, choice));

@@ -36,7 +36,7 @@ crofton_status cast_all(const crofton_ray* rays, size_t count, crofton_ray_hit* 
 template <class Body>
 crofton_status items_within(const crofton_tree& tree, const Body& body, uint32_t layer_mask, uint32_t* items,
                             size_t capacity, size_t* found, const char* function) {
-    CROFTON_CHECK(check_array(items, capacity, function));
+    CROFTON_CHECK(check_room(items, capacity, function));
     CROFTON_CHECK(check_pointer(found, function));
     Vector<tree::ItemId> all;
     collide::overlapping(tree.tree, body, all, layer_mask);

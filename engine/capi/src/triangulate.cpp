@@ -20,7 +20,7 @@ namespace {
 // Ring ends are indices into the points: they must be sound before anything follows them.
 crofton_status copy_polygon(const crofton_polygon* polygon, const char* function, Polygon& result) {
     CROFTON_CHECK(check_struct(polygon, function));
-    CROFTON_CHECK(check_array(polygon->points, polygon->point_count, function));
+    CROFTON_CHECK(check_array(polygon->points, polygon->point_count, function, 2));
     CROFTON_CHECK(check_array(polygon->ring_ends, polygon->ring_count, function));
     std::uint32_t end = 0;
     for (std::size_t r = 0; r < polygon->ring_count; ++r) {

@@ -23,10 +23,6 @@ void* default_allocate(void*, std::size_t bytes, std::size_t alignment) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (memory && bytes >= kLargeBlock) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
-    if (!memory) {
-        std::fprintf(stderr, "crofton: out of memory for %zu bytes\n", bytes);
-        std::abort();
-    }
     return memory;
 }
 
@@ -43,7 +39,12 @@ void set_memory_hooks(const MemoryHooks& hooks) { hooks_in_force = hooks; }
 void reset_memory_hooks() { hooks_in_force = kDefaultHooks; }
 
 void* detail::allocate(std::size_t bytes, std::size_t alignment) {
-    return hooks_in_force.allocate(hooks_in_force.user, bytes, alignment);
+    void* memory = hooks_in_force.allocate(hooks_in_force.user, bytes, alignment);
+    if (!memory) {
+        std::fprintf(stderr, "crofton: out of memory for %zu bytes\n", bytes);
+        std::abort();
+    }
+    return memory;
 }
 
 void detail::release(void* memory, std::size_t bytes, std::size_t alignment) {

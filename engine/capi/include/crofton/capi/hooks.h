@@ -7,7 +7,7 @@
 extern "C" {
 #endif
 
-/* Both may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two, never NULL. */
+/* From any thread. `allocate` returns memory aligned to `alignment`, a power of two; NULL ends the program. */
 typedef struct crofton_memory_hooks {
     size_t size;
     void* user;

@@ -5,8 +5,8 @@
 
 namespace crofton {
 
-// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two; it must
-// not return nullptr (a host out of memory ends the program or frees some and retries).
+// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two; a host
+// without memory frees some and retries, and where it returns nullptr the program ends with a message (std::abort).
 struct MemoryHooks {
     void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment);
     void (*release)(void* user, void* memory, std::size_t bytes, std::size_t alignment);

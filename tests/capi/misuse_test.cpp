@@ -1,0 +1,81 @@
+// Callers' mistakes that no handle is to blame for: counts beyond memory, dead handles, calls without anything.
+#include <cstdint>
+
+#include "handles.hpp"
+
+using namespace crofton::capi_test;
+
+TEST_SUITE("capi/misuse") {
+    TEST_CASE("a count larger than any array is refused before anything is read") {
+        const crofton_box box = box_at(0, 0, 0);
+        const crofton_view view = default_view();
+        const VisibleSet visible = make_visible_set();
+        const Broadphase broadphase = make_broadphase();
+        const Scene scene = make_scene();
+        const Triangulator triangulator = make_triangulator();
+        const Collider collider = make_collider();
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(&box, nullptr, 1, nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        const Tetrahedron tetrahedron;
+        std::uint32_t id = 0;
+        std::uint8_t verdict = 0;
+        const float floats[3] = {};
+        const double doubles[3] = {};
+        const crofton_ray ray{{0, 0, 0}, {0, 0, 1}, 1.0};
+        crofton_ray_hit hit{};
+        crofton_box result;
+        for (const std::size_t count : {SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 8}) {
+            crofton_tree* none = nullptr;
+            CHECK(crofton_tree_create(&box, nullptr, count, nullptr, &none) == CROFTON_OUT_OF_RANGE);
+            CHECK(none == nullptr);
+            CHECK(crofton_tree_move(tree, &id, &box, count) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_cull_boxes(&box, nullptr, count, &view, nullptr, nullptr, visible.get()) ==
+                  CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_classify(&view.frustum, &box, count, &verdict) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_broadphase_update(broadphase.get(), &box, nullptr, count, nullptr) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_boxes_validate(&box, count) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_fit_floats(floats, count, nullptr, &result) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_fit_doubles(doubles, count, nullptr, &result) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_fit_boxes(&box, count, nullptr, &result) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_collider_raycast(collider.get(), &ray, count, &hit) == CROFTON_OUT_OF_RANGE);
+            CHECK(crofton_tree_raycast(tree, &ray, count, ~0u, &hit) == CROFTON_OUT_OF_RANGE);
+            crofton_mesh mesh = tetrahedron.mesh();
+            mesh.vertex_count = count;
+            CHECK(crofton_scene_add_mesh(scene.get(), &mesh, &id) == CROFTON_OUT_OF_RANGE);
+            mesh = tetrahedron.mesh();
+            mesh.index_count = SIZE_MAX;
+            CHECK(crofton_scene_add_mesh(scene.get(), &mesh, &id) == CROFTON_OUT_OF_RANGE);
+            auto polygon = sized<crofton_polygon>();
+            polygon.points = doubles;
+            polygon.point_count = count;
+            auto triangles = sized<crofton_triangulation>();
+            CHECK(crofton_triangulate(triangulator.get(), &polygon, 0, &triangles) == CROFTON_OUT_OF_RANGE);
+        }
+        // All is as before.
+        CHECK(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+    }
+
+    TEST_CASE("no arrays at all are empty input, not a crash") {
+        const VisibleSet visible = make_visible_set();
+        const Broadphase broadphase = make_broadphase();
+        const crofton_view view = default_view();
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(nullptr, nullptr, 0, nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        std::uint32_t item = 0;
+        CHECK(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(crofton_cull_boxes(nullptr, nullptr, 0, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(crofton_tree_move(tree, nullptr, nullptr, 0) == CROFTON_OK);
+        CHECK(crofton_tree_remove(tree, 0) != CROFTON_OK);
+        CHECK(crofton_tree_refit(tree) == CROFTON_OK);
+        CHECK(crofton_tree_maintain(tree, SIZE_MAX) == CROFTON_OK);
+        CHECK(crofton_broadphase_update(broadphase.get(), nullptr, nullptr, 0, nullptr) == CROFTON_OK);
+        crofton_box box = box_at(1, 2, 3);
+        CHECK(crofton_fit_floats(nullptr, 0, nullptr, &box) != CROFTON_OK);
+        CHECK(crofton_fit_boxes(nullptr, 0, nullptr, &box) != CROFTON_OK);
+        box = box_at(1, 2, 3);
+        CHECK(crofton_tree_insert(tree, &box, ~0u, &item) == CROFTON_OK);
+        CHECK(crofton_tree_maintain(tree, SIZE_MAX) == CROFTON_OK);
+    }
+}
