@@ -144,7 +144,10 @@ class Converter {
                 document_.root["extensionsUsed"] = {"KHR_materials_emissive_strength"};
             }
         }
-        const auto [entry, added] = material_numbers_.try_emplace(material.dump(), materials_.size());
+        // Names are any bytes: those that are no UTF-8 look alike in the JSON, and are told apart as they stand.
+        const std::string key =
+            part.material + '\0' + part.texture + '\0' + material.dump(-1, ' ', false, Json::error_handler_t::replace);
+        const auto [entry, added] = material_numbers_.try_emplace(key, materials_.size());
         if (added) materials_.push_back(std::move(material));
         return entry->second;
     }

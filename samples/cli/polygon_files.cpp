@@ -100,7 +100,7 @@ class GeoJsonReader {
         std::vector<std::pair<const json*, std::string>> open{{&document, ""}};
         for (std::size_t i = 0; i < open.size(); ++i) {
             const auto [object, name] = open[i];
-            const std::string type = object->value("type", "");
+            const std::string type = type_of(*object);
             const char* members = type == "FeatureCollection"    ? "features"
                                   : type == "GeometryCollection" ? "geometries"
                                                                  : nullptr;
@@ -124,6 +124,12 @@ class GeoJsonReader {
   private:
     [[nodiscard]] tl::unexpected<Error> broken(const std::string& name, const std::string& what) const {
         return damaged(path_, (name.empty() ? "" : name + ": ") + what);
+    }
+
+    // Empty where there is none, or something other than text.
+    static std::string type_of(const json& object) {
+        const auto type = object.find("type");
+        return type != object.end() && type->is_string() ? type->get<std::string>() : "";
     }
 
     static std::string name_of(const json& feature) {

@@ -12,10 +12,12 @@ TEST_SUITE("cli/triangulate") {
         write_contents(scratch().file("broken.json"), "[[[0,0],[1,");
         write_contents(scratch().file("odd.json"), "[[[0,0],[1,0],7]]");
         write_contents(scratch().file("empty.geojson"), R"({"type": "FeatureCollection", "features": []})");
+        write_contents(scratch().file("number.geojson"), R"({"type": 1, "features": []})");
+        write_contents(scratch().file("list.geojson"), R"({"type": "Feature", "geometry": {"type": []}})");
         write_contents(scratch().file("broken.wad"), "PWAD????");
         const std::string out = scratch().file("out.json");
-        for (const char* name :
-             {"missing.poly", "broken.poly", "broken.json", "odd.json", "empty.geojson", "broken.wad", "what.xyz"}) {
+        for (const char* name : {"missing.poly", "broken.poly", "broken.json", "odd.json", "empty.geojson",
+                                 "number.geojson", "list.geojson", "broken.wad", "what.xyz"}) {
             const CliRun run = run_cli("triangulate '" + scratch().file(name) + "' --json '" + out + "'");
             CHECK(run.status == 2);
             CHECK(run.err.find(name) != std::string::npos);
@@ -28,6 +30,19 @@ TEST_SUITE("cli/triangulate") {
         CHECK(run_cli(good + "--out x.glb").status == 2);
         CHECK(run_cli(good + "--json /no/such/folder/a.json").status == 2);
         CHECK(run_cli("triangulate").status == 2);
+    }
+
+    TEST_CASE("names that are no UTF-8 do not keep a mesh from being written") {
+        write_contents(scratch().file("latin.mtl"),
+                       "newmtl gr\xfcn\nKd 0 1 0\nmap_Kd \xfc.png\nnewmtl gr\xf6n\nKd 0 1 0\n");
+        write_contents(scratch().file("latin.obj"),
+                       "mtllib latin.mtl\no stra\xdf"
+                       "e\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\n"
+                       "usemtl gr\xf6n\nf 1 3 4\n");
+        const CliRun run =
+            run_cli("triangulate '" + scratch().file("latin.obj") + "' --out '" + scratch().file("latin.glb") + "'");
+        CHECK(run.status == 0);
+        CHECK(std::filesystem::exists(scratch().file("latin.glb")));
     }
 
     TEST_CASE("an invalid polygon is named with ring, point and position, the others are done") {
