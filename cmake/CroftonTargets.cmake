@@ -10,6 +10,9 @@ function(crofton_own_target target)
         # g++ 12 is wrong about the unused tail of a fixed-capacity array, and about "text" + string (GCC bug 105329).
         $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized -Wno-restrict>
         $<$<BOOL:${CROFTON_WERROR}>:-Werror>)
+    if(CROFTON_FUZZ)
+        target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    endif()
     if(CROFTON_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${CROFTON_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)

@@ -1,0 +1,17 @@
+// Stored trees, trusted in nothing; of those with sound links but contents of any kind, queries stay within bounds.
+#include <span>
+
+#include "use_tree.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace crofton;
+    const auto bytes = std::as_bytes(std::span(data, size));
+    if (auto tree = tree::BoxTree::deserialise(bytes)) {
+        if (!tree->validate()) std::abort();
+        fuzz::query(*tree);
+        fuzz::change(*tree);
+        if (!tree->validate()) std::abort();
+    }
+    if (const auto tree = tree::BoxTree::deserialise(bytes, tree::Trust::contents)) fuzz::query(*tree);
+    return 0;
+}
