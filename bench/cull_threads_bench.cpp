@@ -38,4 +38,32 @@ void tree_threads(benchmark::State& state) {
 }
 BENCHMARK(tree_threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
 
+// What two cores can give at best: each asks the same query for itself, and waits for nobody.
+void threads_apart(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    static const cull::BoxSet& set = [&]() -> const cull::BoxSet& {
+        static cull::BoxSet made;
+        made.assign(boxes);
+        return made;
+    }();
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::cull(set, boxes, view, verdicts, cull::Mode::exact);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+}
+BENCHMARK(threads_apart)->Arg(1000000)->Threads(1)->Threads(2)->UseRealTime();
+
+void tree_threads_apart(benchmark::State& state) {
+    const tree::BoxTree& tree = tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+}
+BENCHMARK(tree_threads_apart)->Arg(1000000)->Threads(1)->Threads(2)->UseRealTime();
+
 }  // namespace
