@@ -88,7 +88,8 @@ void BoxTree::build_subtrees(Builder& builder, Executor& executor) {
             for (std::size_t s = first + begin; s < first + end; ++s) {
                 builder.build(s, workers[worker], boxes_);
                 const Subtree& subtree = subtrees[s];
-                for (LeafId l = 0; l < subtree.leaves; ++l) fill_leaf(now_, subtree.first_leaf + l, topology);
+                const LeafId leaves_end = subtree.first_leaf + subtree.leaves;
+                for (LeafId l = subtree.first_leaf; l < leaves_end; ++l) fill_leaf(now_, l, leaves_end, topology);
                 finish_nodes(subtree.first_node, subtree.first_node + subtree.nodes, topology);
             }
         });
@@ -136,10 +137,11 @@ void BoxTree::clear_marks(Structure& structure) {
     structure.lanes_long_before.assign(structure.leaves.size(), 0);
 }
 
-void BoxTree::fill_leaf(Structure& structure, LeafId l, const Topology& topology) const {
+// Leaves before `end` may be looked at already: others may still be in the making, on other threads.
+void BoxTree::fill_leaf(Structure& structure, LeafId l, LeafId end, const Topology& topology) const {
     const Topology::LeafRecord& record = topology.leaves[l];
     // The boxes lie in the order of their ids: ask early for those of the leaf after the next.
-    if (l + 2 < topology.leaves.size()) {
+    if (l + 2 < end) {
         const Topology::LeafRecord& ahead = topology.leaves[l + 2];
         for (std::uint32_t i = 0; i < ahead.count; ++i) {
             prefetch_item(topology.order[ahead.first + i]);

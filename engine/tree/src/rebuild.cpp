@@ -129,8 +129,9 @@ std::size_t BoxTree::fill_leaves(Rebuild& work, std::size_t budget) {
     work.structure.leaves.resize(end);
     work.structure.leaf_counts.resize(end, 0);
     work.structure.slot_items.resize(end * kWidth, kNone);
+    const auto all = static_cast<LeafId>(topology.leaves.size());
     for (; work.next < end; ++work.next, ++last_step_.leaves_filled)
-        fill_leaf(work.structure, static_cast<LeafId>(work.next), topology);
+        fill_leaf(work.structure, static_cast<LeafId>(work.next), all, topology);
     return spent;
 }
 

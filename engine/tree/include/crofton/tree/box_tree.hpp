@@ -135,7 +135,7 @@ class BoxTree {
     void start(Structure& structure, const Topology& topology) const;
     void adopt_node(Structure& structure, NodeId node, const Topology& topology) const;
     static void clear_marks(Structure& structure);
-    void fill_leaf(Structure& structure, LeafId leaf, const Topology& topology) const;
+    void fill_leaf(Structure& structure, LeafId leaf, LeafId end, const Topology& topology) const;
     void rewrite_leaf(Structure& structure, LeafId leaf) const;
     void write_leaf_layers(Structure& structure, LeafId leaf) const;
     void write_item(Structure& structure, ItemId item) const;
