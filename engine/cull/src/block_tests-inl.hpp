@@ -1,5 +1,5 @@
 // Nodes and leaves against one view's planes, 16 lanes at a time. Compiled once per instruction set (Highway).
-#include "kernel_view.hpp"
+#include "block_planes.hpp"
 #include "lanes-inl.hpp"
 #include "second_stage-inl.hpp"
 
@@ -29,44 +29,63 @@ HWY_INLINE MF present(const KernelView& view, std::uint32_t every, const std::ui
     return hn::And(used, hn::RebindMask(DF(), hn::Ne(common, hn::Zero(du))));
 }
 
+// Lanes l on of a node.
+struct NodeRows {
+    VU middle_xy, half_xy, middle_half_z;
+
+    HWY_INLINE NodeRows(const tree::Node& node, std::size_t l) {
+        const DU du;
+        middle_xy = hn::Load(du, node.middle_xy + l);
+        half_xy = hn::Load(du, node.half_xy + l);
+        middle_half_z = hn::Load(du, node.middle_half_z + l);
+    }
+};
+
+// On which side of a plane the bounds lie, for certain.
+struct NodeSide {
+    MF outside, inside;
+
+    HWY_INLINE NodeSide(const NodeRows& rows, const PairPlane& normal, BlockPlane plane) {
+        const DF d;
+        const DI di;
+        const DU du;
+        VI middle = add_products(hn::Set(di, plane.offset), rows.middle_xy, hn::Set(du, normal.xy));
+        middle = add_products(middle, rows.middle_half_z, hn::Set(du, normal.z));
+        VI reach = add_products(hn::Zero(di), rows.half_xy, hn::Set(du, normal.size_xy));
+        reach = add_products(reach, rows.middle_half_z, hn::Set(du, normal.size_z));
+        outside = hn::RebindMask(d, hn::Lt(hn::Add(middle, reach), hn::Set(di, -plane.slack)));
+        inside = hn::RebindMask(d, hn::Gt(hn::Sub(middle, reach), hn::Set(di, plane.slack)));
+    }
+};
+
 HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, std::uint32_t planes) {
-    const DF d;
     const DU du;
-    const DI di;
     NodeTest result;
     result.alive = result.settled = 0;
-    const LocalOrigin at = local_origin(view, node.origin, node.reach);
-    IntegerPlane rows[KernelView::kMaxPlanes];
+    BlockPlane before[KernelView::kMaxPlanes];
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-        rows[i] = integer_plane(view.planes[i], at, inverse_quantum(node.unit));
+        before[i] = block_plane(view, i, node);
     }
-    for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
-        const VU middle_xy = hn::Load(du, node.middle_xy + l), half_xy = hn::Load(du, node.half_xy + l),
-                 middle_half_z = hn::Load(du, node.middle_half_z + l);
+    for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+        const NodeRows rows(node, l);
         MF alive = present(view, node.layers_every, node.layers_any, node.count, l);
         VU straddled = hn::Set(du, planes);
         for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            const PairPlane& plane = view.pair_planes[i];
-            VI middle = add_products(hn::Set(di, rows[i].offset), middle_xy, hn::Set(du, plane.xy));
-            middle = add_products(middle, middle_half_z, hn::Set(du, plane.z));
-            VI reach = add_products(hn::Zero(di), half_xy, hn::Set(du, plane.size_xy));
-            reach = add_products(reach, middle_half_z, hn::Set(du, plane.size_z));
-            const auto outside = hn::Lt(hn::Add(middle, reach), hn::Set(di, -rows[i].slack));
-            alive = hn::AndNot(hn::RebindMask(d, outside), alive);
-            const auto inside = hn::Gt(hn::Sub(middle, reach), hn::Set(di, rows[i].slack));
+            const NodeSide side(rows, view.pair_planes[i], before[i]);
+            alive = hn::AndNot(side.outside, alive);
             const VU bit = hn::Set(du, 1u << i);
-            straddled = hn::AndNot(hn::IfThenElseZero(hn::RebindMask(du, inside), bit), straddled);
+            straddled = hn::AndNot(hn::IfThenElseZero(hn::RebindMask(du, side.inside), bit), straddled);
         }
         hn::Store(straddled, du, result.planes + l);
         result.alive |= bits_of(alive) << l;
-        result.settled |= bits_of(hn::RebindMask(d, hn::Eq(straddled, hn::Zero(du)))) << l;
+        result.settled |= bits_of(hn::RebindMask(DF(), hn::Eq(straddled, hn::Zero(du)))) << l;
     }
     return result;
 }
 
-// Boxes in floats: from a leaf, or a list's records.
+// Boxes in floats: a list's records.
 struct BoxLanes {
     VF x, y, z, unit;
     VF edge_slack;
@@ -88,46 +107,6 @@ struct BoxLanes {
 
     HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(edge_slack, hn::Set(DF(), local.slack)); }
 };
-
-HWY_INLINE BoxLanes lanes_of(const KernelView& view, const tree::Leaf& leaf, std::size_t l) {
-    const DF d;
-    BoxLanes boxes;
-    const VF position_unit = hn::Set(d, leaf.position_unit);
-    const DU du;
-    const VU xy = hn::Load(du, leaf.xy + l), z = hn::Load(du, leaf.z_edge2_z + l),
-             edge_z = hn::Load(du, leaf.edge01_z + l);
-    boxes.x = hn::Mul(lower_half(xy), position_unit);
-    boxes.y = hn::Mul(upper_half(xy), position_unit);
-    boxes.z = hn::Mul(lower_half(z), position_unit);
-    boxes.unit = hn::Set(d, leaf.edge_unit);
-    boxes.edge_slack = hn::Set(d, leaf.slack);
-    for (unsigned k = 0; k < 3; ++k) {
-        const VU edge_xy = hn::Load(du, leaf.edge_xy[k] + l);
-        boxes.edge[3 * k] = lower_half(edge_xy);
-        boxes.edge[3 * k + 1] = upper_half(edge_xy);
-    }
-    boxes.edge[2] = lower_half(edge_z);
-    boxes.edge[5] = upper_half(edge_z);
-    boxes.edge[8] = upper_half(z);
-    boxes.present = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
-    return boxes;
-}
-
-// Most leaves that cross a frustum cross one plane; then a box that straddles it meets the frustum for certain.
-template <class Lanes>
-HWY_INLINE BoxTest test_boxes(const Lanes& boxes, const KernelPlane& plane, LocalPlane local) {
-    const DF d;
-    const VF middle = plane_value(plane, boxes.x, boxes.y, boxes.z, local.offset);
-    const VF reach = boxes.reach(plane), slack = boxes.slack(local);
-    const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
-    BoxTest result;
-    result.inside = hn::And(boxes.present, hn::Ge(bottom, slack));
-    result.straddling = hn::And(boxes.present, hn::And(hn::Ge(top, slack), hn::Lt(bottom, hn::Neg(slack))));
-    result.unsettled = result.improper = hn::FirstN(d, 0);
-    const MF maybe = hn::And(boxes.present, hn::Ge(top, hn::Neg(slack)));
-    result.undecided = hn::AndNot(hn::Or(result.inside, result.straddling), maybe);
-    return result;
-}
 
 template <class Lanes>
 HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
@@ -158,14 +137,6 @@ HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::u
     result.straddling = hn::And(crossing, meets);
     result.unsettled = hn::AndNot(meets, crossing);
     result.undecided = hn::AndNot(hn::Or(result.inside, crossing), maybe);
-    return result;
-}
-
-HWY_INLINE BoxTest test_leaf(const KernelView& view, const tree::Leaf& leaf, std::size_t l, std::uint32_t planes,
-                             const LocalPlane* local, bool exact) {
-    const BoxLanes boxes = lanes_of(view, leaf, l);
-    BoxTest result = test_boxes(view, boxes, planes, local, exact);
-    if (!hn::AllFalse(DF(), result.unsettled)) settle(view, boxes, planes, local, result);
     return result;
 }
 

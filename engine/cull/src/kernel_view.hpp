@@ -1,7 +1,5 @@
 // A view as the vector kernels read it: plain numbers, no GLM.
 #pragma once
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -25,6 +23,7 @@ struct KernelView {
     double origin[3];
     KernelPlane planes[kMaxPlanes];
     PairPlane pair_planes[kMaxPlanes];
+    double far[kMaxPlanes];  // what a plane's value at a block's origin may be off by (block_planes.hpp)
     std::uint32_t plane_count;
     std::uint32_t layer_mask;
 };
@@ -60,33 +59,6 @@ inline LocalPlane local_plane(const KernelPlane& plane, const LocalOrigin& at) {
     const double slack =
         0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.4p-20 * (at.reach + std::fabs(offset)) + 1e-37;
     return {static_cast<float>(offset), static_cast<float>(slack)};
-}
-
-// Of a power of two, shifted; and 2^14 divided by it.
-inline int exponent_of(float unit) {
-    return static_cast<int>(std::bit_cast<std::uint32_t>(unit) >> 23);
-}
-inline double inverse_quantum(float unit) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + 127 + 14 - exponent_of(unit)) << 52);
-}
-
-// A plane as seen from a node, whose children's bounds are integers of 16 bits, a quantum each: in units of 2^-14
-// quanta, the exact value at x is within `slack` of offset + pair_plane · x, plus or minus the bound's reach if that is
-// wanted. Every coordinate costs half a unit of the normal, 2^-15 · reach in all; the double offset as in local_plane;
-// 1 is for the offset's truncation, 1 for the slack's own. Offsets are cut off where the sums, |offset| + 2^14 · 1.0005
-// · √3 · 32767, would leave 32 bits: they are too small there, so that what is certainly inside is so rightly, and
-// likewise what is certainly outside.
-struct IntegerPlane {
-    std::int32_t offset, slack;
-};
-
-inline IntegerPlane integer_plane(const KernelPlane& plane, const LocalOrigin& at, double per_quantum) {
-    constexpr double kMost = 1.2e9;
-    const double value =
-        plane.normal[0] * at.d[0] + plane.normal[1] * at.d[1] + plane.normal[2] * at.d[2] + plane.offset;
-    const double slack = 0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.01p-15 * at.reach;
-    return {static_cast<std::int32_t>(std::clamp(value * per_quantum, -kMost, kMost)),
-            static_cast<std::int32_t>(std::min(slack * per_quantum + 3.0, 0x7fffffff * 1.0))};
 }
 
 }  // namespace crofton::cull

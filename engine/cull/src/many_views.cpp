@@ -4,6 +4,7 @@
 #include <crofton/cull/moving_boxes.hpp>
 #include <cstring>
 
+#include "block_planes.hpp"
 #include "box_constraints.hpp"
 #include "many_views_kernel.hpp"
 #include "query.hpp"
@@ -40,6 +41,7 @@ class ManyViewsQuery {
         for (std::size_t v = 0; v < views_.size(); ++v) {
             vectors = vectors && is_usable(views_[v].frustum) && has_unit_normals(views_[v].frustum);
             kernel_views[v] = kernel_view_of(views_[v]);
+            bring_before(tree_.nodes()[0], kernel_views[v]);
         }
         if (!vectors) return run_one_by_one(visible);
         const auto decide = [](const void* context, std::uint32_t slot, std::uint32_t view) {

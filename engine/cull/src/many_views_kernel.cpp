@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstring>
 
+// Integer products that are summed in the same step are worth a target of their own.
+#define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "many_views_kernel.cpp"
 // clang-format off
@@ -12,7 +14,7 @@
 // clang-format on
 #include <hwy/highway.h>
 
-#include "block_tests-inl.hpp"
+#include "leaf_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
@@ -255,9 +257,8 @@ class ManyWalk {
         const std::size_t count = in_.leaf_counts[id];
         for (std::size_t l = 0; l < tree::kWidth && l < count; l += hn::Lanes(du)) {
             VU mask = hn::Set(du, whole);
-            BoxLanes boxes = lanes_of(in_.views[0], in_.leaves[id], l);
             for_each_bit(open, [&](unsigned v) HWY_ATTR {
-                const MF sees = test_view(v, boxes, id, l, planes_of(v)[id]);
+                const MF sees = test_view(v, id, l, planes_of(v)[id]);
                 mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(du, sees), hn::Set(du, 1u << v)));
             });
             const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, count - l));
@@ -269,22 +270,17 @@ class ManyWalk {
     }
 
     // The boxes of a leaf that view v sees, lanes l on.
-    HWY_INLINE MF test_view(std::uint32_t v, BoxLanes& boxes, std::uint32_t id, std::size_t l,
-                            std::uint32_t planes) const {
+    HWY_INLINE MF test_view(std::uint32_t v, std::uint32_t id, std::size_t l, std::uint32_t straddled) const {
         const tree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = in_.views[v];
-        const LocalOrigin at = local_origin(view, leaf.origin, leaf.reach);
-        boxes.present = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
-        BoxTest test;
-        if (HWY_LIKELY(planes && !(planes & (planes - 1)))) {
-            const KernelPlane& plane = view.planes[hwy::Num0BitsBelowLS1Bit_Nonzero32(planes)];
-            test = test_boxes(boxes, plane, local_plane(plane, at));
-        } else {
-            LocalPlane local[KernelView::kMaxPlanes];
-            for_each_bit(planes, [&](unsigned i) { local[i] = local_plane(view.planes[i], at); });
-            test = test_boxes(view, boxes, planes, local, in_.exact);
-            if (!hn::AllFalse(DF(), test.unsettled)) settle(view, boxes, planes, local, test);
-        }
+        LeafPlane planes[KernelView::kMaxPlanes];
+        unsigned count = 0;
+        for_each_bit(straddled, [&](unsigned i) {
+            planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+        });
+        const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+        const BoxTest test = HWY_LIKELY(count == 1) ? test_leaf(LeafRows(leaf, l), lanes, planes[0])
+                                                    : test_leaf(leaf, l, lanes, planes, count, in_.exact);
         const MF seen = hn::Or(test.inside, test.straddling);
         if (HWY_LIKELY(hn::AllFalse(DF(), test.undecided))) return seen;
         alignas(64) std::uint32_t decided[tree::kWidth] = {};

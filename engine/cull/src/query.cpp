@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "block_planes.hpp"
 #include "box_constraints.hpp"
 #include "id_bits_kernel.hpp"
 
@@ -82,7 +83,8 @@ void Query::run(const tree::BoxTree& tree, Executor& executor) {
     start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
     if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
-    const KernelView view = kernel_view_of(view_);
+    KernelView view = kernel_view_of(view_);
+    bring_before(tree.nodes()[0], view);
     const TreeKernelInput input{tree.nodes().data(),         tree.leaves().data(),     tree.leaf_ranges().data(),
                                 tree.leaf_counts().data(),   tree.slot_items().data(), &view,
                                 options_.mode == Mode::exact};

@@ -24,17 +24,6 @@ namespace {
 // In an entry's planes: everything below is inside, and in a layer that the view sees.
 constexpr std::uint32_t kWhole = 1u << 31;
 
-// Lanes of `lanes` below which everything is in a layer that the view sees.
-HWY_INLINE std::uint32_t seen(const KernelView& view, const tree::Node& node, std::uint32_t lanes) {
-    if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
-    std::uint32_t result = 0;
-    for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
-        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-        if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
-    }
-    return result;
-}
-
 class Walk {
   public:
     HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output) : in_(input), out_(output) {}
@@ -42,35 +31,36 @@ class Walk {
     // A copy of the output travels with the walk, so that the compiler keeps it in registers.
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
 
-    // Group after group of entries through the nodes, what lies inside as a whole copied and the leaves that stay open
-    // noted; these follow when all nodes are done. The groups settle the order of the answer.
+    // Group after group of entries through the nodes; what lies inside as a whole is noted, and so are the leaves that
+    // stay open. These follow when all nodes are done. The groups settle the order of the answer.
     HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
         constexpr std::size_t kMaxGroups = tree::kWidth * tree::kWidth / kTreeGroup;
         std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
         for (std::size_t first = 0; first < entry_count; first += kTreeGroup, ++groups) {
             descend(entries + first, std::min(kTreeGroup, entry_count - first));
-            accept_all();
-            part(crossing_ends[groups]);
-            crossing_ends[groups + 1] = leaves_.count;
+            list_whole();
+            crossing_ends[groups + 1] = crossing_.count;
             cornered_ends[groups + 1] = cornered_.count;
         }
-        if (out_.runs == nullptr) out_.whole_count = out_.inside_count;
+        crossing_.pad();
+        cornered_.pad();
+        for (std::size_t i = 0; i < kLeavesAhead; ++i) prefetch_leaf(crossing_.children[i]);
+        if (out_.runs == nullptr) copy_runs();
         for (std::size_t g = 0; g < groups; ++g) {
-            visit_crossing(leaves_.from(crossing_ends[g], crossing_ends[g + 1]));
-            visit_cornered(cornered_.from(cornered_ends[g], cornered_ends[g + 1]));
+            visit_crossing(crossing_ends[g], crossing_ends[g + 1]);
+            visit_cornered(cornered_ends[g], cornered_ends[g + 1]);
         }
     }
 
   private:
+    static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = 8;
+
     // Children and the planes that they straddle.
     struct List {
         std::uint32_t* children;
         std::uint32_t* planes;
         std::size_t count = 0;
 
-        [[nodiscard]] HWY_INLINE List from(std::size_t begin, std::size_t end) const {
-            return {children + begin, planes + begin, end - begin};
-        }
         HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
             const DU du;
             hn::StoreU(hn::Compress(which, mask), du, children + count);
@@ -81,113 +71,111 @@ class Walk {
             children[count] = child;
             planes[count++] = child_planes;
         }
+        // Looking ahead beyond the last finds it again.
+        HWY_INLINE void pad() {
+            const std::uint32_t last = count > 0 ? children[count - 1] : 0;
+            for (std::size_t i = 0; i < kLeavesAhead; ++i) children[count + i] = last;
+        }
     };
 
     // Level by level; memory is asked for ahead, and lists grow without a branch on what is found.
     HWY_INLINE void descend(const std::uint64_t* entries, std::size_t count) {
         nodes_.count = whole_count_ = 0;
         for (std::size_t i = 0; i < count; ++i) start(entries[i]);
-        constexpr std::size_t kAhead = 4;
         for (std::size_t head = 0; head < nodes_.count; ++head) {
-            if (head + kAhead < nodes_.count) prefetch_node(nodes_.children[head + kAhead]);
-            visit_node(nodes_.children[head], nodes_.planes[head]);
+            if (head + kNodesAhead < nodes_.count) prefetch_node(nodes_.children[head + kNodesAhead]);
+            const std::uint32_t planes = nodes_.planes[head];
+            const tree::Node& node = in_.nodes[nodes_.children[head]];
+            if (kCountStatistics) out_.nodes_tested += node.count;
+            if (is_one(planes))
+                visit_crossed_once(node, planes);
+            else
+                visit_crossed(node, planes);
         }
     }
+
+    static HWY_INLINE bool is_one(std::uint32_t planes) { return planes != 0 && (planes & (planes - 1)) == 0; }
 
     HWY_INLINE void start(std::uint64_t entry) {
         const auto child = static_cast<std::uint32_t>(entry >> 32);
         const auto planes = static_cast<std::uint32_t>(entry);
         if (planes & kWhole)
             whole_[whole_count_++] = child;
+        else if (child & tree::kLeafBit)
+            (is_one(planes) ? crossing_ : cornered_).append(child & ~tree::kLeafBit, planes);
         else
-            (child & tree::kLeafBit ? leaves_ : nodes_).append(child, planes);
+            nodes_.append(child, planes);
     }
 
-    HWY_INLINE void visit_node(std::uint32_t id, std::uint32_t planes) {
-        const tree::Node& node = in_.nodes[id];
-        const NodeTest test = test_node(*in_.view, node, planes);
-        if (kCountStatistics) out_.nodes_tested += node.count;
-        const std::uint32_t whole = seen(*in_.view, node, test.alive & test.settled), open = test.alive & ~whole;
+    // Below the first levels most nodes that cross a frustum cross one plane.
+    HWY_INLINE void visit_crossed_once(const tree::Node& node, std::uint32_t planes) {
         const DU du;
+        const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
+        const BlockPlane plane = block_plane(*in_.view, i, node);
         for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-            const VU children = hn::Load(du, node.child + l), straddled = hn::Load(du, test.planes + l);
-            const auto whole_mask = mask_of(whole >> l), open_mask = mask_of(open >> l);
-            hn::StoreU(hn::Compress(children, whole_mask), du, whole_ + whole_count_);
-            whole_count_ += hn::CountTrue(du, whole_mask);
-            if (node.only_leaves) {
-                leaves_.append(children, straddled, open_mask);
-                continue;
-            }
-            const auto is_leaf = hn::Ne(hn::And(children, hn::Set(du, tree::kLeafBit)), hn::Zero(du));
-            leaves_.append(children, straddled, hn::And(open_mask, is_leaf));
-            nodes_.append(children, straddled, hn::AndNot(is_leaf, open_mask));
+            const NodeSide side(NodeRows(node, l), in_.view->pair_planes[i], plane);
+            const MF alive =
+                hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
+            note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)));
         }
     }
 
-    // Most leaves cross one plane; the others, in a list of their own, are fewer and cost more.
-    HWY_INLINE void part(std::size_t begin) {
+    HWY_INLINE void visit_crossed(const tree::Node& node, std::uint32_t planes) {
         const DU du;
-        const VU zero = hn::Zero(du), one = hn::Set(du, 1);
-        const std::size_t end = std::exchange(leaves_.count, begin);
-        for (std::size_t i = begin; i < end; i += hn::Lanes(du)) {
-            const VU children = hn::LoadU(du, leaves_.children + i), planes = hn::LoadU(du, leaves_.planes + i);
-            const auto used = hn::FirstN(du, end - i);
-            const auto few = hn::Eq(hn::And(planes, hn::Sub(planes, one)), zero);
-            const auto once = hn::And(few, hn::Ne(planes, zero));
-            leaves_.append(children, planes, hn::And(used, once));
-            cornered_.append(children, planes, hn::AndNot(once, used));
-        }
+        const NodeTest test = test_node(*in_.view, node, planes);
+        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
+            note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
     }
 
-    HWY_INLINE void prefetch_leaf(std::uint32_t child) const {
-        const std::uint32_t leaf = child & ~tree::kLeafBit;
+    // Where they go, children l on of a node that are not certainly outside; kOnce: none straddles several planes.
+    template <bool kOnce>
+    HWY_INLINE void note(const tree::Node& node, std::size_t l, MF alive, VU straddled) {
+        const DU du;
+        const VU zero = hn::Zero(du), children = hn::Load(du, node.child + l);
+        const auto lanes = hn::RebindMask(du, alive), straddles = hn::Ne(straddled, zero);
+        auto whole = hn::AndNot(straddles, lanes);
+        if (HWY_UNLIKELY(!(node.layers_every & in_.view->layer_mask))) {
+            const VU seen = hn::And(hn::Load(du, node.layers_all + l), hn::Set(du, in_.view->layer_mask));
+            whole = hn::And(whole, hn::Ne(seen, zero));
+        }
+        hn::StoreU(hn::Compress(children, whole), du, whole_ + whole_count_);
+        whole_count_ += hn::CountTrue(du, whole);
+        const auto open = hn::AndNot(whole, lanes);
+        const VU leaves = hn::AndNot(hn::Set(du, tree::kLeafBit), children);
+        auto of_leaves = open;
+        if (!node.only_leaves) {
+            const auto is_node = hn::Eq(leaves, children);
+            nodes_.append(children, straddled, hn::And(open, is_node));
+            of_leaves = hn::AndNot(is_node, open);
+        }
+        // A leaf whose layers alone are open straddles none.
+        if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
+            return crossing_.append(leaves, straddled, of_leaves);
+        const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
+        const auto once = hn::And(few, straddles);
+        crossing_.append(leaves, straddled, hn::And(of_leaves, once));
+        cornered_.append(leaves, straddled, hn::AndNot(once, of_leaves));
+    }
+
+    HWY_INLINE void prefetch_leaf(tree::LeafId leaf) const {
         for (std::size_t at = 0; at < offsetof(tree::Leaf, layers); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
         hwy::Prefetch(in_.slot_items + std::size_t{leaf} * tree::kWidth);
     }
 
-    HWY_INLINE void prefetch_node(std::uint32_t node) const {
+    HWY_INLINE void prefetch_node(tree::NodeId node) const {
         for (std::size_t at = 0; at < offsetof(tree::Node, layers_any); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
     }
 
-    HWY_INLINE void note_run(std::uint32_t leaf, std::uint32_t items) {
-        out_.runs[out_.run_count++] = {leaf * tree::kWidth, items};
-        out_.whole_count += items;
-    }
-
-    HWY_INLINE void copy_leaf(std::uint32_t leaf) {
-        if (out_.runs != nullptr) return note_run(leaf, in_.leaf_counts[leaf]);
-        const DU du;
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-            hn::StoreU(hn::Load(du, in_.slot_items + leaf * tree::kWidth + l), du, out_.inside + out_.inside_count + l);
-        out_.inside_count += in_.leaf_counts[leaf];
-    }
-
-    HWY_INLINE void copy_items(tree::LeafRange range) {
-        if (out_.runs != nullptr) return note_run(range.first, range.items);
-        const DU du;
-        const tree::ItemId* from = in_.slot_items + std::size_t{range.first} * tree::kWidth;
-        tree::ItemId* to = out_.inside + out_.inside_count;
-        for (std::size_t i = 0; i < range.items; i += hn::Lanes(du)) hn::StoreU(hn::Load(du, from + i), du, to + i);
-        out_.inside_count += range.items;
-    }
-
-    // A node whose leaves are not consecutive leaves it to its children, at the list's end.
-    HWY_INLINE void accept_all() {
-        const std::size_t before = out_.inside_count + out_.whole_count;
-        constexpr std::size_t kAhead = 8;
+    // What lies inside as a whole, as runs of slots. A node whose leaves are not consecutive leaves it to its children,
+    // at the list's end.
+    HWY_INLINE void list_whole() {
+        const std::size_t before = out_.whole_count;
         for (std::size_t i = 0; i < whole_count_; ++i) {
-            if (i + kAhead < whole_count_) {
-                const std::uint32_t ahead = whole_[i + kAhead];
-                if (ahead & tree::kLeafBit)
-                    hwy::Prefetch(in_.slot_items + std::size_t{ahead & ~tree::kLeafBit} * tree::kWidth);
-                else
-                    hwy::Prefetch(in_.ranges + ahead);
-            }
             const std::uint32_t child = whole_[i];
             if (child & tree::kLeafBit) {
-                copy_leaf(child & ~tree::kLeafBit);
+                note_leaf(child & ~tree::kLeafBit);
                 continue;
             }
             const tree::LeafRange range = in_.ranges[child];
@@ -195,11 +183,36 @@ class Walk {
             if (range.count == 0)
                 for (std::uint32_t lane = 0; lane < node.count; ++lane) whole_[whole_count_++] = node.child[lane];
             else if (range.items > 0)
-                copy_items(range);
+                note_run(range.first * tree::kWidth, range.items);
             else
-                for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) copy_leaf(leaf);
+                for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) note_leaf(leaf);
         }
-        if (kCountStatistics) out_.accepted_whole += out_.inside_count + out_.whole_count - before;
+        if (kCountStatistics) out_.accepted_whole += out_.whole_count - before;
+    }
+
+    HWY_INLINE void note_leaf(tree::LeafId leaf) { note_run(leaf * tree::kWidth, in_.leaf_counts[leaf]); }
+
+    // Joined with the run before it if it follows that.
+    HWY_INLINE void note_run(std::uint32_t first, std::uint32_t items) {
+        const bool follows = out_.run_count > 0 && run_end_ == first;
+        out_.run_count += !follows;
+        SlotRun& run = runs_[out_.run_count - 1];
+        run.first = follows ? run.first : first;
+        run_end_ = first + items;
+        run.count = run_end_ - run.first;
+        out_.whole_count += items;
+    }
+
+    HWY_INLINE void copy_runs() {
+        const DU du;
+        for (std::size_t r = 0; r < out_.run_count; ++r) {
+            if (r + kRunsAhead < out_.run_count) hwy::Prefetch(in_.slot_items + runs_[r + kRunsAhead].first);
+            const tree::ItemId* from = in_.slot_items + runs_[r].first;
+            tree::ItemId* to = out_.inside + out_.inside_count;
+            for (std::size_t i = 0; i < runs_[r].count; i += hn::Lanes(du))
+                hn::StoreU(hn::Load(du, from + i), du, to + i);
+            out_.inside_count += runs_[r].count;
+        }
     }
 
     template <class V>
@@ -210,7 +223,7 @@ class Walk {
         count += hn::CountTrue(du, bits);
     }
 
-    HWY_INLINE void emit(std::uint32_t id, std::size_t l, const BoxTest& test) {
+    HWY_INLINE void emit(tree::LeafId id, std::size_t l, const BoxTest& test) {
         const DU du;
         const VU items = hn::Load(du, in_.slot_items + id * tree::kWidth + l);
         append(items, test.inside, out_.inside, out_.inside_count);
@@ -221,69 +234,73 @@ class Walk {
                    out_.undecided_count);
     }
 
-    // The planes are made a leaf ahead: what a leaf waits for is computed while the one before is tested.
-    HWY_INLINE void visit_crossing(const List& leaves) {
+    HWY_INLINE void visit_crossing(std::size_t begin, std::size_t end) {
         const KernelView& view = *in_.view;
-        const DU du;
-        if (leaves.count == 0) return;
-        const auto plane_of = [&](std::size_t i) HWY_ATTR {
-            const tree::Leaf& leaf = in_.leaves[leaves.children[i] & ~tree::kLeafBit];
-            return plane_before_(hwy::Num0BitsBelowLS1Bit_Nonzero32(leaves.planes[i]), leaf);
-        };
-        constexpr std::size_t kAhead = 5;
-        const std::size_t last = leaves.count - 1;
-        for (std::size_t i = 0; i < std::min(kAhead, leaves.count); ++i) prefetch_leaf(leaves.children[i]);
-        LeafPlane next = plane_of(0);
-        for (std::size_t i = 0; i <= last; ++i) {
-            prefetch_leaf(leaves.children[std::min(i + kAhead, last)]);
-            const LeafPlane plane = next;
-            next = plane_of(std::min(i + 1, last));
-            const std::uint32_t id = leaves.children[i] & ~tree::kLeafBit;
+        for (std::size_t at = begin; at < end; ++at) {
+            prefetch_leaf(crossing_.children[at + kLeavesAhead]);
+            const tree::LeafId id = crossing_.children[at];
             const tree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
-            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
-                emit(id, l, test_leaf(LeafRows(view, leaf, l), plane));
-        }
-    }
-
-    HWY_INLINE void visit_cornered(const List& leaves) {
-        const KernelView& view = *in_.view;
-        const DU du;
-        constexpr std::size_t kAhead = 4;
-        for (std::size_t i = 0; i < std::min(kAhead, leaves.count); ++i) prefetch_leaf(leaves.children[i]);
-        for (std::size_t i = 0; i < leaves.count; ++i) {
-            if (i + kAhead < leaves.count) prefetch_leaf(leaves.children[i + kAhead]);
-            const std::uint32_t id = leaves.children[i] & ~tree::kLeafBit;
-            const tree::Leaf& leaf = in_.leaves[id];
-            if (kCountStatistics) out_.boxes_tested += leaf.count;
-            LeafPlane planes[KernelView::kMaxPlanes];
-            unsigned count = 0;
-            for (std::uint32_t rest = leaves.planes[i]; rest; rest &= rest - 1)
-                planes[count++] = plane_before_(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest), leaf);
-            // Nearly all have two: then there is no loop.
-            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-                const LeafRows rows(view, leaf, l);
-                emit(id, l,
-                     HWY_LIKELY(count == 2) ? test_leaf(rows, planes, 2, in_.exact)
-                                            : test_leaf(rows, planes, count, in_.exact));
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(crossing_.planes[at]);
+            const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
+            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(DU())) {
+                const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+                emit(id, l, test_leaf(LeafRows(leaf, l), lanes, plane));
             }
         }
     }
 
+    HWY_INLINE void visit_cornered(std::size_t begin, std::size_t end) {
+        const KernelView& view = *in_.view;
+        for (std::size_t at = begin; at < end; ++at) {
+            prefetch_leaf(cornered_.children[at + kLeavesAhead]);
+            const tree::LeafId id = cornered_.children[at];
+            const tree::Leaf& leaf = in_.leaves[id];
+            if (kCountStatistics) out_.boxes_tested += leaf.count;
+            LeafPlane planes[KernelView::kMaxPlanes];
+            unsigned count = 0;
+            for (std::uint32_t rest = cornered_.planes[at]; rest; rest &= rest - 1) {
+                const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+                planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+            }
+            // Nearly all have two: then there is no loop.
+            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(DU())) {
+                const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+                emit(id, l,
+                     HWY_LIKELY(count == 2) ? test_leaf(leaf, l, lanes, planes, 2, in_.exact)
+                                            : test_leaf(leaf, l, lanes, planes, count, in_.exact));
+            }
+        }
+    }
+
+    [[nodiscard]] HWY_INLINE std::uint32_t* work(std::size_t list) const { return out_.work + list * out_.work_size; }
+
     const TreeKernelInput& in_;
     TreeKernelOutput out_;
-    LeafPlaneMaker plane_before_{*in_.view, in_.nodes[0]};
-    List nodes_{out_.work, out_.work + out_.work_size};  // open, from the first on
-    List leaves_{out_.work + 2 * out_.work_size, out_.work + 3 * out_.work_size};
-    List cornered_{out_.work + 5 * out_.work_size, out_.work + 6 * out_.work_size};  // those that cross several planes
-    std::uint32_t* whole_ = out_.work + 4 * out_.work_size;  // children that lie inside as a whole
+    List nodes_{work(0), work(1)};     // open, from the first on
+    List crossing_{work(2), work(3)};  // leaves that cross one plane
+    List cornered_{work(4), work(5)};  // leaves that cross several, fewer and dearer
+    std::uint32_t* whole_ = work(6);   // children that lie inside as a whole
     std::size_t whole_count_ = 0;
+    SlotRun* runs_ = out_.runs != nullptr ? out_.runs : reinterpret_cast<SlotRun*>(work(7));
+    std::uint32_t run_end_ = 0;
 };
 
 void RunTree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
     Walk walk(input, output);
     walk.run(entries, count);
     output = walk.result();
+}
+
+// Lanes of `lanes` below which everything is in a layer that the view sees.
+HWY_INLINE std::uint32_t seen(const KernelView& view, const tree::Node& node, std::uint32_t lanes) {
+    if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
+    std::uint32_t result = 0;
+    for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
+        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+        if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
+    }
+    return result;
 }
 
 // One level down, without going into leaves; subtrees inside the view and leaves stay as they are.

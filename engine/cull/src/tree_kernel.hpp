@@ -21,7 +21,7 @@ struct SlotRun {
     std::uint32_t first, count;
 };
 
-// The lists have room for all items and 16 more, `runs` for all leaves, `work` for seven lists of `work_size`: all nodes
+// The lists have room for all items and 16 more, `runs` for all leaves, `work` for nine lists of `work_size`: all nodes
 // and all leaves that the entries name and that lie below them, and 16 more. The items that a node above them settles,
 // `whole_count` of them, come first in `inside`, or where there are `runs` stay in the tree's slots and are named there.
 struct TreeKernelOutput {
@@ -37,7 +37,7 @@ struct TreeKernelOutput {
     std::uint64_t improper;  // outside, found by a separating axis
 };
 
-inline constexpr std::size_t kWorkLists = 7;
+inline constexpr std::size_t kWorkLists = 9;
 // So many entries are handled together; the answer's order depends on which.
 inline constexpr std::size_t kTreeGroup = 8;
 

@@ -2,17 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace crofton::tree {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float float_at_least(double value) {
-    const float rounded = static_cast<float>(value);
-    return static_cast<double>(rounded) < value ? std::nextafter(rounded, kInfinity) : rounded;
-}
 
 constexpr double kMost = 32767.0;
 constexpr int kLeastExponent = -100;  // units stay normal numbers, and so do their products
@@ -34,11 +26,9 @@ bool is_unit(float unit) {
     return std::frexp(unit, &exponent) == 0.5f && exponent - 1 >= kLeastExponent && exponent < 120;
 }
 
-// Rounding moves a box's farthest point along a normal n by at most ½ Σ|n_j| ≤ ½ · 1.001 · √3 units of its position,
-// and by that many units for each of the three edges. The rest of 3 covers the kernels' float sums of the edges: ten
-// roundings of 2^-24 of at most 3 · √3 · 2^15 units.
-float slack_of(float position_unit, float edge_unit) {
-    return float_at_least(double{position_unit} + 3.0 * double{edge_unit});
+// A position_unit in edge_units, as a power of two.
+int edge_shift_of(const Leaf& leaf) {
+    return std::min(31, std::ilogb(leaf.position_unit) - std::ilogb(leaf.edge_unit));
 }
 
 }  // namespace
@@ -81,13 +71,16 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
     }
     leaf.edge_unit = unit_for(longest * (32768.0 / 32766.0), 15);
     leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may stray as far again
-    leaf.slack = slack_of(leaf.position_unit, leaf.edge_unit);
+    leaf.per_quantum = 0x1p14f / leaf.position_unit;
+    leaf.edge_shift = edge_shift_of(leaf);
     leaf.reach = 0.0f;
+    leaf.rounding = rounding_of(leaf);
 }
 
 bool is_frame(const Leaf& leaf) {
     return is_unit(leaf.position_unit) && is_unit(leaf.edge_unit) && leaf.edge_unit <= leaf.position_unit &&
-           leaf.slack == slack_of(leaf.position_unit, leaf.edge_unit);
+           leaf.per_quantum == 0x1p14f / leaf.position_unit && leaf.edge_shift == edge_shift_of(leaf) &&
+           leaf.rounding == rounding_of(leaf);
 }
 
 bool write_lane(Leaf& leaf, unsigned lane, const Obb& box) {
@@ -116,6 +109,7 @@ bool write_lane(Leaf& leaf, unsigned lane, const Obb& box) {
     leaf.edge01_z[lane] = pair(edge[2], edge[5]);
     for (int k = 0; k < 3; ++k) leaf.edge_xy[k][lane] = pair(edge[3 * k], edge[3 * k + 1]);
     leaf.reach = std::max(leaf.reach, static_cast<float>(reach) * leaf.position_unit);  // exact: reach < 2^17
+    leaf.rounding = rounding_of(leaf);
     return true;
 }
 
@@ -142,11 +136,13 @@ void fit_frame(Node& node, const Aabb& whole) {
         if (!whole.is_empty()) farthest = std::max(farthest, whole.half_extents()[j]);
     }
     node.unit = unit_for(farthest * (1.0 + 0x1p-10), 14);
+    node.per_quantum = 0x1p14f / node.unit;
     node.reach = 0.0f;
+    node.rounding = rounding_of(node);
 }
 
 bool is_frame(const Node& node) {
-    return is_unit(node.unit);
+    return is_unit(node.unit) && node.per_quantum == 0x1p14f / node.unit && node.rounding == rounding_of(node);
 }
 
 bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
@@ -169,6 +165,7 @@ bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
     node.middle_half_z[lane] = pair_of(middle[2], half[2]);
     node.half_xy[lane] = pair_of(half[0], half[1]);
     node.reach = std::max(node.reach, static_cast<float>(reach) * node.unit);  // exact: reach < 2^17
+    node.rounding = rounding_of(node);
     return true;
 }
 

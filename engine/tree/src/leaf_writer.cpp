@@ -124,6 +124,7 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
         fits = fits && hn::AllTrue(d, near);
     }
     leaf.reach = static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, reach))) * leaf.position_unit;  // exact: below 2^17
+    leaf.rounding = rounding_of(leaf);
     return fits;
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 struct Header {
     char magic[8] = {'c', 'r', 'o', 'f', 't', 'r', 'e', 'e'};
-    std::uint32_t version = 3;
+    std::uint32_t version = 4;
     std::uint32_t byte_order = 0x01020304;
     std::uint32_t node_bytes = sizeof(Node), leaf_bytes = sizeof(Leaf), box_bytes = sizeof(Obb);
     std::uint32_t height = 0;

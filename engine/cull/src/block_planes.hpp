@@ -1,0 +1,52 @@
+// A view's planes in the integers of a tree's nodes and leaves.
+#pragma once
+#include <algorithm>
+#include <crofton/tree/layout.hpp>
+
+#include "kernel_view.hpp"
+
+namespace crofton::cull {
+
+// In units of 2^-14 of the block's unit: a plane's value at integers x of the block is offset + pair_plane · x, and
+// `slack` bounds what that, and a box's reach added or taken away, may be off by (tree::rounding_of).
+struct BlockPlane {
+    std::int32_t offset, slack;
+};
+
+// For the blocks of a tree. The offset's seven roundings of 2^-53 of Σ|origin − view| + |plane offset| each, as in
+// local_plane, for any block whose origin lies in the root's bounds, or farther out by less than the block's reach: the
+// share of that in `rounding` has room for it.
+inline void bring_before(const tree::Node& root, KernelView& view) {
+    const LocalOrigin at = local_origin(view, root.origin, root.reach);
+    for (std::uint32_t i = 0; i < view.plane_count; ++i)
+        view.far[i] = 0x1p-49 * (at.size + at.reach + std::fabs(view.planes[i].offset));
+}
+
+inline constexpr double kMostOffset = 1.2e9;
+
+inline double value_at(const KernelView& view, std::size_t i, const double* origin) {
+    const KernelPlane& plane = view.planes[i];
+    return plane.normal[0] * (origin[0] - view.origin[0]) + plane.normal[1] * (origin[1] - view.origin[1]) +
+           plane.normal[2] * (origin[2] - view.origin[2]) + plane.offset;
+}
+
+// Offsets are cut off where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits: they are too small
+// there, so that what is certainly inside is so rightly, and likewise what is certainly outside.
+inline BlockPlane block_plane(const KernelView& view, std::size_t i, const tree::Node& node) {
+    const double per_quantum = static_cast<double>(node.per_quantum),
+                 offset = value_at(view, i, node.origin) * per_quantum,
+                 slack = (static_cast<double>(node.rounding) + view.far[i]) * per_quantum;
+    return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, offset))),
+            static_cast<std::int32_t>(std::min(slack, 0x7fffffff * 1.0))};
+}
+
+// Where the offset would have to be cut off the plane says nothing: a box that it cuts must be so for certain.
+inline BlockPlane block_plane(const KernelView& view, std::size_t i, const tree::Leaf& leaf) {
+    const double per_quantum = static_cast<double>(leaf.per_quantum),
+                 offset = value_at(view, i, leaf.origin) * per_quantum,
+                 slack = (static_cast<double>(leaf.rounding) + view.far[i]) * per_quantum;
+    if (!(std::fabs(offset) <= kMostOffset && slack <= kMostOffset)) return {0, 0x7fffffff};
+    return {static_cast<std::int32_t>(offset), static_cast<std::int32_t>(slack)};
+}
+
+}  // namespace crofton::cull
