@@ -122,8 +122,9 @@ bool Integers::set(const Obb& a, const Obb& b, const PairColumns& columns) {
     for (std::size_t k = 0; k < 6; ++k) {
         const float(&axes)[3][4] = k < 3 ? columns.a : columns.b;
         for (std::size_t c = 0; c < 3; ++c) edge[k][c] = integer(static_cast<double>(axes[c][k % 3]), axis_scale, fits);
-        const float h = (k < 3 ? columns.half_a : columns.half_b)[k % 3];
-        half[k] = static_cast<std::uint64_t>(integer(static_cast<double>(h), scale, fits));
+        // A pointer: GCC 12 with sanitizers indexes the choice between two arrays wrongly.
+        const float* halves = k < 3 ? columns.half_a : columns.half_b;
+        half[k] = static_cast<std::uint64_t>(integer(static_cast<double>(halves[k % 3]), scale, fits));
     }
     for (int c = 0; c < 3; ++c) {
         const auto [high, low] = detail::two_sum(b.center[c], -a.center[c]);
