@@ -120,10 +120,9 @@ void scene_panel(const PanelInput& input, PanelWish& wish) {
     ImGui::SetNextWindowSize(ImVec2(width, std::min(18.0f * font, 0.45f * display.y)), when);
     if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
     if (ImGui::Begin("Scene")) {
-        ImGui::TextWrapped("%s nodes, %s instances, %s triangles",
-                           with_thousands(input.stage.scene().node_count()).c_str(),
-                           with_thousands(input.stage.scene().instance_count()).c_str(),
-                           with_thousands(input.stage.triangle_count()).c_str());
+        ImGui::TextWrapped("%s nodes, %s instances", with_thousands(input.stage.scene().node_count()).c_str(),
+                           with_thousands(input.stage.scene().instance_count()).c_str());
+        ImGui::Text("%s triangles", with_thousands(input.stage.triangle_count()).c_str());
         show_selection(input);
         ImGui::Separator();
         if (ImGui::BeginChild("nodes")) show_children(input, wish, scene::kNone, 0);
