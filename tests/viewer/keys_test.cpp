@@ -112,7 +112,7 @@ TEST_SUITE("viewer/docs") {
         // And every switch is in the page.
         const std::string page = contents_of(CROFTON_SOURCE "/docs/viewer.md");
         const json switches = viewer::to_json(viewer::Settings{});
-        for (const auto& [name, value] : switches.items())
-            CHECK_MESSAGE(page.find("`" + name + "`") != std::string::npos, name);
+        for (const auto& item : switches.items())
+            CHECK_MESSAGE(page.find("`" + item.key() + "`") != std::string::npos, item.key());
     }
 }

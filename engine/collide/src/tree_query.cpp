@@ -115,7 +115,8 @@ class Traveller {
     explicit Traveller(const Ray& ray) : origin_(ray.origin), length_(glm::length(ray.direction)) {
         for (int k = 0; k < 3; ++k) {
             const double speed = ray.direction[k] / length_;
-            inverse_[k] = static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
+            inverse_[static_cast<std::size_t>(k)] =
+                static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
         }
     }
     // In the filter's distances, rounded up.
@@ -127,7 +128,7 @@ class Traveller {
         LaneRay ray;
         for (int k = 0; k < 3; ++k) {
             ray.origin[k] = static_cast<float>(origin_[k] - block.origin[k]);
-            ray.inverse[k] = inverse_[k];
+            ray.inverse[k] = inverse_[static_cast<std::size_t>(k)];
         }
         ray.limit = limit;
         return ray;
