@@ -30,23 +30,30 @@ inline double value_at(const KernelView& view, std::size_t i, const double* orig
            plane.normal[2] * (origin[2] - view.origin[2]) + plane.offset;
 }
 
+// In the block's units, not yet integers.
+struct ScaledPlane {
+    double offset, slack;
+};
+template <class Block>
+ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& block) {
+    const double per_quantum = static_cast<double>(block.per_quantum);
+    return {value_at(view, i, block.origin) * per_quantum,
+            (static_cast<double>(block.rounding) + view.far[i]) * per_quantum};
+}
+
 // Offsets are cut off where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits: they are too small
 // there, so that what is certainly inside is so rightly, and likewise what is certainly outside.
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const tree::Node& node) {
-    const double per_quantum = static_cast<double>(node.per_quantum),
-                 offset = value_at(view, i, node.origin) * per_quantum,
-                 slack = (static_cast<double>(node.rounding) + view.far[i]) * per_quantum;
-    return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, offset))),
-            static_cast<std::int32_t>(std::min(slack, 0x7fffffff * 1.0))};
+    const ScaledPlane plane = scaled_plane(view, i, node);
+    return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, plane.offset))),
+            static_cast<std::int32_t>(std::min(plane.slack, 0x7fffffff * 1.0))};
 }
 
 // Where the offset would have to be cut off the plane says nothing: a box that it cuts must be so for certain.
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const tree::Leaf& leaf) {
-    const double per_quantum = static_cast<double>(leaf.per_quantum),
-                 offset = value_at(view, i, leaf.origin) * per_quantum,
-                 slack = (static_cast<double>(leaf.rounding) + view.far[i]) * per_quantum;
-    if (!(std::fabs(offset) <= kMostOffset && slack <= kMostOffset)) return {0, 0x7fffffff};
-    return {static_cast<std::int32_t>(offset), static_cast<std::int32_t>(slack)};
+    const ScaledPlane plane = scaled_plane(view, i, leaf);
+    if (!(std::fabs(plane.offset) <= kMostOffset && plane.slack <= kMostOffset)) return {0, 0x7fffffff};
+    return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.slack)};
 }
 
 }  // namespace crofton::cull

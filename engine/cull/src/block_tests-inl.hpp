@@ -85,6 +85,17 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
     return result;
 }
 
+// Lanes of `lanes` below which everything is in a layer that the view sees.
+HWY_INLINE std::uint32_t seen(const KernelView& view, const tree::Node& node, std::uint32_t lanes) {
+    if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
+    std::uint32_t result = 0;
+    for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
+        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+        if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
+    }
+    return result;
+}
+
 // Boxes in floats: a list's records.
 struct BoxLanes {
     VF x, y, z, unit;

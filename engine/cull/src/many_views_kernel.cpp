@@ -71,7 +71,7 @@ class ManyWalk {
     HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size) {
         const tree::Node& node = in_.nodes[id];
         const NodeTest test = test_node(in_.views[v], node, planes);
-        const std::uint32_t whole = seen(node, in_.views[v], test.alive & test.settled);
+        const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.settled);
         if (node.only_leaves) {
             note_leaves(node, test, whole, v);
             return size;
@@ -82,16 +82,6 @@ class ManyWalk {
             out_.stack[size++] = std::uint64_t{node.child[lane]} << 32 | (is_whole ? kWhole : test.planes[lane]);
         });
         return size;
-    }
-
-    // Lanes of `lanes` below which everything is in a layer that the view sees.
-    static HWY_INLINE std::uint32_t seen(const tree::Node& node, const KernelView& view, std::uint32_t lanes) {
-        if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
-        std::uint32_t result = 0;
-        for_each_bit(lanes, [&](unsigned lane) {
-            if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
-        });
-        return result;
     }
 
     // False for a node whose leaves are not consecutive.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <crofton/cull/statistics.hpp>
 #include <cstddef>
-#include <utility>
 
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
@@ -290,17 +289,6 @@ void RunTree(const TreeKernelInput& input, const std::uint64_t* entries, std::si
     Walk walk(input, output);
     walk.run(entries, count);
     output = walk.result();
-}
-
-// Lanes of `lanes` below which everything is in a layer that the view sees.
-HWY_INLINE std::uint32_t seen(const KernelView& view, const tree::Node& node, std::uint32_t lanes) {
-    if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
-    std::uint32_t result = 0;
-    for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {
-        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-        if (node.layers_all[lane] & view.layer_mask) result |= 1u << lane;
-    }
-    return result;
 }
 
 // One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
