@@ -53,18 +53,7 @@ MeshBox box_with(std::span<const glm::vec3> points, const glm::dmat3& frame) {
 
 // Principal axes, that of the least spread first.
 glm::dmat3 principal_axes(std::span<const glm::vec3> points) {
-    const glm::vec3 origin = points.front();
-    glm::dvec3 sum(0.0), squares(0.0), products(0.0);
-    for (const glm::vec3& point : points) {
-        const glm::dvec3 p(point - origin);
-        sum += p;
-        squares += p * p;
-        products += glm::dvec3(p.x * p.y, p.y * p.z, p.z * p.x);
-    }
-    const double n = static_cast<double>(points.size());
-    const glm::dvec3 mean = sum / n, diagonal = squares / n - mean * mean;
-    const glm::dvec3 off = products / n - glm::dvec3(mean.x * mean.y, mean.y * mean.z, mean.z * mean.x);
-    const glm::dmat3 covariance(diagonal.x, off.x, off.z, off.x, diagonal.y, off.y, off.z, off.y, diagonal.z);
+    const glm::dmat3 covariance = covariance_of(points.size(), [&](std::size_t i) { return points[i]; });
     glm::dmat3 frame = eigenvectors(covariance);
     std::array<double, 3> spread;
     for (int k = 0; k < 3; ++k) spread[static_cast<std::size_t>(k)] = glm::dot(frame[k], covariance * frame[k]);

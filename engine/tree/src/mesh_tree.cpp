@@ -106,18 +106,8 @@ Part MeshTreeBuilder::split(Part& part) {
     const Range range = part.range;
     const auto begin = references_.begin() + static_cast<std::ptrdiff_t>(range.begin);
     const auto end = references_.begin() + static_cast<std::ptrdiff_t>(range.end);
-    glm::dvec3 sum(0.0), squares(0.0), products(0.0);
-    const glm::vec3 origin = begin->centroid;
-    for (auto r = begin; r != end; ++r) {
-        const glm::dvec3 p(r->centroid - origin);
-        sum += p;
-        squares += p * p;
-        products += glm::dvec3(p.x * p.y, p.y * p.z, p.z * p.x);
-    }
-    const double n = static_cast<double>(range.size());
-    const glm::dvec3 mean = sum / n, diagonal = squares / n - mean * mean;
-    const glm::dvec3 off = products / n - glm::dvec3(mean.x * mean.y, mean.y * mean.z, mean.z * mean.x);
-    const glm::dmat3 covariance(diagonal.x, off.x, off.z, off.x, diagonal.y, off.y, off.z, off.y, diagonal.z);
+    const glm::dmat3 covariance =
+        covariance_of(range.size(), [&](std::size_t i) { return begin[static_cast<std::ptrdiff_t>(i)].centroid; });
     const glm::dmat3 frame = eigenvectors(covariance);
     int longest = 0;
     double spread = -1.0;

@@ -1,10 +1,29 @@
-// Principal directions of a symmetric 3 × 3 matrix, by Jacobi rotations.
+// Covariances of points, and principal directions of symmetric 3 × 3 matrices, by Jacobi rotations.
 #pragma once
 #include <cmath>
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton::tree {
+
+// Of point_at(0), …, point_at(count − 1), count > 0. Sums are relative to the first point: they lose nothing far from
+// the origin.
+template <class PointAt>
+[[nodiscard]] glm::dmat3 covariance_of(std::size_t count, const PointAt& point_at) {
+    const glm::vec3 origin = point_at(std::size_t{0});
+    glm::dvec3 sum(0.0), squares(0.0), products(0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 p(point_at(i) - origin);
+        sum += p;
+        squares += p * p;
+        products += glm::dvec3(p.x * p.y, p.y * p.z, p.z * p.x);
+    }
+    const double n = static_cast<double>(count);
+    const glm::dvec3 mean = sum / n, diagonal = squares / n - mean * mean;
+    const glm::dvec3 off = products / n - glm::dvec3(mean.x * mean.y, mean.y * mean.z, mean.z * mean.x);
+    return {diagonal.x, off.x, off.z, off.x, diagonal.y, off.y, off.z, off.y, diagonal.z};
+}
 
 // Columns: orthonormal eigenvectors. Four sweeps bring the off-diagonal part far below float precision; matrices need
 // not be resolved further, since any orthonormal frame gives a valid box.
