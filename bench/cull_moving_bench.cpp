@@ -83,8 +83,8 @@ struct Moving {
     }
 };
 
-// The boxes move, the tree is refitted and asked; in a tree as it was built, or after a rebuild in the background, which
-// has found out what moves.
+// The boxes move, the tree is refitted and asked; in a tree as it was built, or after a rebuild in the background,
+// which has found out what moves.
 void move_and_cull(benchmark::State& state, Tenth tenth, bool rebuilt) {
     Moving moving(state.range(0), tenth);
     if (rebuilt) {
@@ -114,8 +114,8 @@ BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, Tenth::neighbours_numbered
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
 
-// The tenth is lifted out of the tree and kept as a list over the caller's boxes. Parts of the frame: 0 the caller's own
-// change of the boxes, 1 the list's update as well, 2 all.
+// The tenth is lifted out of the tree and kept as a list over the caller's boxes. Parts of the frame: 0 the caller's
+// own change of the boxes, 1 the list's update as well, 2 all.
 void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::Options options) {
     Moving moving(state.range(0), tenth);
     if (tenth == Tenth::scattered) {  // each once
@@ -146,7 +146,9 @@ BENCHMARK_CAPTURE(list_and_cull, scattered, Tenth::scattered, 2, kPlanes)->Arg(1
 BENCHMARK_CAPTURE(list_and_cull, numbered_together, Tenth::numbered_together, 2, kPlanes)
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(list_and_cull, neighbours, Tenth::neighbours, 2, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(list_and_cull, neighbours, Tenth::neighbours, 2, kPlanes)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(list_and_cull, neighbours_numbered, Tenth::neighbours_numbered, 2, kPlanes)
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
@@ -158,8 +160,8 @@ BENCHMARK_CAPTURE(list_and_cull, scattered_ascending, Tenth::scattered, 2, cull:
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
 
-// Another tenth changes in each frame, of a list of all; the list is told which, or looks at all. Choosing the tenth is not
-// timed.
+// Another tenth changes in each frame, of a list of all; the list is told which, or looks at all. Choosing the tenth is
+// not timed.
 void list_of_all(benchmark::State& state, bool told) {
     std::vector<Obb> boxes = boxes_of(state.range(0));
     cull::BoxSet set;
@@ -194,12 +196,10 @@ void move_floor(benchmark::State& state, Tenth tenth) {
     }
 }
 BENCHMARK_CAPTURE(move_floor, scattered, Tenth::scattered)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(move_floor, numbered_together, Tenth::numbered_together)
-    ->Arg(1000000)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(move_floor, numbered_together, Tenth::numbered_together)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
-// One whole rebuild in the background while a hundredth of the boxes moves every frame: how long the longest step takes,
-// and the mean one.
+// One whole rebuild in the background while a hundredth of the boxes moves every frame: how long the longest step
+// takes, and the mean one.
 void rebuild_steps(benchmark::State& state) {
     Moving moving(state.range(0), Tenth::numbered_together);
     moving.items.resize(moving.items.size() / 10);

@@ -109,7 +109,8 @@ VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool ba
         for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(distance * direction[i], kOffsetBits);
         // Floats of this size lie on the lattice, or are small enough to be put there.
         if (kind.float_centers)
-            for (int i = 0; i < 3; ++i) b.center[i] = on_lattice(static_cast<double>(static_cast<float>(b.center[i])), kOffsetBits);
+            for (int i = 0; i < 3; ++i)
+                b.center[i] = on_lattice(static_cast<double>(static_cast<float>(b.center[i])), kOffsetBits);
         first.push_back(a);
         second.push_back(b);
         truth.push_back(meet_in_integers(a, b));

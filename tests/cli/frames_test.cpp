@@ -27,7 +27,8 @@ TEST_SUITE("cli/frames") {
         write_contents(scratch().file("index.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
         write_contents(scratch().file("empty.obj"), "# nothing\n");
         write_contents(scratch().file("cameras.json"), "[{\"position\": [0, 0, \"x\"]}]");
-        write_contents(scratch().file("far.gltf"), R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        write_contents(scratch().file("far.gltf"),
+                       R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
             "nodes": [{"translation": [1e39, 0, 0], "name": "runaway"}]})");
         struct Case {
             std::string arguments, culprit;
@@ -81,11 +82,31 @@ TEST_SUITE("cli/frames") {
         for (const char* field : {"name", "nodes", "instances", "triangles"}) CHECK(document["scene"].contains(field));
         REQUIRE(document["frames"].size() == 6);
         for (const json& frame : document["frames"]) {
-            for (const char* field :
-                 {"index", "camera", "instances", "visible", "inside", "straddling", "improper", "nodes_tested",
-                  "triangles_submitted", "triangles_passed", "triangles_clipped", "gpu", "colliding_pairs", "update_us",
-                  "cull_us", "collide_us", "draw_us", "visible_ids", "colliding_ids", "pairs_tested", "separated_by_face_a",
-                  "separated_by_face_b", "separated_by_edges", "pairs_refined", "contacts"})
+            for (const char* field : {"index",
+                                      "camera",
+                                      "instances",
+                                      "visible",
+                                      "inside",
+                                      "straddling",
+                                      "improper",
+                                      "nodes_tested",
+                                      "triangles_submitted",
+                                      "triangles_passed",
+                                      "triangles_clipped",
+                                      "gpu",
+                                      "colliding_pairs",
+                                      "update_us",
+                                      "cull_us",
+                                      "collide_us",
+                                      "draw_us",
+                                      "visible_ids",
+                                      "colliding_ids",
+                                      "pairs_tested",
+                                      "separated_by_face_a",
+                                      "separated_by_face_b",
+                                      "separated_by_edges",
+                                      "pairs_refined",
+                                      "contacts"})
                 CHECK_MESSAGE(frame.contains(field), field);
             for (const char* field : {"position", "forward", "up", "fov_y", "aspect", "near", "far"})
                 CHECK_MESSAGE(frame["camera"].contains(field), field);

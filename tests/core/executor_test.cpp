@@ -1,7 +1,7 @@
+#include <doctest/doctest.h>
 #include <atomic>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/thread_pool.hpp>
-#include <doctest/doctest.h>
 #include <vector>
 
 using namespace crofton;

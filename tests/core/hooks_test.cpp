@@ -1,6 +1,6 @@
+#include <doctest/doctest.h>
 #include <crofton/core/log.hpp>
 #include <crofton/core/version.hpp>
-#include <doctest/doctest.h>
 #include <string>
 
 using namespace crofton;
@@ -10,7 +10,8 @@ TEST_SUITE("core/hooks") {
         std::string seen;
         set_log_handler(
             [](void* user, LogLevel level, std::string_view message) {
-                *static_cast<std::string*>(user) += std::to_string(static_cast<int>(level)) + ":" + std::string(message);
+                *static_cast<std::string*>(user) +=
+                    std::to_string(static_cast<int>(level)) + ":" + std::string(message);
             },
             &seen);
         log(LogLevel::info, "hello");

@@ -148,7 +148,8 @@ TEST_SUITE("cull/moving_boxes") {
                     for (int change = 0; change < 40; ++change) {
                         const ItemId item = random.index(static_cast<unsigned>(crowd.tree.boxes().size()));
                         const bool moves = crowd.tree.is_lifted(item);
-                        const auto at = static_cast<std::size_t>(std::ranges::find(crowd.items, item) - crowd.items.begin());
+                        const auto at =
+                            static_cast<std::size_t>(std::ranges::find(crowd.items, item) - crowd.items.begin());
                         if (!crowd.all.contains(item)) continue;
                         switch (random.index(5)) {
                             case 0:
@@ -215,7 +216,9 @@ TEST_SUITE("cull/moving_boxes") {
         check_answers(crowd, views, serial_executor());
     }
 
-    TEST_CASE("a list that grows, shrinks and gathers elsewhere answers rightly, and allocates nothing once it has been large") {
+    TEST_CASE(
+        "a list that grows, shrinks and gathers elsewhere answers rightly, and allocates nothing once it has been "
+        "large") {
         const testing::CountingMemory counting;
         const oracle::Crowd boxes = oracle::random_crowd(20000, 0.0, 6);
         std::vector<ItemId> items(boxes.boxes.size());
@@ -250,7 +253,8 @@ TEST_SUITE("cull/moving_boxes") {
         CHECK(counting.allocations() == warm);
     }
 
-    TEST_CASE("every instruction set that this machine has gives the same ids in the same order, and the same statistics") {
+    TEST_CASE(
+        "every instruction set that this machine has gives the same ids in the same order, and the same statistics") {
         std::vector<ItemId> first;
         cull::Statistics cost;
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
@@ -261,7 +265,8 @@ TEST_SUITE("cull/moving_boxes") {
             std::vector<ItemId> ids;
             cull::Statistics sum;
             for (unsigned v = 0; v < 6; ++v) {
-                cull::cull(crowd.tree, crowd.moving, view_near(random, v), visible, {cull::Mode::exact, cull::Order::tree});
+                cull::cull(crowd.tree, crowd.moving, view_near(random, v), visible,
+                           {cull::Mode::exact, cull::Order::tree});
                 ids.insert(ids.end(), visible.ids().begin(), visible.ids().end());
                 sum += visible.statistics();
             }

@@ -1,6 +1,7 @@
 // The code that docs/integrate.md shows, compiled and run. documentation_test.cpp compares the two.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/log.hpp>
@@ -9,7 +10,6 @@
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 #include <crofton/scene/scene.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <glm/ext/matrix_clip_space.hpp>

@@ -1,5 +1,5 @@
-#include <crofton/geometry/expansion.hpp>
 #include <doctest/doctest.h>
+#include <crofton/geometry/expansion.hpp>
 #include <random>
 
 using namespace crofton;

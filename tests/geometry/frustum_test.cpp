@@ -1,6 +1,6 @@
+#include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>
-#include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>

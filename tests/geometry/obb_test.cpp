@@ -1,6 +1,6 @@
+#include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/obb.hpp>
-#include <doctest/doctest.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <random>
@@ -13,7 +13,8 @@ Obb random_box(std::mt19937& random, double center_size) {
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
     Obb box;
     box.center = glm::dvec3(unit(random), unit(random), unit(random)) * center_size;
-    box.axes = glm::mat3(glm::rotate(glm::mat4(1.0f), 3.0f * unit(random), glm::vec3(unit(random), unit(random), 1.1f)));
+    box.axes =
+        glm::mat3(glm::rotate(glm::mat4(1.0f), 3.0f * unit(random), glm::vec3(unit(random), unit(random), 1.1f)));
     box.half_extents = glm::abs(glm::vec3(unit(random), unit(random), unit(random)));
     return box;
 }

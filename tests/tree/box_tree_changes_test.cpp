@@ -2,8 +2,8 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <crofton/tree/box_tree.hpp>
-#include <oracle/random_boxes.hpp>
 #include <limits>
+#include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
 #include <vector>
 
@@ -143,7 +143,8 @@ TEST_SUITE("tree/box_tree changes") {
             REQUIRE(step.divisions <= 1);
             // Kinds of work that follow each other within a step share its budget.
             REQUIRE(step.items_added + 32 * step.leaves_filled + 8 * step.nodes_linked + 32 * step.nodes_bounded +
-                        2 * step.items_followed <= kMost + 40);
+                        2 * step.items_followed <=
+                    kMost + 40);
             all.items_added += step.items_added;
             all.items_followed += step.items_followed;
             all.slots_cleared += step.slots_cleared;
@@ -200,7 +201,8 @@ TEST_SUITE("tree/box_tree changes") {
         CHECK(BoxTree::build(crowd.boxes, {.moving = unknown}).error().item == 40000);
     }
 
-    TEST_CASE("many boxes moved at once are found where they went, some of them far, the same on every instruction set") {
+    TEST_CASE(
+        "many boxes moved at once are found where they went, some of them far, the same on every instruction set") {
         const oracle::Crowd crowd = oracle::random_crowd(3000, 1e5, 11);
         const BoxTree built = *BoxTree::build(crowd.boxes, crowd.layers);
         const Vector<std::byte> bytes = built.serialise();
@@ -234,7 +236,8 @@ TEST_SUITE("tree/box_tree changes") {
         hwy::SetSupportedTargetsForTest(0);
     }
 
-    TEST_CASE("among many boxes to move, one that is barely good passes and one that is not is named, and nothing moves") {
+    TEST_CASE(
+        "among many boxes to move, one that is barely good passes and one that is not is named, and nothing moves") {
         const oracle::Crowd crowd = oracle::random_crowd(100, 0.0, 13);
         BoxTree tree = *BoxTree::build(crowd.boxes);
         const Vector<std::byte> before = tree.serialise();

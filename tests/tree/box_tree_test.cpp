@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <crofton/core/thread_pool.hpp>
+#include <crofton/tree/box_tree.hpp>
 #include <limits>
 #include <oracle/least_cuts.hpp>
 #include <oracle/random_boxes.hpp>
@@ -78,7 +78,8 @@ TEST_SUITE("tree/box_tree") {
             }
     }
 
-    // Two clumps of 40,000 boxes each, as large as a 10^4th of the scene: all of a clump share one coarse cell of the curve.
+    // Two clumps of 40,000 boxes each, as large as a 10^4th of the scene: all of a clump share one coarse cell of the
+    // curve.
     TEST_CASE("crowds in clumps make leaves as small as a crowd of one scale") {
         oracle::NearMisses random(8);
         const auto place = [&](double reach) {
@@ -87,7 +88,8 @@ TEST_SUITE("tree/box_tree") {
         std::vector<Obb> boxes;
         for (int clump = 0; clump < 2; ++clump) {
             const glm::dvec3 middle = place(5000.0);
-            for (int i = 0; i < 40000; ++i) boxes.push_back({.center = middle + place(0.5), .half_extents = glm::vec3(0.001f)});
+            for (int i = 0; i < 40000; ++i)
+                boxes.push_back({.center = middle + place(0.5), .half_extents = glm::vec3(0.001f)});
         }
         const BoxTree tree = *BoxTree::build(boxes);
         CHECK(tree.validate().has_value());
@@ -112,8 +114,8 @@ TEST_SUITE("tree/box_tree") {
         }
     }
 
-    // A leaf of 16 items is 512 bytes, 64 are the items' ids, 7 its marks and count; an item has 4 bytes for its slot and 4
-    // for its layers; a sixteenth of a node and of its range come with each leaf. Leaves are 97 % full at least.
+    // A leaf of 16 items is 512 bytes, 64 are the items' ids, 7 its marks and count; an item has 4 bytes for its slot
+    // and 4 for its layers; a sixteenth of a node and of its range come with each leaf. Leaves are 97 % full at least.
     TEST_CASE("an item costs at most 64 bytes beside its box, after moves too") {
         const testing::CountingMemory memory;
         const oracle::Crowd crowd = oracle::random_crowd(100000, 0.0, 21);

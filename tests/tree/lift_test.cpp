@@ -40,7 +40,8 @@ TEST_SUITE("tree/lift") {
         CHECK(holds_all(tree));
     }
 
-    TEST_CASE("a large tree built with items lifted holds the others, and all once they have settled and it is rebuilt") {
+    TEST_CASE(
+        "a large tree built with items lifted holds the others, and all once they have settled and it is rebuilt") {
         const oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 5);
         std::vector<ItemId> lifted;
         for (ItemId i = 3; i < 40000; i += 8) lifted.push_back(i);
@@ -73,7 +74,8 @@ TEST_SUITE("tree/lift") {
         CHECK(holds_all(tree));
     }
 
-    TEST_CASE("lifting and settling amid other changes and background rebuilds leaves a valid tree, stored and read too") {
+    TEST_CASE(
+        "lifting and settling amid other changes and background rebuilds leaves a valid tree, stored and read too") {
         oracle::NearMisses random(3);
         for (const std::size_t budget : {0u, 50u, 5000u}) {
             const oracle::Crowd crowd = oracle::random_crowd(1500, 0.0, 4);

@@ -39,8 +39,8 @@ using GrowPairs = FunctionRef<bool(SlotPairs&)>;
 inline constexpr std::size_t kCandidates = 512;  // boxes near a leaf that are compared with it at once
 inline constexpr std::size_t kPairRoom = (kCandidates + 1) * kBoxBlock;
 
-// All pairs of slots whose bounds meet and the earlier of whose leaves lies below blocks [begin, end) of levels[1], each
-// once.
+// All pairs of slots whose bounds meet and the earlier of whose leaves lies below blocks [begin, end) of levels[1],
+// each once.
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
 
 }  // namespace crofton::collide

@@ -183,8 +183,8 @@ bool closer_than(const tree::MeshTree& a, const tree::MeshTree& b, const Pose& b
         return close;
     };
     const MeshPair pair = make_pair(a, b, b_to_a, tolerance);
-    const Nearest nearest = towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())),
-                                    tolerance * tolerance);
+    const Nearest nearest =
+        towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())), tolerance * tolerance);
     TraversalCounts counts;
     visit_nearest(pair, nearest, visit, counts);
     if (statistics != nullptr) {

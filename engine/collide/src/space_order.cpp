@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSamples = 256;
 constexpr std::size_t kMiddleSamples = 64;  // taken in every update
-constexpr int kMortonBits = 9;  // per axis
+constexpr int kMortonBits = 9;              // per axis
 constexpr int kClassBits = 3;
 constexpr std::size_t kChunk = 4096;  // of the curve that is arranged anew
 

@@ -15,7 +15,9 @@ std::atomic<AssertHandler> handler_in_force{print_and_abort};
 
 }  // namespace
 
-void set_assert_handler(AssertHandler handler) { handler_in_force = handler ? handler : print_and_abort; }
+void set_assert_handler(AssertHandler handler) {
+    handler_in_force = handler ? handler : print_and_abort;
+}
 
 void detail::assert_failed(const char* condition, const char* message, const char* file, int line) {
     handler_in_force.load()(condition, message, file, line);

@@ -4,18 +4,30 @@ namespace crofton {
 
 const char* to_string(ErrorCode code) {
     switch (code) {
-        case ErrorCode::invalid_argument: return "invalid argument";
-        case ErrorCode::non_finite: return "not finite";
-        case ErrorCode::out_of_range: return "out of range";
-        case ErrorCode::degenerate: return "degenerate";
-        case ErrorCode::empty: return "empty";
-        case ErrorCode::unsupported: return "unsupported";
-        case ErrorCode::io: return "input/output";
-        case ErrorCode::parse: return "parse";
-        case ErrorCode::cancelled: return "cancelled";
-        case ErrorCode::budget_exceeded: return "budget exceeded";
-        case ErrorCode::unavailable: return "unavailable";
-        case ErrorCode::internal: return "internal";
+        case ErrorCode::invalid_argument:
+            return "invalid argument";
+        case ErrorCode::non_finite:
+            return "not finite";
+        case ErrorCode::out_of_range:
+            return "out of range";
+        case ErrorCode::degenerate:
+            return "degenerate";
+        case ErrorCode::empty:
+            return "empty";
+        case ErrorCode::unsupported:
+            return "unsupported";
+        case ErrorCode::io:
+            return "input/output";
+        case ErrorCode::parse:
+            return "parse";
+        case ErrorCode::cancelled:
+            return "cancelled";
+        case ErrorCode::budget_exceeded:
+            return "budget exceeded";
+        case ErrorCode::unavailable:
+            return "unavailable";
+        case ErrorCode::internal:
+            return "internal";
     }
     return "unknown";
 }

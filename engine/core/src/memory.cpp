@@ -19,7 +19,7 @@ constexpr std::size_t alignment_of(std::size_t bytes, std::size_t alignment) {
 }
 
 void* default_allocate(void*, std::size_t bytes, std::size_t alignment) {
-    void* memory = ::operator new(bytes, std::align_val_t{alignment_of(bytes, alignment)}, std::nothrow);
+    void* memory = ::operator new (bytes, std::align_val_t{alignment_of(bytes, alignment)}, std::nothrow);
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (memory && bytes >= kLargeBlock) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
@@ -27,7 +27,7 @@ void* default_allocate(void*, std::size_t bytes, std::size_t alignment) {
 }
 
 void default_release(void*, void* memory, std::size_t bytes, std::size_t alignment) {
-    ::operator delete(memory, std::align_val_t{alignment_of(bytes, alignment)});
+    ::operator delete (memory, std::align_val_t{alignment_of(bytes, alignment)});
 }
 
 constexpr MemoryHooks kDefaultHooks{default_allocate, default_release, nullptr};
@@ -35,8 +35,12 @@ MemoryHooks hooks_in_force = kDefaultHooks;
 
 }  // namespace
 
-void set_memory_hooks(const MemoryHooks& hooks) { hooks_in_force = hooks; }
-void reset_memory_hooks() { hooks_in_force = kDefaultHooks; }
+void set_memory_hooks(const MemoryHooks& hooks) {
+    hooks_in_force = hooks;
+}
+void reset_memory_hooks() {
+    hooks_in_force = kDefaultHooks;
+}
 
 void* detail::allocate(std::size_t bytes, std::size_t alignment) {
     void* memory = hooks_in_force.allocate(hooks_in_force.user, bytes, alignment);

@@ -37,8 +37,8 @@ struct ThreadPool::State {
         }
     }
 
-    // Calls come close after each other, and waking a thread that sleeps takes longer than many of them. Not by yielding:
-    // a thread that yields may stay on the processor of the caller, and behind it.
+    // Calls come close after each other, and waking a thread that sleeps takes longer than many of them. Not by
+    // yielding: a thread that yields may stay on the processor of the caller, and behind it.
     void await_next(std::size_t seen) const {
         const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(50);
         while (generation.load(std::memory_order_relaxed) == seen && std::chrono::steady_clock::now() < end) {

@@ -168,7 +168,8 @@ struct Extremes {
     HWY_INLINE void include(const Written& written) {
         for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(DF())) {
             for (std::size_t j = 0; j < 3; ++j)
-                hn::Store(hn::Max(hn::Load(DI(), at[j] + l), hn::Abs(hn::Load(DI(), written.at[j] + l))), DI(), at[j] + l);
+                hn::Store(hn::Max(hn::Load(DI(), at[j] + l), hn::Abs(hn::Load(DI(), written.at[j] + l))), DI(),
+                          at[j] + l);
             hn::Store(hn::Max(hn::Load(DU(), radius + l), hn::Load(DU(), written.radius + l)), DU(), radius + l);
             hn::Store(hn::Max(hn::Load(DF(), reach + l), hn::Load(DF(), written.reach + l)), DF(), reach + l);
         }

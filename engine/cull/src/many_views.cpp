@@ -87,7 +87,8 @@ class ManyViewsQuery {
 
     [[nodiscard]] std::uint32_t views_with(std::uint32_t layers) const {
         std::uint32_t with = 0;
-        for (std::size_t v = 0; v < views_.size(); ++v) with |= std::uint32_t{(layers & views_[v].layer_mask) != 0} << v;
+        for (std::size_t v = 0; v < views_.size(); ++v)
+            with |= std::uint32_t{(layers & views_[v].layer_mask) != 0} << v;
         return with;
     }
 

@@ -31,7 +31,8 @@ void Query::add_moving(const tree::BoxTree& tree, std::size_t& inside, std::size
     VerdictBits& bits = visible_.moving_bits_;
     cull(moving_->set(), moving_->boxes(), view_, bits, options_.mode, executor);
     if (kCountStatistics) visible_.statistics_ += bits.statistics;
-    if (visible_.listed_.size() < moving_->size() + tree::kWidth) visible_.listed_.resize(moving_->size() + tree::kWidth);
+    if (visible_.listed_.size() < moving_->size() + tree::kWidth)
+        visible_.listed_.resize(moving_->size() + tree::kWidth);
     for (std::size_t w = 0; w < bits.visible.size(); ++w) bits.visible[w] &= ~bits.inside[w];
     append_moving(tree, bits.inside, visible_.ids_.data(), inside);
     append_moving(tree, bits.visible, visible_.straddling_.data(), straddling);

@@ -23,7 +23,8 @@ struct SlotRun {
 
 // The lists have room for all items and 16 more, `runs` for all leaves, `work` for nine lists of `work_size`: all nodes
 // and all leaves that the entries name and that lie below them, and 16 more. The items that a node above them settles,
-// `whole_count` of them, come first in `inside`, or where there are `runs` stay in the tree's slots and are named there.
+// `whole_count` of them, come first in `inside`, or where there are `runs` stay in the tree's slots and are named
+// there.
 struct TreeKernelOutput {
     tree::ItemId* inside;
     tree::ItemId* straddling;

@@ -9,7 +9,8 @@ namespace crofton::measure {
 glm::dvec2 circle_point(double u) {
     // The rest beyond the nearest quarter turn is exact.
     const double quarter = std::floor(4.0 * u + 0.5);
-    return detail::cosine_sine_beyond(static_cast<std::int64_t>(quarter), 2.0 * std::numbers::pi * (u - 0.25 * quarter));
+    return detail::cosine_sine_beyond(static_cast<std::int64_t>(quarter),
+                                      2.0 * std::numbers::pi * (u - 0.25 * quarter));
 }
 
 glm::dvec3 direction(const std::array<double, 2>& u) {

@@ -190,8 +190,8 @@ void BoxTree::rewrite_leaf(Structure& structure, LeafId l) const {
         longest = std::max(longest, longest_edge(box));
     }
     fit_frame(leaf, centers, longest);
-    [[maybe_unused]] const std::size_t written = write_lanes(
-        structure.leaves.data(), std::span(&l, 1), structure.slot_items.data(), boxes_.data());
+    [[maybe_unused]] const std::size_t written =
+        write_lanes(structure.leaves.data(), std::span(&l, 1), structure.slot_items.data(), boxes_.data());
     CROFTON_ASSERT(written == 1, "a frame around boxes must take them");
 }
 
@@ -282,9 +282,9 @@ Aabb BoxTree::child_bounds(NodeId node, unsigned lane) const {
 }
 
 Result<void> BoxTree::check_item(ItemId item) const {
-    if (is_lifted(item)) return fail(ErrorCode::out_of_range, item, "box tree: the item has been lifted; settle it first");
-    if (!is_present(item))
-        return fail(ErrorCode::out_of_range, item, "box tree: no such item, or it has been removed");
+    if (is_lifted(item))
+        return fail(ErrorCode::out_of_range, item, "box tree: the item has been lifted; settle it first");
+    if (!is_present(item)) return fail(ErrorCode::out_of_range, item, "box tree: no such item, or it has been removed");
     return {};
 }
 

@@ -19,8 +19,8 @@ struct Movers {
 };
 
 // Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
-// clusters of 4096, of items that move or of items at rest; the clusters are split from the top, and each cluster within
-// itself, a subtree for each: the same work per item whatever their number.
+// clusters of 4096, of items that move or of items at rest; the clusters are split from the top, and each cluster
+// within itself, a subtree for each: the same work per item whatever their number.
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
@@ -30,10 +30,12 @@ class Builder {
     void add(ItemId id, const Obb& box);
 
     // After the last add, a step of about `budget` items' worth; true when result() is ready. Same result for any
-    // budgets, if the boxes of the items that were added stay as they are; they may change, to the result's disadvantage.
+    // budgets, if the boxes of the items that were added stay as they are; they may change, to the result's
+    // disadvantage.
     bool step(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
 
-    // The same in two parts, for threads: prepare() until it is true, then build() each of subtrees() once, in any order.
+    // The same in two parts, for threads: prepare() until it is true, then build() each of subtrees() once, in any
+    // order.
     bool prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     [[nodiscard]] std::span<const Subtree> subtrees() const { return subtrees_; }
     void build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes);

@@ -81,7 +81,8 @@ HWY_INLINE void collect(const Leaf& leaf, const ItemId* items, const unsigned ch
 
 // Memory that collect and compress will ask for.
 HWY_INLINE void prefetch(const Leaf& leaf, const ItemId* items, const unsigned char* all_boxes) {
-    for (std::size_t at = 0; at < offsetof(Leaf, layers); at += 64) hwy::Prefetch(reinterpret_cast<const char*>(&leaf) + at);
+    for (std::size_t at = 0; at < offsetof(Leaf, layers); at += 64)
+        hwy::Prefetch(reinterpret_cast<const char*>(&leaf) + at);
     for (std::size_t lane = 0; lane < kWidth && items[lane] != kNone; ++lane) {
         hwy::Prefetch(all_boxes + kBoxBytes * items[lane]);
         hwy::Prefetch(all_boxes + kBoxBytes * items[lane] + kBoxBytes - 4);

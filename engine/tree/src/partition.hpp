@@ -65,9 +65,9 @@ class Splitter {
     // `items` stay where they are, and are read until the last divide().
     void start(std::span<const BuildItem> items);
 
-    // Cuts the items order()[range] into the fewest parts of items_a_part() items each, the last of which may be smaller:
-    // at most 16. A part is a range of order() then. Cuts are chosen to minimise Σ criterion(part) · items(part), what a
-    // uniformly random query pays below here.
+    // Cuts the items order()[range] into the fewest parts of items_a_part() items each, the last of which may be
+    // smaller: at most 16. A part is a range of order() then. Cuts are chosen to minimise Σ criterion(part) ·
+    // items(part), what a uniformly random query pays below here.
     [[nodiscard]] Children divide(Range range, std::uint32_t unit, const Cost& cost);
 
     // Indices into the items.

@@ -135,8 +135,8 @@ std::size_t BoxTree::fill_leaves(Rebuild& work, std::size_t budget) {
     return spent;
 }
 
-// What has changed since the rebuild began, into the new structure: it takes the old one's place meanwhile, so that what
-// changes a tree changes it.
+// What has changed since the rebuild began, into the new structure: it takes the old one's place meanwhile, so that
+// what changes a tree changes it.
 std::size_t BoxTree::catch_up(Rebuild& work, std::size_t budget) {
     std::swap(now_, work.structure);
     const Structure& old = work.structure;

@@ -15,7 +15,8 @@ struct BoxTree::Rebuild {
     Stage stage = Stage::add;
     std::size_t next = 0;  // item, slot, leaf, node or word of `changed`
     Structure structure;
-    Vector<std::uint64_t> changed;  // one bit an item: moved, inserted, removed or with new layers since the rebuild began
+    Vector<std::uint64_t>
+        changed;  // one bit an item: moved, inserted, removed or with new layers since the rebuild began
     std::size_t changed_count = 0;  // of them
     std::size_t new_changes = 0;    // since the last call
 };

@@ -98,8 +98,8 @@ void BoxTree::refit_node(NodeId n) {
     if (parent != kNone) set_child(parent, now_.nodes[n].lane_in_parent, bounds, dirty_parents_);
 }
 
-// A child's bound, and layers if any have changed, into its lane; the node then is to be refitted. All lanes anew if its
-// frame does not take the bound.
+// A child's bound, and layers if any have changed, into its lane; the node then is to be refitted. All lanes anew if
+// its frame does not take the bound.
 void BoxTree::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
     if (!write_lane(now_.nodes[n], lane, bounds)) refresh_node(now_, n);
     if (layers_changed_) refresh_layers(now_, n, lane);

@@ -31,8 +31,8 @@ struct Topology {
 // What a box is to the builder, around `middle`.
 [[nodiscard]] BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle);
 
-// A node and what is below it. How many nodes and leaves that takes depends on the number of items alone, so that places
-// can be given away before anything is built.
+// A node and what is below it. How many nodes and leaves that takes depends on the number of items alone, so that
+// places can be given away before anything is built.
 struct Subtree {
     Range items;  // of Topology::order
     NodeId first_node = 0, parent = kNone;

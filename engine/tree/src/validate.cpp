@@ -88,7 +88,8 @@ Result<void> BoxTree::validate(Trust trust) const {
         if (only_leaves != (node.only_leaves != 0)) return broken(n, "a node is wrong about its children's kind");
         if (const LeafRange range = now_.ranges[n]; range.count > leaves || range.first > leaves - range.count)
             return broken(n, "a node's leaves do not exist");
-        if (const LeafRange range = now_.ranges[n]; range.items != 0 && range.items != tree::items_without_gaps(range, leaf_counts()))
+        if (const LeafRange range = now_.ranges[n];
+            range.items != 0 && range.items != tree::items_without_gaps(range, leaf_counts()))
             return broken(n, "a node is wrong about its items");
         // Up to the root within `height` steps: no cycles.
         NodeId up = n;

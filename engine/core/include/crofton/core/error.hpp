@@ -26,7 +26,8 @@ enum class ErrorCode : std::uint8_t {
 
 inline constexpr std::uint64_t kNoItem = ~std::uint64_t{0};
 
-// `item` is the index of the offending input (vertex, instance, ring, …) or kNoItem; `message` says which, why and what to do.
+// `item` is the index of the offending input (vertex, instance, ring, …) or kNoItem; `message` says which, why and what
+// to do.
 struct Error {
     ErrorCode code = ErrorCode::internal;
     std::uint64_t item = kNoItem;

@@ -5,8 +5,8 @@
 
 namespace crofton {
 
-// body(begin, end, worker): do the items [begin, end); worker < concurrency() and no two bodies run at once on one worker,
-// so it may index per-worker scratch memory.
+// body(begin, end, worker): do the items [begin, end); worker < concurrency() and no two bodies run at once on one
+// worker, so it may index per-worker scratch memory.
 using RangeTask = FunctionRef<void(std::size_t begin, std::size_t end, unsigned worker)>;
 
 class Executor {

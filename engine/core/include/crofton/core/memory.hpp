@@ -5,15 +5,17 @@
 
 namespace crofton {
 
-// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two; a host
-// without memory frees some and retries, and where it returns nullptr the program ends with a message (std::abort).
+// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two; a
+// host without memory frees some and retries, and where it returns nullptr the program ends with a message
+// (std::abort).
 struct MemoryHooks {
     void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment);
     void (*release)(void* user, void* memory, std::size_t bytes, std::size_t alignment);
     void* user;
 };
 
-// Replaces the hooks; call it before any other call into the engine, since memory is released through the hooks in force.
+// Replaces the hooks; call it before any other call into the engine, since memory is released through the hooks in
+// force.
 void set_memory_hooks(const MemoryHooks& hooks);
 void reset_memory_hooks();
 

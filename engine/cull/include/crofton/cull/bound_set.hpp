@@ -42,8 +42,8 @@ class BoundSet {
     // bounds[i] has changed, for each of `items`. Requires indices below size(). Bounds that move far from where they
     // were cost their queries more; when many have, their chunk is laid out anew.
     void update(std::span<const std::uint32_t> items, std::span<const Bound> bounds);
-    // All may have changed, and be more or fewer than before. Returns the first that is not valid (see assign; a box must
-    // pass validate(Obb)), or size().
+    // All may have changed, and be more or fewer than before. Returns the first that is not valid (see assign; a box
+    // must pass validate(Obb)), or size().
     std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
     [[nodiscard]] std::size_t size() const { return size_; }

@@ -34,7 +34,7 @@ struct ExactFit {
     // across its longest side. A flat set has a box of volume 0 and none of floats that attains it: there gap and
     // rounding are 1. gap − rounding is what the search left unproved.
     double rounding = 0.0;
-    bool complete = false;     // the search ended by itself
+    bool complete = false;  // the search ended by itself
     std::uint64_t cells = 0;
     std::size_t subset = 0;  // points that the proof needed
 };

@@ -24,8 +24,8 @@ struct Options {
 [[nodiscard]] Result<Obb> fit_obb(std::span<const glm::vec3> points, const Options& options = {});
 [[nodiscard]] Result<Obb> fit_obb(std::span<const glm::dvec3> points, const Options& options = {});
 
-// A box with the given (orthonormal) axes around the points, as small as rounding allows: how a box is refitted when its
-// points have moved.
+// A box with the given (orthonormal) axes around the points, as small as rounding allows: how a box is refitted when
+// its points have moved.
 [[nodiscard]] Result<Obb> fit_oriented(std::span<const glm::vec3> points, const glm::mat3& axes);
 [[nodiscard]] Result<Obb> fit_oriented(std::span<const glm::dvec3> points, const glm::mat3& axes);
 

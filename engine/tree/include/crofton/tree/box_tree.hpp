@@ -17,8 +17,8 @@ struct Topology;
 
 struct BuildOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
-    // Items that will move nearly every frame, if known. In a tree of more than 32,768 items they share leaves with each
-    // other, so that frames touch few leaves besides theirs. maintain() finds such items by itself.
+    // Items that will move nearly every frame, if known. In a tree of more than 32,768 items they share leaves with
+    // each other, so that frames touch few leaves besides theirs. maintain() finds such items by itself.
     std::span<const ItemId> moving = {};
     // Items that are lifted from the start: see BoxTree::lift.
     std::span<const ItemId> lifted = {};
@@ -62,8 +62,9 @@ class BoxTree {
     [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
     void refit();
 
-    // For what moves in every frame, which cull::MovingBoxes keeps beside the tree: a lifted item is in no leaf, and its id
-    // and layers stay its own until settle() puts it back or remove() gives the id away. Like remove and insert otherwise.
+    // For what moves in every frame, which cull::MovingBoxes keeps beside the tree: a lifted item is in no leaf, and
+    // its id and layers stay its own until settle() puts it back or remove() gives the id away. Like remove and insert
+    // otherwise.
     [[nodiscard]] Result<void> lift(ItemId item);
     [[nodiscard]] Result<void> settle(ItemId item, const Obb& box);
     [[nodiscard]] bool is_lifted(ItemId item) const {
@@ -72,11 +73,11 @@ class BoxTree {
     // Bits that the layer masks of all lifted items have, not necessarily every one.
     [[nodiscard]] std::uint32_t lifted_layers() const { return lifted_layers_; }
 
-    // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up to
-    // date twice as many items' more as have changed since the call before (a build is worth about 10 per item). Call it
-    // once a frame where items move for long. True when a rebuild has just been completed. Items that moved before both
-    // of the last two refits are taken for such as move all the time (see BuildOptions). Needs refit() before and leaves
-    // nothing to refit.
+    // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up
+    // to date twice as many items' more as have changed since the call before (a build is worth about 10 per item).
+    // Call it once a frame where items move for long. True when a rebuild has just been completed. Items that moved
+    // before both of the last two refits are taken for such as move all the time (see BuildOptions). Needs refit()
+    // before and leaves nothing to refit.
     bool maintain(std::size_t budget);
     // What the last call of maintain() has handled, whatever it was worth.
     [[nodiscard]] const RebuildStep& last_rebuild_step() const { return last_step_; }
@@ -93,7 +94,9 @@ class BoxTree {
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
     [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_; }
     [[nodiscard]] std::size_t item_count() const { return boxes_.size() - free_items_.size() - lifted_count_; }
-    [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return now_.item_slots[item]; }  // kNone: removed or lifted
+    [[nodiscard]] std::uint32_t slot_of(ItemId item) const {
+        return now_.item_slots[item];
+    }  // kNone: removed or lifted
 
     // The structure itself, root = nodes()[0]; there is always a root.
     [[nodiscard]] std::span<const Node> nodes() const { return now_.nodes; }
@@ -120,8 +123,8 @@ class BoxTree {
         unsigned height = 1;
     };
     struct Rebuild;
-    // Where no more of a leaf's boxes have changed, move() writes each into its lane; where more have, refit() writes them
-    // all.
+    // Where no more of a leaf's boxes have changed, move() writes each into its lane; where more have, refit() writes
+    // them all.
     [[nodiscard]] static constexpr bool has_few_lanes(unsigned lanes) {
         for (int few = 3; few > 0; --few) lanes &= lanes - 1;
         return lanes == 0;
@@ -173,9 +176,7 @@ class BoxTree {
     void find_lifted();
     [[nodiscard]] Result<void> validate(Trust trust) const;
     [[nodiscard]] Result<void> validate_leaves(Trust trust) const;
-    [[nodiscard]] bool is_present(ItemId item) const {
-        return item < boxes_.size() && now_.item_slots[item] != kNone;
-    }
+    [[nodiscard]] bool is_present(ItemId item) const { return item < boxes_.size() && now_.item_slots[item] != kNone; }
     [[nodiscard]] Result<void> check_item(ItemId item) const;
     [[nodiscard]] Result<void> find_moved(std::span<const ItemId> items, std::span<const Obb> boxes);
 

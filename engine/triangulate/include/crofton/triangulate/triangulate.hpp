@@ -16,7 +16,8 @@ struct Options {
     Method method = Method::minimum_weight;
     // minimum_weight only. When the time is over or candidates would need more memory than this, what is proven and
     // solved so far is completed to a constrained Delaunay triangulation, and returned with `optimal` false and a
-    // proven `gap`. The Delaunay triangulation itself (0.3 µs a vertex) is always made. All but the largest and smoothest polygons (docs/triangulate.md) need a small part of the time.
+    // proven `gap`. The Delaunay triangulation itself (0.3 µs a vertex) is always made. All but the largest and
+    // smoothest polygons (docs/triangulate.md) need a small part of the time.
     double seconds = 10.0;
     std::size_t bytes = std::size_t{1} << 30;
     // Called now and then with the share of the work done, between 0 and 1; returning false ends the call with the
