@@ -20,11 +20,11 @@ std::vector<crofton::Obb> make_boxes(std::int64_t count) {
 }
 
 void cull_cpp(benchmark::State& state) {
-    const auto tree = crofton::tree::BoxTree::build(make_boxes(state.range(0))).value();
+    const auto tree = crofton::boxtree::BoxTree::build(make_boxes(state.range(0))).value();
     const crofton::cull::View view{.frustum = crofton::frustum_of(crofton::Camera{}).value()};
     crofton::cull::VisibleSet visible;
     for (auto _ : state) {
-        crofton::cull::cull(tree, view, visible);
+        crofton::cull::find_visible(tree, view, visible);
         benchmark::DoNotOptimize(visible.ids().data());
     }
 }

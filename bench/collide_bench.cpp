@@ -2,10 +2,10 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/ray.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/ray.hpp>
 
 #include <deque>
 
@@ -62,11 +62,11 @@ void all_pairs(benchmark::State& state, bool exact) {
 
 struct MeshCase {
     TriangleMesh mesh;
-    tree::MeshTree tree;
-    std::vector<collide::Pose> poses;
+    mesh::MeshTree tree;
+    std::vector<RigidTransform> poses;
 };
 
-using tree::MeshBoxes;
+using mesh::MeshBoxes;
 
 // The poses are the same for all kinds of boxes.
 MeshCase* mesh_case(const std::string& name, benchmark::State& state, MeshBoxes boxes = MeshBoxes::small_perimeter) {
@@ -76,21 +76,21 @@ MeshCase* mesh_case(const std::string& name, benchmark::State& state, MeshBoxes 
         if (key == wanted) return &value;
     MeshCase made;
     made.mesh = shared_mesh(name);
-    auto tree = tree::MeshTree::build(made.mesh, {boxes});
+    auto tree = mesh::MeshTree::build(made.mesh, {boxes});
     if (!tree) {
         state.SkipWithError("shared data is absent");
         return nullptr;
     }
     made.tree = std::move(*tree);
-    made.poses = close_poses(*tree::MeshTree::build(made.mesh, {MeshBoxes::principal_axes}), 1000);
+    made.poses = close_poses(*mesh::MeshTree::build(made.mesh, {MeshBoxes::principal_axes}), 1000);
     cases.emplace_back(wanted, std::move(made));
     return &cases.back().second;
 }
 
 // The mean edge sum of all boxes of a tree, for comparing kinds of boxes on the same splits.
-double mean_edge_sum(const tree::MeshTree& tree) {
+double mean_edge_sum(const mesh::MeshTree& tree) {
     double sum = 0.0, count = 0.0;
-    for (const tree::MeshNode& node : tree.nodes())
+    for (const mesh::MeshNode& node : tree.nodes())
         for (std::uint32_t lane = 0; lane < node.count; ++lane, count += 1.0)
             for (int k = 0; k < 3; ++k) sum += 2.0 * static_cast<double>(node.half[k][lane]);
     return sum / count;
@@ -100,13 +100,12 @@ void mesh_any(benchmark::State& state, const char* name, MeshBoxes boxes = MeshB
     const MeshCase* input = mesh_case(name, state, boxes);
     if (input == nullptr) return;
     int hits = 0;
-    collide::MeshStatistics statistics;
+    mesh::MeshStatistics statistics;
     for (auto _ : state) {
         hits = 0;
-        for (const collide::Pose& pose : input->poses) hits += collide::intersects(input->tree, input->tree, pose);
+        for (const RigidTransform& pose : input->poses) hits += mesh::intersects(input->tree, input->tree, pose);
     }
-    for (const collide::Pose& pose : input->poses)
-        (void)collide::intersects(input->tree, input->tree, pose, &statistics);
+    for (const RigidTransform& pose : input->poses) (void)mesh::intersects(input->tree, input->tree, pose, &statistics);
     state.SetItemsProcessed(state.iterations() * 1000);
     state.counters["hits"] = hits;
     state.counters["boxes"] = static_cast<double>(statistics.box_tests) / 1000.0;
@@ -117,18 +116,18 @@ void mesh_any(benchmark::State& state, const char* name, MeshBoxes boxes = MeshB
 void mesh_all(benchmark::State& state, const char* name, MeshBoxes boxes = MeshBoxes::small_perimeter) {
     const MeshCase* input = mesh_case(name, state, boxes);
     if (input == nullptr) return;
-    Vector<collide::TrianglePair> pairs;
+    Vector<mesh::TrianglePair> pairs;
     std::size_t found = 0;
-    collide::MeshStatistics statistics;
+    mesh::MeshStatistics statistics;
     for (auto _ : state) {
         found = 0;
-        for (const collide::Pose& pose : input->poses) {
-            collide::intersecting_triangles(input->tree, input->tree, pose, pairs);
+        for (const RigidTransform& pose : input->poses) {
+            mesh::intersecting_triangles(input->tree, input->tree, pose, pairs);
             found += pairs.size();
         }
     }
-    for (const collide::Pose& pose : input->poses)
-        collide::intersecting_triangles(input->tree, input->tree, pose, pairs, &statistics);
+    for (const RigidTransform& pose : input->poses)
+        mesh::intersecting_triangles(input->tree, input->tree, pose, pairs, &statistics);
     state.SetItemsProcessed(state.iterations() * 1000);
     state.counters["pairs"] = static_cast<double>(found) / 1000.0;
     state.counters["boxes"] = static_cast<double>(statistics.box_tests) / 1000.0;
@@ -139,7 +138,7 @@ void mesh_all(benchmark::State& state, const char* name, MeshBoxes boxes = MeshB
 void mesh_build(benchmark::State& state, const char* name, MeshBoxes boxes = MeshBoxes::small_perimeter) {
     const MeshCase* input = mesh_case(name, state, boxes);
     if (input == nullptr) return;
-    for (auto _ : state) benchmark::DoNotOptimize(tree::MeshTree::build(input->mesh, {boxes}));
+    for (auto _ : state) benchmark::DoNotOptimize(mesh::MeshTree::build(input->mesh, {boxes}));
     state.counters["edge sum"] = mean_edge_sum(input->tree);
 }
 
@@ -150,7 +149,7 @@ void mesh_rays(benchmark::State& state, MeshBoxes boxes) {
     int hits = 0;
     for (auto _ : state) {
         hits = 0;
-        for (const collide::Ray& ray : rays) hits += collide::raycast(ray, input->tree).has_value();
+        for (const Ray& ray : rays) hits += mesh::raycast(ray, input->tree).has_value();
     }
     state.counters["hits"] = hits;
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));

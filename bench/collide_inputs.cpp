@@ -124,11 +124,11 @@ TriangleMesh shared_mesh(const std::string& name) {
     return mesh;
 }
 
-std::vector<collide::Ray> random_rays(const TriangleMesh& mesh, std::size_t count) {
+std::vector<Ray> random_rays(const TriangleMesh& mesh, std::size_t count) {
     Random random(11);
     Aabb bound;
     for (const glm::vec3& p : mesh.positions) bound.include(glm::dvec3(p));
-    std::vector<collide::Ray> rays;
+    std::vector<Ray> rays;
     while (rays.size() < count) {
         const glm::dvec3 way = glm::normalize(glm::dvec3(0.001) + uniform_vector(random, -1.0, 1.0));
         const glm::dvec3 target = bound.center() + bound.half_extents() * uniform_vector(random, -1.0, 1.0);
@@ -138,24 +138,24 @@ std::vector<collide::Ray> random_rays(const TriangleMesh& mesh, std::size_t coun
     return rays;
 }
 
-std::vector<collide::Pose> close_poses(const tree::MeshTree& tree, std::size_t count) {
+std::vector<RigidTransform> close_poses(const mesh::MeshTree& tree, std::size_t count) {
     Random random(3);
-    const tree::MeshBox& box = tree.root_box();
+    const mesh::MeshBox& box = tree.root_box();
     double size = 0.0;
     for (const float half : box.half) size += 4.0 * static_cast<double>(half) * static_cast<double>(half);
     size = std::sqrt(size);
     const glm::dvec3 center(static_cast<double>(box.center[0]), static_cast<double>(box.center[1]),
                             static_cast<double>(box.center[2]));
-    std::vector<collide::Pose> poses;
+    std::vector<RigidTransform> poses;
     while (poses.size() < count) {
-        collide::Pose pose{glm::mat3_cast(rotation(random)), {}};
+        RigidTransform pose{glm::mat3_cast(rotation(random)), {}};
         const glm::dvec3 direction = glm::normalize(glm::dvec3(0.001) + uniform_vector(random, -1.0, 1.0));
         const auto at = [&](double t) { return center - pose.rotation * center + t * direction; };
         // Conservative advancement: a step as long as the distance cannot pass through.
         double t = 1.5 * size;
         for (int step = 0; step < 200; ++step) {
             pose.translation = at(t);
-            const double gap = collide::distance(tree, tree, pose).distance;
+            const double gap = mesh::distance(tree, tree, pose).distance;
             if (gap < 1e-5 * size) break;
             t -= gap;
         }

@@ -1,9 +1,9 @@
 // What Crofton and the peers are measured on: the same boxes, meshes and poses for all.
 #pragma once
-#include <crofton/collide/mesh_mesh.hpp>
-#include <crofton/collide/ray.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/ray.hpp>
 #include <string>
 #include <vector>
 
@@ -31,10 +31,10 @@ void move(std::vector<Obb>& boxes, int frame);
 [[nodiscard]] TriangleMesh shared_mesh(const std::string& name);
 
 // From a sphere around the mesh to points within its bound.
-[[nodiscard]] std::vector<collide::Ray> random_rays(const TriangleMesh& mesh, std::size_t count);
+[[nodiscard]] std::vector<Ray> random_rays(const TriangleMesh& mesh, std::size_t count);
 
 // Poses of a mesh relative to a copy of itself: random rotation and direction, moved from first contact by −5 to +2 %
 // of the mesh's size.
-[[nodiscard]] std::vector<collide::Pose> close_poses(const tree::MeshTree& tree, std::size_t count);
+[[nodiscard]] std::vector<RigidTransform> close_poses(const mesh::MeshTree& tree, std::size_t count);
 
 }  // namespace crofton::bench

@@ -83,7 +83,7 @@ std::shared_ptr<FclMesh> fcl_mesh(const TriangleMesh& mesh) {
 
 void fcl_meshes(benchmark::State& state, const char* name, bool all) {
     const TriangleMesh mesh = shared_mesh(name);
-    const auto tree = tree::MeshTree::build(mesh);
+    const auto tree = mesh::MeshTree::build(mesh);
     if (!tree) return state.SkipWithError("shared data is absent");
     const auto poses = close_poses(*tree, 1000);
     const auto model = fcl_mesh(mesh);
@@ -91,7 +91,7 @@ void fcl_meshes(benchmark::State& state, const char* name, bool all) {
     std::size_t found = 0;
     for (auto _ : state) {
         found = 0;
-        for (const collide::Pose& pose : poses) {
+        for (const RigidTransform& pose : poses) {
             fcl::Transform3d placed = fcl::Transform3d::Identity();
             for (int i = 0; i < 3; ++i) {
                 placed.translation()[i] = pose.translation[i];
@@ -123,7 +123,7 @@ BENCHMARK(fcl_build)->Name("mesh/bunny build/fcl")->Unit(benchmark::kMillisecond
 // of boxes, without the contact points. It has no way to stop at the first.
 void bullet_meshes(benchmark::State& state, const char* name) {
     const TriangleMesh mesh = shared_mesh(name);
-    const auto tree = tree::MeshTree::build(mesh);
+    const auto tree = mesh::MeshTree::build(mesh);
     if (!tree) return state.SkipWithError("shared data is absent");
     const auto poses = close_poses(*tree, 1000);
     btTriangleMesh triangles(true, false);
@@ -141,7 +141,7 @@ void bullet_meshes(benchmark::State& state, const char* name) {
     std::size_t found = 0;
     for (auto _ : state) {
         found = 0;
-        for (const collide::Pose& pose : poses) {
+        for (const RigidTransform& pose : poses) {
             btTransform placed = btTransform::getIdentity();
             for (int i = 0; i < 3; ++i) {
                 placed.getOrigin()[i] = btScalar(pose.translation[i]);
@@ -271,7 +271,7 @@ void embree_rays(benchmark::State& state) {
     int hits = 0;
     for (auto _ : state) {
         hits = 0;
-        for (const collide::Ray& ray : rays) {
+        for (const Ray& ray : rays) {
             RTCIntersectContext context;
             rtcInitIntersectContext(&context);
             RTCRayHit query{};

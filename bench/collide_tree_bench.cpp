@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t kQueries = 4096;
 
-std::vector<collide::Ray> rays_through(std::size_t count) {
+std::vector<Ray> rays_through(std::size_t count) {
     std::mt19937_64 random(count);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     std::normal_distribution<double> normal;
     const double side = std::cbrt(static_cast<double>(count));
-    std::vector<collide::Ray> rays(kQueries);
-    for (collide::Ray& ray : rays) {
+    std::vector<Ray> rays(kQueries);
+    for (Ray& ray : rays) {
         ray.origin = side * glm::dvec3(unit(random), unit(random), unit(random));
         ray.direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
         ray.max_t = side;
@@ -37,12 +37,12 @@ void report(benchmark::State& state, std::size_t found) {
 
 void tree_rays(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
-    const auto tree = tree::BoxTree::build(crowd(count));
+    const auto tree = boxtree::BoxTree::build(crowd(count));
     const auto rays = rays_through(count);
     std::size_t hits = 0;
     for (auto _ : state) {
         hits = 0;
-        for (const collide::Ray& ray : rays) hits += collide::raycast(ray, *tree).has_value();
+        for (const Ray& ray : rays) hits += collide::raycast(ray, *tree).has_value();
         benchmark::DoNotOptimize(hits);
     }
     report(state, hits);
@@ -50,13 +50,13 @@ void tree_rays(benchmark::State& state) {
 
 void tree_balls(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
-    const auto tree = tree::BoxTree::build(crowd(count));
+    const auto tree = boxtree::BoxTree::build(crowd(count));
     const auto rays = rays_through(count);
-    Vector<tree::ItemId> items;
+    Vector<boxtree::ItemId> items;
     std::size_t found = 0;
     for (auto _ : state) {
         found = 0;
-        for (const collide::Ray& ray : rays) {
+        for (const Ray& ray : rays) {
             collide::overlapping(*tree, Sphere{ray.origin, 1.5}, items);
             found += items.size();
         }
@@ -87,10 +87,10 @@ struct BulletTree {
 // Bullet's rayTestInternal does not shorten the ray at a hit, so that all boxes on it are visited; nor does rayTest.
 struct NearestOfBullet : btDbvt::ICollide {
     const std::vector<Obb>* boxes = nullptr;
-    collide::Ray ray;
+    Ray ray;
     bool hit = false;
     void Process(const btDbvtNode* leaf) {
-        if (const auto t = collide::raycast(ray, (*boxes)[static_cast<std::size_t>(leaf->dataAsInt)]))
+        if (const auto t = mesh::raycast(ray, (*boxes)[static_cast<std::size_t>(leaf->dataAsInt)]))
             ray.max_t = *t, hit = true;
     }
 };
@@ -102,7 +102,7 @@ void bullet_rays(benchmark::State& state) {
     std::size_t hits = 0;
     for (auto _ : state) {
         hits = 0;
-        for (const collide::Ray& ray : rays) {
+        for (const Ray& ray : rays) {
             NearestOfBullet nearest;
             nearest.boxes = &bullet.boxes;
             nearest.ray = ray;
@@ -134,7 +134,7 @@ void bullet_balls(benchmark::State& state) {
     std::size_t found = 0;
     for (auto _ : state) {
         found = 0;
-        for (const collide::Ray& ray : rays) {
+        for (const Ray& ray : rays) {
             query.items.clear();
             query.ball = {ray.origin, 1.5};
             const btDbvtVolume volume = btDbvtVolume::FromCR(vector(ray.origin), btScalar(1.5));

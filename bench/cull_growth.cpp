@@ -2,9 +2,9 @@
 // from 1,000 boxes up, a fifth of them visible, prints a table and draws it, time against number, both logarithmic.
 #include <algorithm>
 #include <chrono>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -46,13 +46,14 @@ int main(int argc, char** argv) {
         set.assign(boxes);
         cull::VerdictBits bits;
         cull::VisibleSet visible;
-        const auto tree = tree::BoxTree::build(boxes);
-        lines[0].points.emplace_back(count, least_time([&] { cull::cull(set, boxes, view, bits); }));
-        lines[1].points.emplace_back(count,
-                                     least_time([&] { cull::cull(set, boxes, view, bits, cull::Mode::conservative); }));
-        lines[2].points.emplace_back(count, least_time([&] {
-                                         cull::cull(*tree, view, visible, {cull::Mode::exact, cull::Order::tree});
-                                     }));
+        const auto tree = boxtree::BoxTree::build(boxes);
+        lines[0].points.emplace_back(count, least_time([&] { cull::find_visible(set, boxes, view, bits); }));
+        lines[1].points.emplace_back(
+            count, least_time([&] { cull::find_visible(set, boxes, view, bits, cull::Mode::conservative); }));
+        lines[2].points.emplace_back(
+            count, least_time([&] {
+                cull::find_visible(*tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+            }));
         const auto per_box = [&](const bench::GrowthLine& line) {
             return 1e3 * line.points.back().second / static_cast<double>(n);
         };

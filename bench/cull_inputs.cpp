@@ -11,10 +11,10 @@ const std::vector<Obb>& boxes_of(std::int64_t count) {
     return boxes;
 }
 
-const tree::BoxTree& tree_of(std::int64_t count) {
-    static std::map<std::int64_t, tree::BoxTree> made;
+const boxtree::BoxTree& tree_of(std::int64_t count) {
+    static std::map<std::int64_t, boxtree::BoxTree> made;
     auto found = made.find(count);
-    if (found == made.end()) found = made.emplace(count, *tree::BoxTree::build(boxes_of(count))).first;
+    if (found == made.end()) found = made.emplace(count, *boxtree::BoxTree::build(boxes_of(count))).first;
     return found->second;
 }
 
@@ -29,8 +29,8 @@ const std::vector<Obb>& boxes_in_tree_order(std::int64_t count) {
     static std::map<std::int64_t, std::vector<Obb>> made;
     auto& boxes = made[count];
     if (boxes.empty())
-        for (const tree::ItemId item : tree_of(count).slot_items())
-            if (item != tree::kNone) boxes.push_back(boxes_of(count)[item]);
+        for (const boxtree::ItemId item : tree_of(count).slot_items())
+            if (item != boxtree::kNone) boxes.push_back(boxes_of(count)[item]);
     return boxes;
 }
 

@@ -2,14 +2,14 @@
 #pragma once
 #include <benchmark/benchmark.h>
 
-#include <crofton/tree/box_tree.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 
 #include "cull_crowd.hpp"
 
 namespace crofton::bench {
 
 [[nodiscard]] const std::vector<Obb>& boxes_of(std::int64_t count);
-[[nodiscard]] const tree::BoxTree& tree_of(std::int64_t count);
+[[nodiscard]] const boxtree::BoxTree& tree_of(std::int64_t count);
 
 // Boxes numbered in the tree's order, as a renderer would lay its instances out.
 [[nodiscard]] const std::vector<Obb>& boxes_in_tree_order(std::int64_t count);

@@ -20,7 +20,7 @@ void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
     std::vector<cull::ItemId> list(boxes.size() + 16);
     std::size_t visible = 0;
     for (auto _ : state) {
-        cull::cull(set, boxes, view, verdicts, mode);
+        cull::find_visible(set, boxes, view, verdicts, mode);
         if (ids) visible = cull::list_bits(verdicts.visible, list);
         benchmark::DoNotOptimize(verdicts.visible.data());
         benchmark::DoNotOptimize(list.data());
@@ -40,7 +40,7 @@ void flat_bounds(benchmark::State& state, const std::vector<Bound>& bounds) {
     set.assign(bounds);
     cull::VerdictBits verdicts;
     for (auto _ : state) {
-        cull::cull(set, bounds, view, verdicts);
+        cull::find_visible(set, bounds, view, verdicts);
         benchmark::DoNotOptimize(verdicts.visible.data());
     }
     report(state, 0);

@@ -21,16 +21,16 @@ using bench::boxes_in_tree_order, bench::boxes_of, bench::report, bench::tree_of
 // After ten thousand frames of random motion, a hundredth of the boxes a frame by up to a tenth of the spacing, with
 // bounded rebuilding in the background: a query beside one in a tree built afresh from the same boxes.
 void aged_cull(benchmark::State& state, bool fresh) {
-    static std::map<std::int64_t, std::pair<std::vector<Obb>, tree::BoxTree>> aged;
+    static std::map<std::int64_t, std::pair<std::vector<Obb>, boxtree::BoxTree>> aged;
     const std::int64_t count = state.range(0);
     if (!aged.contains(count)) {
         std::vector<Obb> boxes = boxes_of(count);
-        tree::BoxTree tree = *tree::BoxTree::build(boxes);
+        boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
         std::mt19937 random(1);
         std::uniform_real_distribution<double> step(-0.1, 0.1);
         for (int frame = 0; frame < 10000; ++frame) {
             for (std::int64_t i = 0; i < count / 100; ++i) {
-                const auto item = static_cast<tree::ItemId>(random() % boxes.size());
+                const auto item = static_cast<boxtree::ItemId>(random() % boxes.size());
                 boxes[item].center += glm::dvec3(step(random), step(random), step(random));
                 if (!tree.move(item, boxes[item])) state.SkipWithError("move failed");
             }
@@ -40,11 +40,11 @@ void aged_cull(benchmark::State& state, bool fresh) {
         aged.emplace(count, std::pair(std::move(boxes), std::move(tree)));
     }
     const auto& [boxes, old] = aged.at(count);
-    const tree::BoxTree fresh_tree = *tree::BoxTree::build(boxes);
+    const boxtree::BoxTree fresh_tree = *boxtree::BoxTree::build(boxes);
     const cull::View view = bench::view_of_share(boxes_of(count), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::cull(fresh ? fresh_tree : old, view, visible, {cull::Mode::exact, cull::Order::tree});
+        cull::find_visible(fresh ? fresh_tree : old, view, visible, {cull::Mode::exact, cull::Order::tree});
         benchmark::DoNotOptimize(visible.ids().data());
     }
     report(state, visible.size());
@@ -58,22 +58,22 @@ enum class Tenth { scattered, numbered_together, neighbours, neighbours_numbered
 
 struct Moving {
     std::vector<Obb> boxes;
-    tree::BoxTree tree;
-    std::vector<tree::ItemId> items;
+    boxtree::BoxTree tree;
+    std::vector<boxtree::ItemId> items;
     std::vector<Obb> moved;
     double step = 0.1;  // a tenth of the spacing, to and fro
 
     Moving(std::int64_t count, Tenth tenth)
         : boxes(tenth == Tenth::neighbours_numbered ? boxes_in_tree_order(count) : boxes_of(count)),
-          tree(*tree::BoxTree::build(boxes)) {
+          tree(*boxtree::BoxTree::build(boxes)) {
         std::mt19937 random(1);
         for (std::size_t i = 0; i < boxes.size() / 10; ++i) {
-            const auto any = static_cast<tree::ItemId>(random() % boxes.size());
+            const auto any = static_cast<boxtree::ItemId>(random() % boxes.size());
             items.push_back(tenth == Tenth::scattered           ? any
-                            : tenth == Tenth::numbered_together ? static_cast<tree::ItemId>(i)
+                            : tenth == Tenth::numbered_together ? static_cast<boxtree::ItemId>(i)
                                                                 : tree.slot_items()[i]);
         }
-        for (const tree::ItemId item : items) moved.push_back(boxes[item]);
+        for (const boxtree::ItemId item : items) moved.push_back(boxes[item]);
     }
     void move() {
         for (Obb& box : moved) box.center.x += step;
@@ -95,7 +95,7 @@ void move_and_cull(benchmark::State& state, Tenth tenth, bool rebuilt) {
     cull::VisibleSet visible;
     for (auto _ : state) {
         moving.move();
-        cull::cull(moving.tree, view, visible, {cull::Mode::conservative, cull::Order::tree});
+        cull::find_visible(moving.tree, view, visible, {cull::Mode::conservative, cull::Order::tree});
     }
     report(state, visible.size());
 }
@@ -125,8 +125,8 @@ void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::Options
         std::ranges::shuffle(moving.items, std::mt19937(2));
     }
     moving.moved.clear();
-    for (const tree::ItemId item : moving.items) moving.moved.push_back(moving.boxes[item]);
-    moving.tree = *tree::BoxTree::build(moving.boxes, {.lifted = moving.items});
+    for (const boxtree::ItemId item : moving.items) moving.moved.push_back(moving.boxes[item]);
+    moving.tree = *boxtree::BoxTree::build(moving.boxes, {.lifted = moving.items});
     cull::MovingBoxes list;
     const cull::View view = bench::view_of_share(moving.boxes, 0.2);
     cull::VisibleSet visible;
@@ -135,7 +135,7 @@ void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::Options
         moving.step = -moving.step;
         benchmark::ClobberMemory();
         if (part > 0 && !list.update(moving.tree, moving.items, moving.moved)) std::abort();
-        if (part > 1) cull::cull(moving.tree, list, view, visible, options);
+        if (part > 1) cull::find_visible(moving.tree, list, view, visible, options);
     }
     report(state, visible.size());
 }
@@ -178,7 +178,7 @@ void list_of_all(benchmark::State& state, bool told) {
             set.update(items, boxes);
         else
             set.update(boxes);
-        cull::cull(set, boxes, view, bits, cull::Mode::conservative);
+        cull::find_visible(set, boxes, view, bits, cull::Mode::conservative);
         state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
 }

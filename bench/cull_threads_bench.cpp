@@ -20,7 +20,7 @@ void threads(benchmark::State& state) {
     set.assign(boxes);
     cull::VerdictBits verdicts;
     for (auto _ : state) {
-        cull::cull(set, boxes, view, verdicts, cull::Mode::exact, pool);
+        cull::find_visible(set, boxes, view, verdicts, cull::Mode::exact, pool);
         benchmark::DoNotOptimize(verdicts.visible.data());
     }
 }
@@ -28,11 +28,11 @@ BENCHMARK(threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
 
 void tree_threads(benchmark::State& state) {
     ThreadPool pool(static_cast<unsigned>(state.range(1)));
-    const tree::BoxTree& tree = tree_of(state.range(0));
+    const boxtree::BoxTree& tree = tree_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree}, pool);
+        cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree}, pool);
         benchmark::DoNotOptimize(visible.ids().data());
     }
 }
@@ -49,18 +49,18 @@ void threads_apart(benchmark::State& state) {
     }();
     cull::VerdictBits verdicts;
     for (auto _ : state) {
-        cull::cull(set, boxes, view, verdicts, cull::Mode::exact);
+        cull::find_visible(set, boxes, view, verdicts, cull::Mode::exact);
         benchmark::DoNotOptimize(verdicts.visible.data());
     }
 }
 BENCHMARK(threads_apart)->Arg(1000000)->Threads(1)->Threads(2)->UseRealTime();
 
 void tree_threads_apart(benchmark::State& state) {
-    const tree::BoxTree& tree = tree_of(state.range(0));
+    const boxtree::BoxTree& tree = tree_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+        cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
         benchmark::DoNotOptimize(visible.ids().data());
     }
 }

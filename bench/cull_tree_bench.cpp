@@ -11,11 +11,11 @@ using namespace crofton;
 using bench::boxes_in_tree_order, bench::boxes_of, bench::report, bench::tree_of;
 
 void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, double share) {
-    const tree::BoxTree& tree = tree_of(state.range(0));
+    const boxtree::BoxTree& tree = tree_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::cull(tree, view, visible, {mode, order});
+        cull::find_visible(tree, view, visible, {mode, order});
         benchmark::DoNotOptimize(visible.ids().data());
     }
     report(state, visible.size());
@@ -35,11 +35,11 @@ BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tr
 
 void tree_cull_numbered(benchmark::State& state, cull::Order order) {
     const auto& boxes = boxes_in_tree_order(state.range(0));
-    const tree::BoxTree tree = *tree::BoxTree::build(boxes);
+    const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
     const cull::View view = bench::view_of_share(boxes, 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::cull(tree, view, visible, {cull::Mode::exact, order});
+        cull::find_visible(tree, view, visible, {cull::Mode::exact, order});
         benchmark::DoNotOptimize(visible.ids().data());
     }
     report(state, visible.size());
@@ -49,7 +49,7 @@ BENCHMARK_CAPTURE(tree_cull_numbered, ascending, cull::Order::ascending)->Arg(10
 
 // 300 cameras on a way through the crowd, each seeing about 1 % of it.
 void flight(benchmark::State& state, cull::Mode mode) {
-    const tree::BoxTree& tree = tree_of(state.range(0));
+    const boxtree::BoxTree& tree = tree_of(state.range(0));
     const double side = std::cbrt(static_cast<double>(state.range(0)));
     std::vector<cull::View> views;
     for (int f = 0; f < 300; ++f) {
@@ -65,7 +65,7 @@ void flight(benchmark::State& state, cull::Mode mode) {
     cull::VisibleSet visible;
     std::size_t frame = 0, seen = 0;
     for (auto _ : state) {
-        cull::cull(tree, views[frame++ % views.size()], visible, {mode, cull::Order::tree});
+        cull::find_visible(tree, views[frame++ % views.size()], visible, {mode, cull::Order::tree});
         seen += visible.size();
     }
     report(state, frame ? seen / frame : 0);
@@ -75,7 +75,7 @@ BENCHMARK_CAPTURE(flight, exact, cull::Mode::exact)->Arg(1000000);
 
 void tree_build(benchmark::State& state) {
     const auto& boxes = boxes_of(state.range(0));
-    for (auto _ : state) benchmark::DoNotOptimize(tree::BoxTree::build(boxes)->item_count());
+    for (auto _ : state) benchmark::DoNotOptimize(boxtree::BoxTree::build(boxes)->item_count());
     report(state, 0);
 }
 // Once, in memory that is new to the process: run it alone (--benchmark_filter=tree_build/first).

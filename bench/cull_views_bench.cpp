@@ -52,9 +52,9 @@ void flat_views(benchmark::State& state, bool one_pass) {
     std::vector<cull::VerdictBits> verdicts(views.size());
     const auto ask = [&] {
         if (one_pass)
-            cull::cull(set, boxes, {}, views, masks);
+            cull::find_visible(set, boxes, {}, views, masks);
         else
-            for (std::size_t v = 0; v < views.size(); ++v) cull::cull(set, boxes, views[v], verdicts[v]);
+            for (std::size_t v = 0; v < views.size(); ++v) cull::find_visible(set, boxes, views[v], verdicts[v]);
         benchmark::DoNotOptimize(masks.data());
     };
     ask();  // memory is taken once
@@ -65,16 +65,16 @@ BENCHMARK_CAPTURE(flat_views, one_by_one, false)->Apply(sizes_and_views);
 
 // The same of a tree.
 void tree_views(benchmark::State& state, bool one_pass) {
-    const tree::BoxTree& tree = tree_of(state.range(0));
+    const boxtree::BoxTree& tree = tree_of(state.range(0));
     const std::vector<cull::View> views = views_of(state.range(0), state.range(1));
     cull::ManyVisible many;
     std::vector<cull::VisibleSet> single(views.size());
     const auto ask = [&] {
         if (one_pass)
-            cull::cull(tree, views, many);
+            cull::find_visible(tree, views, many);
         else
             for (std::size_t v = 0; v < views.size(); ++v)
-                cull::cull(tree, views[v], single[v], {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(tree, views[v], single[v], {cull::Mode::exact, cull::Order::tree});
     };
     ask();
     for (auto _ : state) ask();

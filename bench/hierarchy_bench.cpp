@@ -7,10 +7,10 @@
 #include <crofton/cull/classify.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/measure/query_sample.hpp>
-#include <crofton/measure/random_motion.hpp>
-#include <crofton/tree/bound_given_ancestors.hpp>
-#include <crofton/tree/visit_tree.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/binary_tree.hpp>
+#include <crofton/study/bound_given_ancestors.hpp>
+#include <crofton/study/query_sample.hpp>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <map>
@@ -25,14 +25,14 @@ namespace {
 
 using namespace crofton;
 using measure::Criterion;
-using tree::Split;
-using tree::Visit;
-using tree::VisitTree;
+using study::BinaryTree;
+using study::Split;
+using study::Visit;
 
 struct World {
     std::vector<Obb> boxes;
     std::vector<Camera> views;
-    measure::Ball region;
+    sampling::Ball region;
 };
 
 void enclose(World& world) {
@@ -43,12 +43,12 @@ void enclose(World& world) {
 
 World random_world(const glm::dvec3& least, const glm::dvec3& most) {
     World world;
-    measure::Random random(1);
+    sampling::Random random(1);
     const auto between = [&](double a, double b) { return a * std::pow(b / a, random.uniform()); };
     for (int i = 0; i < 20'000; ++i) {
         Obb box;
         box.center = 100.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform());
-        box.axes = glm::mat3(measure::rotation(random.point<3>()));
+        box.axes = glm::mat3(sampling::rotation(random.point<3>()));
         box.half_extents =
             glm::vec3(0.5 * glm::dvec3(between(least.x, most.x), between(least.y, most.y), between(least.z, most.z)));
         world.boxes.push_back(box);
@@ -57,7 +57,7 @@ World random_world(const glm::dvec3& least, const glm::dvec3& most) {
     Camera camera;
     camera.far = 50.0;
     const Aabb inside{glm::dvec3(0.0), glm::dvec3(100.0)};
-    for (int i = 0; i < 100; ++i) world.views.push_back(measure::random_camera(camera, inside, random.point<6>()));
+    for (int i = 0; i < 100; ++i) world.views.push_back(sampling::random_camera(camera, inside, random.point<6>()));
     return world;
 }
 
@@ -143,7 +143,8 @@ constexpr Strategy kStrategies[] = {
 
 VisitTree build(const World& world, const Strategy& strategy) {
     const Criterion criterion = strategy.criterion(world);
-    tree::VisitOptions options{.split_criterion = criterion, .criterion = criterion, .oriented = strategy.oriented};
+    study::BinaryTreeOptions options{
+        .split_criterion = criterion, .criterion = criterion, .oriented = strategy.oriented};
     if (strategy.build == Build::inserted) {
         VisitTree tree = *VisitTree::build({}, options);
         for (const Obb& box : world.boxes) (void)*tree.insert(box);
@@ -152,9 +153,9 @@ VisitTree build(const World& world, const Strategy& strategy) {
     options.split = strategy.build == Build::median
                         ? Split::median
                         : (strategy.build == Build::sampled ? Split::sampled : Split::nested);
-    measure::QuerySample queries;
+    study::QuerySample queries;
     if (options.split == Split::sampled) {
-        queries = *measure::QuerySample::frusta(finite(world.views[0], world), world.region, 4096, 1);
+        queries = *study::QuerySample::frusta(finite(world.views[0], world), world.region, 4096, 1);
         options.queries = &queries;
     }
     return *VisitTree::build(world.boxes, options);
@@ -175,9 +176,9 @@ Tally tally(const World& world, const VisitTree& tree) {
     for (const Camera& view : world.views) {
         const Frustum frustum = *frustum_of(view);
         std::fill(below.begin(), below.end(), Below{});
-        for (tree::ItemId i = 0; i < world.boxes.size(); ++i) {
+        for (boxtree::ItemId i = 0; i < world.boxes.size(); ++i) {
             const cull::Verdict verdict = cull::classify(frustum, world.boxes[i]);
-            for (std::uint32_t n = tree.leaf(i); n != tree::kNone; n = tree.node(n).parent) {
+            for (std::uint32_t n = tree.leaf(i); n != boxtree::kNone; n = tree.node(n).parent) {
                 below[n].met += verdict != cull::Verdict::outside;
                 below[n].inside += verdict == cull::Verdict::inside;
                 ++below[n].all;
@@ -197,23 +198,23 @@ Tally tally(const World& world, const VisitTree& tree) {
                            ? Visit::skip
                            : (verdict == cull::Verdict::inside ? Visit::take : Visit::descend);
             },
-            [](tree::ItemId) {}));
+            [](boxtree::ItemId) {}));
         sum.tests_without_taking += static_cast<double>(tree.visit(
             [&](const Obb& bound) {
                 return cull::classify(frustum, bound) == cull::Verdict::outside ? Visit::skip : Visit::descend;
             },
-            [](tree::ItemId) {}));
+            [](boxtree::ItemId) {}));
     }
     const double n = static_cast<double>(world.views.size());
     return {sum.tests / n, sum.tests_without_taking / n, sum.improper_outside / n, sum.improper_inside / n};
 }
 
 double tests_per_line(const World& world, const VisitTree& tree) {
-    const auto lines = *measure::QuerySample::lines(world.region, 1024, 2);
+    const auto lines = *study::QuerySample::lines(world.region, 1024, 2);
     std::size_t tests = 0;
     for (std::uint32_t i = 0; i < lines.size(); ++i)
         tests += tree.visit([&](const Obb& bound) { return lines.hits(i, bound) ? Visit::descend : Visit::skip; },
-                            [](tree::ItemId) {});
+                            [](boxtree::ItemId) {});
     return static_cast<double>(tests) / lines.size();
 }
 
@@ -233,20 +234,20 @@ void hierarchy(benchmark::State& state, const std::string& world_name, const Str
 
 // Boxes fitted given one or three ancestors of other orientations, against the plain fit by M: queries that reach the
 // box's children, per query that passes all ancestors.
-void bound_given_ancestors(benchmark::State& state, const measure::QuerySample& queries) {
+void bound_given_ancestors(benchmark::State& state, const study::QuerySample& queries) {
     const auto levels = static_cast<std::size_t>(state.range(0));
     double plain = 0.0, given = 0.0, reaching = 0.0;
     for (auto _ : state) {
-        measure::Random random(9);
+        sampling::Random random(9);
         plain = given = reaching = 0.0;
         for (int object = 0; object < 20; ++object) {
             std::vector<glm::dvec3> points;
             for (int i = 0; i < 40; ++i)
-                points.push_back(glm::dvec3(1.0, 0.5, 0.25) * measure::ball_point(random.point<3>()));
+                points.push_back(glm::dvec3(1.0, 0.5, 0.25) * sampling::ball_point(random.point<3>()));
             std::vector<Obb> ancestors;
             for (std::size_t k = 0; k < levels; ++k)
-                ancestors.push_back(*fit::fit_oriented(points, glm::mat3(measure::rotation(random.point<3>()))));
-            const auto found = *tree::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
+                ancestors.push_back(*fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>()))));
+            const auto found = *study::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
             plain += found.plain_hits, given += found.hits, reaching += found.reaching;
         }
     }
@@ -255,13 +256,13 @@ void bound_given_ancestors(benchmark::State& state, const measure::QuerySample& 
 }
 
 const bool kRegistered = [] {
-    const measure::Ball region{glm::dvec3(0.0), 2.5};
+    const sampling::Ball region{glm::dvec3(0.0), 2.5};
     Camera camera;
     camera.far = 20.0;
-    const std::pair<const char*, measure::QuerySample> samples[] = {
-        {"planes", *measure::QuerySample::planes(region, 4096, 1)},
-        {"lines", *measure::QuerySample::lines(region, 4096, 1)},
-        {"frusta", *measure::QuerySample::frusta(camera, region, 4096, 1)}};
+    const std::pair<const char*, study::QuerySample> samples[] = {
+        {"planes", *study::QuerySample::planes(region, 4096, 1)},
+        {"lines", *study::QuerySample::lines(region, 4096, 1)},
+        {"frusta", *study::QuerySample::frusta(camera, region, 4096, 1)}};
     for (const auto& [name, sample] : samples)
         benchmark::RegisterBenchmark(
             (std::string("bound_given_ancestors/") + name).c_str(),

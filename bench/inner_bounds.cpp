@@ -5,9 +5,9 @@
 #include <assets/scene_source.hpp>
 #include <chrono>
 #include <cmath>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -79,11 +79,11 @@ double cost_of() {
 }
 
 // The bounds of every child of every node, of one kind, as boxes.
-using Bounds = std::vector<std::array<Obb, tree::kWidth>>;
+using Bounds = std::vector<std::array<Obb, boxtree::kWidth>>;
 
-Bounds aabbs(const tree::BoxTree& tree, unsigned steps) {
+Bounds aabbs(const boxtree::BoxTree& tree, unsigned steps) {
     Bounds bounds(tree.nodes().size());
-    for (tree::NodeId n = 0; n < bounds.size(); ++n) {
+    for (boxtree::NodeId n = 0; n < bounds.size(); ++n) {
         Aabb whole;
         for (unsigned lane = 0; lane < tree.nodes()[n].count; ++lane) whole.include(tree.child_bounds(n, lane));
         for (unsigned lane = 0; lane < tree.nodes()[n].count; ++lane) {
@@ -102,17 +102,17 @@ Bounds aabbs(const tree::BoxTree& tree, unsigned steps) {
 }
 
 // Around a leaf's boxes, and around the children's boxes above.
-Bounds obbs(const tree::BoxTree& tree) {
+Bounds obbs(const boxtree::BoxTree& tree) {
     const measure::Criterion criterion = measure::minimal_perimeter();
     Bounds bounds(tree.nodes().size());
-    for (auto n = static_cast<tree::NodeId>(bounds.size()); n-- > 0;) {
-        const tree::Node& node = tree.nodes()[n];
+    for (auto n = static_cast<boxtree::NodeId>(bounds.size()); n-- > 0;) {
+        const boxtree::Node& node = tree.nodes()[n];
         for (unsigned lane = 0; lane < node.count; ++lane) {
             std::vector<Obb> below;
-            const std::uint32_t child = node.child[lane], id = child & ~tree::kLeafBit;
-            if (child & tree::kLeafBit)
+            const std::uint32_t child = node.child[lane], id = child & ~boxtree::kLeafBit;
+            if (child & boxtree::kLeafBit)
                 for (unsigned i = 0; i < tree.leaves()[id].count; ++i)
-                    below.push_back(tree.boxes()[tree.slot_items()[id * tree::kWidth + i]]);
+                    below.push_back(tree.boxes()[tree.slot_items()[id * boxtree::kWidth + i]]);
             else
                 below.assign(bounds[id].begin(), bounds[id].begin() + tree.nodes()[id].count);
             bounds[n][lane] = *fit::merge(below, criterion);
@@ -125,23 +125,23 @@ struct Work {
     double nodes = 0.0, boxes = 0.0;
 };
 
-Work walk(const tree::BoxTree& tree, const Bounds& bounds, const std::vector<cull::View>& views) {
+Work walk(const boxtree::BoxTree& tree, const Bounds& bounds, const std::vector<cull::View>& views) {
     Work work;
-    std::vector<tree::NodeId> stack;
+    std::vector<boxtree::NodeId> stack;
     for (const cull::View& view : views) {
         stack.assign(1, 0);
         while (!stack.empty()) {
-            const tree::NodeId n = stack.back();
+            const boxtree::NodeId n = stack.back();
             stack.pop_back();
-            const tree::Node& node = tree.nodes()[n];
+            const boxtree::Node& node = tree.nodes()[n];
             work.nodes += node.count;
             for (unsigned lane = 0; lane < node.count; ++lane) {
                 if (cull::classify(view.frustum, bounds[n][lane], cull::Mode::conservative) !=
                     cull::Verdict::straddling)
                     continue;
                 const std::uint32_t child = node.child[lane];
-                if (child & tree::kLeafBit)
-                    work.boxes += tree.leaves()[child & ~tree::kLeafBit].count;
+                if (child & boxtree::kLeafBit)
+                    work.boxes += tree.leaves()[child & ~boxtree::kLeafBit].count;
                 else
                     stack.push_back(child);
             }
@@ -195,7 +195,7 @@ int main(int argc, char** argv) {
     for (const std::string& scene : scenes) {
         const std::vector<Obb> boxes = load(scene);
         if (boxes.empty()) return 2;
-        const auto tree = tree::BoxTree::build(boxes);
+        const auto tree = boxtree::BoxTree::build(boxes);
         if (!tree) return 2;
         Aabb whole;
         for (const Obb& box : boxes) whole.include(box.center);

@@ -2,11 +2,11 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <crofton/measure/global_lines.hpp>
-#include <crofton/measure/planar_bounds.hpp>
-#include <crofton/measure/planar_lines.hpp>
-#include <crofton/measure/random_motion.hpp>
-#include <crofton/measure/spatial_lines.hpp>
+#include <crofton/sampling/global_lines.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/planar_bounds.hpp>
+#include <crofton/study/planar_lines.hpp>
+#include <crofton/study/spatial_lines.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -14,6 +14,8 @@ namespace {
 
 using namespace crofton;
 using namespace crofton::measure;
+using namespace crofton::sampling;
+using namespace crofton::study;
 
 std::vector<PlanarSupport> discs(std::int64_t n) {
     Random random(1);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <crofton/measure/random_motion.hpp>
 #include <crofton/radiosity/bundle_tracer.hpp>
 #include <crofton/radiosity/form_factors.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -57,8 +57,8 @@ const char* scene_name(int which) {
 
 void lines_one_by_one(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
-    const LineSource source(s.lines.bounds(), LineMethod::walls, 3, measure::Sequence::quasi_random);
-    Vector<measure::Line> lines;
+    const LineSource source(s.lines.bounds(), LineMethod::walls, 3, sampling::Sequence::quasi_random);
+    Vector<sampling::Line> lines;
     LineHits hits;
     double count = 0.0, crossings = 0.0;
     std::uint64_t block = 0;
@@ -76,7 +76,7 @@ BENCHMARK(lines_one_by_one)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 void lines_in_bundles(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
-    const measure::UnitPoints points(3, measure::Sequence::quasi_random);
+    const sampling::UnitPoints points(3, sampling::Sequence::quasi_random);
     BundleTracer::Scratch scratch;
     LineHits hits;
     double count = 0.0, crossings = 0.0;
@@ -180,7 +180,7 @@ void factors_by_bundles(benchmark::State& state) {
     LineHits hits;
     measure_factors(state, s, kSeconds, [&](std::uint64_t seed, std::uint64_t k, SampledRows& rows) {
         const auto start = Clock::now();
-        const measure::UnitPoints points(seed, measure::Sequence::quasi_random);
+        const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
         s.bundles.all_hits(make_bundle(s.bundles.bounds(), area, points.at<2>(k), seed << 32 | k), scratch, hits);
         const double spent = seconds_since(start);
         visit(hits, s.patches, rows);
@@ -196,11 +196,11 @@ BENCHMARK(factors_by_bundles)
 
 void factors_by_global_lines(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
-    Vector<measure::Line> lines;
+    Vector<sampling::Line> lines;
     LineHits hits;
     measure_factors(state, s, kSeconds, [&](std::uint64_t seed, std::uint64_t k, SampledRows& rows) {
         const auto start = Clock::now();
-        LineSource(s.lines.bounds(), LineMethod::walls, seed, measure::Sequence::quasi_random).draw(k, lines);
+        LineSource(s.lines.bounds(), LineMethod::walls, seed, sampling::Sequence::quasi_random).draw(k, lines);
         s.lines.all_hits(lines, hits);
         const double spent = seconds_since(start);
         visit(hits, s.patches, rows);
@@ -224,7 +224,7 @@ void factors_by_local_lines(benchmark::State& state, Cast&& cast) {
         const auto start = Clock::now();
         const std::uint32_t begin = static_cast<std::uint32_t>(k % batches) * kBatch,
                             end = std::min(count, begin + kBatch);
-        measure::Random random(seed, k);
+        sampling::Random random(seed, k);
         rays.clear();
         for (std::uint32_t i = begin; i < end; ++i) {
             const auto corner = [&](std::uint32_t c) {
@@ -234,7 +234,7 @@ void factors_by_local_lines(benchmark::State& state, Cast&& cast) {
             double x = random.uniform(), y = random.uniform();
             if (x + y > 1.0) x = 1.0 - x, y = 1.0 - y;
             rays.push_back(
-                {{a + x * u + y * v, measure::cosine_direction(glm::normalize(glm::cross(u, v)), random.point<2>())},
+                {{a + x * u + y * v, sampling::cosine_direction(glm::normalize(glm::cross(u, v)), random.point<2>())},
                  i});
         }
         cast(s, std::span<const Ray>(rays), std::span(hits).first(rays.size()));

@@ -26,7 +26,8 @@ endfunction()
 
 # crofton_module(NAME cull DEPENDS scene tree SOURCES src/a.cpp … [LINK hwy] [NO_EXCEPTIONS OFF])
 # One engine module = one object library that sees its own headers and those of the modules it names, nothing else:
-# an include against the direction of docs/architecture.md does not compile.
+# an include against the direction of docs/architecture.md does not compile. Headers in internal/ are for other modules
+# only: they are not installed.
 function(crofton_module)
     cmake_parse_arguments(ARG "" "NAME" "DEPENDS;SOURCES;LINK" ${ARGN})
     set(target crofton_${ARG_NAME})
@@ -35,6 +36,10 @@ function(crofton_module)
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                          PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/internal)
+        target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/internal>)
+        set_property(GLOBAL APPEND PROPERTY CROFTON_INTERNAL_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/internal)
+    endif()
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET default)
     target_link_libraries(${target} PUBLIC crofton_settings crofton_third_party PRIVATE ${ARG_LINK})
     foreach(dependency IN LISTS ARG_DEPENDS)

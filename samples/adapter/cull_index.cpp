@@ -46,7 +46,7 @@ void CullIndex::remove(cull::ItemId item) {
 }
 
 void CullIndex::build() {
-    tree_.emplace(must(tree::BoxTree::build(boxes_)));
+    tree_.emplace(must(boxtree::BoxTree::build(boxes_)));
     for (std::size_t i = 0; i < removed_.size(); ++i)
         if (removed_[i]) must(tree_->remove(static_cast<cull::ItemId>(i)));
     boxes_ = {};
@@ -63,7 +63,7 @@ void CullIndex::update() {
 
 const cull::VisibleSet& CullIndex::cull(const cull::View& view) {
     update();
-    cull::cull(*tree_, view, visible_);
+    cull::find_visible(*tree_, view, visible_);
     return visible_;
 }
 

@@ -26,7 +26,7 @@ class CullIndex {
 
     std::vector<Obb> boxes_;     // while there is no tree
     std::vector<bool> removed_;  // the same
-    std::optional<tree::BoxTree> tree_;
+    std::optional<boxtree::BoxTree> tree_;
     bool changed_ = false;
     cull::VisibleSet visible_;
 };

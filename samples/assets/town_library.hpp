@@ -1,6 +1,6 @@
 // The town's vocabulary: every kind of thing once, as meshes and planar polygons of one scene.
 #pragma once
-#include <crofton/measure/random.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/scene/scene.hpp>
 #include <map>
 #include <string>
@@ -32,7 +32,7 @@ class Library {
 
     int pick(int count) { return static_cast<int>(random.uniform() * count); }  // in [0, count)
     bool chance(double probability) { return random.uniform() < probability; }
-    measure::Random random;
+    sampling::Random random;
     std::vector<std::vector<glm::vec3>> emission;  // by mesh, as SceneSource has it
 
   private:

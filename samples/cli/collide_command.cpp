@@ -3,7 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -32,26 +32,26 @@ json array_of(const glm::dvec3& v) {
     return json::array({v.x, v.y, v.z});
 }
 
-const char* name_of(collide::Containment containment) {
+const char* name_of(mesh::Containment containment) {
     switch (containment) {
-        case collide::Containment::a_inside_b:
+        case mesh::Containment::a_inside_b:
             return "a_inside_b";
-        case collide::Containment::b_inside_a:
+        case mesh::Containment::b_inside_a:
             return "b_inside_a";
-        case collide::Containment::partly:
+        case mesh::Containment::partly:
             return "partly";
         default:
             return "none";
     }
 }
 
-const char* sentence_of(collide::Containment containment) {
+const char* sentence_of(mesh::Containment containment) {
     switch (containment) {
-        case collide::Containment::a_inside_b:
+        case mesh::Containment::a_inside_b:
             return "A lies inside B";
-        case collide::Containment::b_inside_a:
+        case mesh::Containment::b_inside_a:
             return "B lies inside A";
-        case collide::Containment::partly:
+        case mesh::Containment::partly:
             return "some pieces of one lie inside the other";
         default:
             return "neither lies inside the other";
@@ -59,8 +59,8 @@ const char* sentence_of(collide::Containment containment) {
 }
 
 // Seven numbers, apart by commas or blanks, given as such or in a file: tx ty tz qw qx qy qz.
-Result<collide::Pose> pose_of(const std::string& argument) {
-    collide::Pose pose;
+Result<RigidTransform> pose_of(const std::string& argument) {
+    RigidTransform pose;
     if (argument.empty()) return pose;
     std::string text = argument;
     if (std::error_code error; std::filesystem::is_regular_file(argument, error)) {
@@ -91,15 +91,15 @@ Result<collide::Pose> pose_of(const std::string& argument) {
     const double length = glm::length(q);
     if (!(length > 1e-100 && std::isfinite(length))) return bad(3, "the quaternion has no direction");
     pose = {glm::mat3_cast(q / length), {value[0], value[1], value[2]}};
-    if (auto valid = collide::validate(pose); !valid) return bad(valid.error().item, valid.error().message.c_str());
+    if (auto valid = validate(pose); !valid) return bad(valid.error().item, valid.error().message.c_str());
     return pose;
 }
 
-Result<tree::MeshTree> tree_of(const std::string& path, double& milliseconds) {
+Result<mesh::MeshTree> tree_of(const std::string& path, double& milliseconds) {
     const auto mesh = load_mesh(path);
     if (!mesh) return tl::unexpected<Error>(mesh.error());
     const auto start = Clock::now();
-    auto tree = tree::MeshTree::build(*mesh);
+    auto tree = mesh::MeshTree::build(*mesh);
     milliseconds += milliseconds_since(start);
     if (!tree) return fail(tree.error().code, tree.error().item, path + ": " + tree.error().message);
     if (!tree->rejected().empty())
@@ -110,33 +110,33 @@ Result<tree::MeshTree> tree_of(const std::string& path, double& milliseconds) {
 
 struct Answer {
     bool hit = false;
-    Vector<collide::MeshContact> contacts;
+    Vector<mesh::MeshContact> contacts;
     double depth = 0.0, distance = -1.0;  // −1: not asked for
-    collide::MeshDistance nearest;
-    collide::Containment contained = collide::Containment::none;
-    collide::MeshStatistics statistics;
+    mesh::MeshDistance nearest;
+    mesh::Containment contained = mesh::Containment::none;
+    mesh::MeshStatistics statistics;
 };
 
-Answer ask(const std::string& mode, const tree::MeshTree& a, const tree::MeshTree& b, const collide::Pose& pose) {
+Answer ask(const std::string& mode, const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose) {
     Answer answer;
     if (mode == "all") {
-        collide::contacts(a, b, pose, answer.contacts, &answer.statistics);
+        mesh::contacts(a, b, pose, answer.contacts, &answer.statistics);
         answer.hit = !answer.contacts.empty();
     } else if (mode == "distance") {
-        answer.nearest = collide::distance(a, b, pose, std::numeric_limits<double>::infinity(), &answer.statistics);
+        answer.nearest = mesh::distance(a, b, pose, std::numeric_limits<double>::infinity(), &answer.statistics);
         answer.distance = answer.nearest.distance;
         answer.hit = answer.distance == 0.0;
     } else {
-        answer.hit = collide::intersects(a, b, pose, &answer.statistics);
+        answer.hit = mesh::intersects(a, b, pose, &answer.statistics);
     }
-    if (!answer.hit) answer.contained = collide::containment_of_disjoint(a, b, pose);
-    answer.hit = answer.hit || answer.contained != collide::Containment::none;
+    if (!answer.hit) answer.contained = mesh::containment_of_disjoint(a, b, pose);
+    answer.hit = answer.hit || answer.contained != mesh::Containment::none;
     return answer;
 }
 
 json document_of(const Answer& answer) {
     json document{{"hit", answer.hit}, {"pairs", json::array()}, {"contacts", json::array()}, {"depth", answer.depth}};
-    for (const collide::MeshContact& c : answer.contacts) {
+    for (const mesh::MeshContact& c : answer.contacts) {
         document["pairs"].push_back({c.triangles.first, c.triangles.second});
         document["contacts"].push_back({{"triangles", {c.triangles.first, c.triangles.second}},
                                         {"position", array_of(0.5 * (c.segment.begin + c.segment.end))},
@@ -168,10 +168,10 @@ int run(const Request& request) {
     const auto start = Clock::now();
     Answer answer = ask(request.mode, *a, *b, *pose);
     const double query = milliseconds_since(start);
-    if (answer.hit && request.mode == "all") answer.depth = collide::penetration(*a, *b, *pose, answer.contacts).depth;
+    if (answer.hit && request.mode == "all") answer.depth = mesh::penetration(*a, *b, *pose, answer.contacts).depth;
     if (request.json_path != "-") {
         std::printf("%s", answer.hit ? "hit" : "no hit");
-        if (answer.contained != collide::Containment::none || request.mode == "contain")
+        if (answer.contained != mesh::Containment::none || request.mode == "contain")
             std::printf(", %s", sentence_of(answer.contained));
         if (request.mode == "all")
             std::printf(", %zu pairs of triangles, depth %.6g", answer.contacts.size(), answer.depth);

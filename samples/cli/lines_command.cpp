@@ -40,8 +40,8 @@ Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& 
 
 // As many bundles as there are blocks / 2, of the size that the solver takes: a cell as large as a triangle.
 Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double box_area, std::uint64_t seed,
-                measure::Sequence sequence, const Options& options) {
-    const measure::UnitPoints points(seed, sequence);
+                sampling::Sequence sequence, const Options& options) {
+    const sampling::UnitPoints points(seed, sequence);
     radiosity::BundleTracer::Scratch scratch;
     radiosity::LineHits hits;
     Seen seen;
@@ -66,7 +66,7 @@ Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double 
 // How well a way to draw lines counts the scene's surface, a number known exactly: S = crossings · F / (2 N).
 // Efficiency is the reciprocal of error² · time, so it does not depend on how many lines were spent.
 template <class Look>
-nlohmann::json compare(const char* method, measure::Sequence sequence, double surface, const Options& options,
+nlohmann::json compare(const char* method, sampling::Sequence sequence, double surface, const Options& options,
                        Look&& look) {
     double squares = 0.0;
     Seen all;
@@ -82,7 +82,7 @@ nlohmann::json compare(const char* method, measure::Sequence sequence, double su
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double error = std::sqrt(squares / options.repeats), mean = all.crossings / all.lines;
     return {{"method", method},
-            {"sequence", sequence == measure::Sequence::quasi_random ? "quasi" : "pseudo"},
+            {"sequence", sequence == sampling::Sequence::quasi_random ? "quasi" : "pseudo"},
             {"lines_per_second", all.lines / seconds},
             {"mean_crossings", mean},
             {"deviation", std::sqrt(std::max(0.0, all.squares / all.lines - mean * mean))},
@@ -111,7 +111,7 @@ Result<void> run(const Options& options) {
     const double box_area = radiosity::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
     const double cell_area = surface / static_cast<double>(mesh.triangle_count());
     nlohmann::json rows = nlohmann::json::array();
-    for (const measure::Sequence sequence : {measure::Sequence::pseudo_random, measure::Sequence::quasi_random}) {
+    for (const sampling::Sequence sequence : {sampling::Sequence::pseudo_random, sampling::Sequence::quasi_random}) {
         for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
             rows.push_back(compare(radiosity::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
                 return by_lines(*tracer, radiosity::LineSource(tracer->bounds(), method, seed, sequence), options);

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/convex_hull.hpp>
-#include <crofton/measure/convex_body.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/measure/random_motion.hpp>
 #include <crofton/radiosity/line_source.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/convex_body.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
@@ -59,7 +59,7 @@ class HalfSpaces {
     }
 
     // The length of the line's part inside; 0 where it misses.
-    [[nodiscard]] double chord(const measure::Line& line) const {
+    [[nodiscard]] double chord(const sampling::Line& line) const {
         double enter = -HUGE_VAL, leave = HUGE_VAL;
         for (const Face& face : faces_) {
             const double speed = glm::dot(face.normal, line.direction);
@@ -104,10 +104,10 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     if (hull.rank == 3) {
         const HalfSpaces solid(points, hull);
         Mean hits, chords;
-        Vector<measure::Line> lines;
+        Vector<sampling::Line> lines;
         for (std::uint64_t block = 0; block < blocks; ++block) {
             source.draw(block, lines);
-            for (const measure::Line& line : lines) {
+            for (const sampling::Line& line : lines) {
                 const double chord = solid.chord(line);
                 hits.add(chord > 0.0 ? 1.0 : 0.0);
                 chords.add(chord);
@@ -117,12 +117,12 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
         rows.push_back(
             row("its hull's volume V", "mean chord, 0 for a miss · F0 / 4", exact.volume, 0.25 * ball_area, chords));
     }
-    measure::ConvexBody body;
+    study::ConvexBody body;
     for (const std::uint32_t v : hull.vertices) body.points.push_back(points[v]);
     Mean breadths;
-    const measure::UnitPoints numbers(options.seed);
+    const sampling::UnitPoints numbers(options.seed);
     for (std::uint64_t i = 0; i < blocks * radiosity::LineSource::kBlock; ++i)
-        breadths.add(measure::breadth(body, measure::direction(numbers.at<2>(i))));
+        breadths.add(study::breadth(body, sampling::direction(numbers.at<2>(i))));
     rows.push_back(row("its hull's integral of mean curvature M", "mean breadth · 2 pi", exact.mean_curvature,
                        2.0 * std::numbers::pi, breadths));
 }

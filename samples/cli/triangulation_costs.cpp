@@ -7,9 +7,9 @@
 #include <crofton/geometry/clip_space.hpp>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/measure/random.hpp>
-#include <crofton/measure/random_motion.hpp>
 #include <crofton/render/rasterizer.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -124,7 +124,7 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
     const double reach = std::sqrt(1.0 + half * half * (1.0 + camera.aspect * camera.aspect));
     const glm::dvec3 low(-reach), size(1.0 + 2.0 * reach, 1.0 + 2.0 * reach, 2.0 * reach);
     const double cell = size.x * size.y * size.z;
-    const measure::UnitPoints points(6);
+    const sampling::UnitPoints points(6);
     const std::size_t methods = polygons[0].results.size();
     std::vector<Mean> means(methods);
     std::vector<std::vector<Sums>> sums;
@@ -136,7 +136,7 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
         const std::size_t index = i % polygons.size();
         const TriangulatedPolygon& p = polygons[index];
         const auto u = points.at<6>(i);
-        const glm::dmat3 rotation = measure::rotation({u[0], u[1], u[2]});
+        const glm::dmat3 rotation = sampling::rotation({u[0], u[1], u[2]});
         camera.position = low + size * glm::dvec3(u[3], u[4], u[5]);
         camera.forward = -rotation[2];
         camera.up = rotation[1];
@@ -160,14 +160,14 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
 
 QuadComparison pixel_quads(std::span<const TriangulatedPolygon> polygons, std::uint64_t trials, double size) {
     const std::size_t methods = polygons[0].results.size();
-    const measure::UnitPoints points(7);
+    const sampling::UnitPoints points(7);
     std::vector<Mean> means(methods);
     QuadComparison result;
     result.covered.assign(methods, 0.0);
     for (std::uint64_t i = 0; i < trials; ++i) {
         const TriangulatedPolygon& p = polygons[i % polygons.size()];
         const auto u = points.at<3>(i);
-        const glm::dmat2 rotation = measure::rotation2(u[0]);
+        const glm::dmat2 rotation = sampling::rotation2(u[0]);
         const glm::dvec2 offset(2.0 * u[1], 2.0 * u[2]);
         for (std::size_t m = 0; m < methods; ++m) {
             double expected = 0.0, met = 0.0, covered = 0.0;
@@ -208,7 +208,7 @@ Result<std::vector<DrawCost>> draw_wall(std::span<const TriangulatedPolygon> pol
         }
         if (auto set = rasterizer->set_geometry(vertices, indices); !set) return tl::unexpected(set.error());
         const render::DrawRange range{0, static_cast<std::uint32_t>(indices.size()), 0};
-        measure::Random random(8);
+        sampling::Random random(8);
         DrawCost cost;
         std::vector<double> times;
         for (int f = 0; f < frames; ++f) {

@@ -111,7 +111,7 @@ double area_inside(const Body& body, double r) {
         const auto& face = body.faces[f];
         const double height = glm::dot(body.normals[f], body.corners[face[0]]);
         if (std::abs(height) >= r) continue;
-        const auto [x, y] = measure::orthonormal_frame(body.normals[f]);
+        const auto [x, y] = sampling::orthonormal_frame(body.normals[f]);
         double area = 0.0;
         for (std::size_t k = 0; k < face.size(); ++k) {
             const glm::dvec3 &a = body.corners[face[k]], &b = body.corners[face[(k + 1) % face.size()]];
@@ -164,7 +164,7 @@ Body frustum_body(double tan_x, double tan_y, double near, double far, bool pers
     return body;
 }
 
-Body moved(const Body& body, const measure::Motion& motion) {
+Body moved(const Body& body, const sampling::Motion& motion) {
     Body result = body;
     for (glm::dvec3& p : result.corners) p = motion(p);
     for (glm::dvec3& n : result.normals) n = motion.rotation * n;
@@ -191,8 +191,8 @@ Placements::Placements(const Body& moving, const Body& fixed) : middle_(center_o
     range_.max += glm::dvec3(radius_about_center(fixed));
 }
 
-measure::Motion Placements::motion(const std::array<double, 6>& u) const {
-    const measure::Motion uniform = measure::motion(range_, u);
+sampling::Motion Placements::motion(const std::array<double, 6>& u) const {
+    const sampling::Motion uniform = sampling::motion(range_, u);
     return {uniform.rotation, middle_ - uniform.rotation * uniform.translation};
 }
 
@@ -242,15 +242,15 @@ bool holds(const Figure& outer, const Figure& inner) {
     return true;
 }
 
-Figure moved(const Figure& figure, const measure::Motion2& motion) {
+Figure moved(const Figure& figure, const sampling::Motion2& motion) {
     Figure result;
     for (const glm::dvec2& p : figure) result.push_back(motion(p));
     return result;
 }
 
 Anchored anchored(const Body& query, double radius, const std::array<double, 8>& u) {
-    measure::Motion motion{measure::rotation({u[0], u[1], u[2]}), glm::dvec3(0.0)};
-    const glm::dvec3 target = radius * measure::ball_point({u[3], u[4], u[5]});
+    sampling::Motion motion{sampling::rotation({u[0], u[1], u[2]}), glm::dvec3(0.0)};
+    const glm::dvec3 target = radius * sampling::ball_point({u[3], u[4], u[5]});
     const double ball = 4.0 / 3.0 * pi * radius * radius * radius;
     Anchored result;
     if (query.faces.empty()) {  // a segment
@@ -290,8 +290,8 @@ AnchoredFigure anchored(const Figure& query, double radius, const std::array<dou
     std::size_t i = 0;
     while (i + 1 < sides && left >= glm::length(side(query, i))) left -= glm::length(side(query, i++));
     const glm::dvec2 point = query[i] + left / glm::length(side(query, i)) * side(query, i);
-    measure::Motion2 motion{measure::rotation2(u[0]), glm::dvec2(0.0)};
-    motion.translation = radius * measure::disc_point({u[1], u[2]}) - motion.rotation * point;
+    sampling::Motion2 motion{sampling::rotation2(u[0]), glm::dvec2(0.0)};
+    motion.translation = radius * sampling::disc_point({u[1], u[2]}) - motion.rotation * point;
     AnchoredFigure result{moved(query, motion), 0.0};
     double inside = 0.0;
     for (std::size_t k = 0; k < sides; ++k) {

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/measure/global_lines.hpp>
 #include <crofton/measure/improper_tests.hpp>
-#include <crofton/measure/random.hpp>
-#include <crofton/measure/spatial_lines.hpp>
+#include <crofton/sampling/global_lines.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/study/spatial_lines.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -46,7 +46,7 @@ struct Ratios {
 // `reach` must hold both bounds well inside: the query's boundary is anchored in that ball.
 Ratios compare(const Body& query, const Body& first, const Body& second, const Body& object, double reach,
                std::uint64_t trials, std::uint64_t seed) {
-    const measure::UnitPoints points(seed);
+    const sampling::UnitPoints points(seed);
     Ratios result;
     for (std::uint64_t i = 0; i < trials; ++i) {
         const Anchored q = anchored(query, reach, points.at<8>(i));
@@ -140,8 +140,8 @@ void box_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         const auto best = fit::fit_obb(corners, {.criterion = c.criterion, .quality = fit::Quality::exact});
         if (!best) continue;
         const Body minimal = body_of(*best);
-        const measure::UnitPoints points(seed++);
-        measure::Random random(options.seed, seed);
+        const sampling::UnitPoints points(seed++);
+        sampling::Random random(options.seed, seed);
         Ratio ratio;
         for (std::uint64_t i = 0; i < options.trials; ++i) {
             const Anchored q = anchored(c.query, 3.0, points.at<8>(i));
@@ -149,7 +149,7 @@ void box_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
             const auto misled = [&](const Body& bound) {
                 return hits ? (inside && !holds(q.body, bound)) : meet(q.body, bound);
             };
-            const auto other = fit::fit_oriented(corners, glm::mat3(measure::rotation(random.point<3>())));
+            const auto other = fit::fit_oriented(corners, glm::mat3(sampling::rotation(random.point<3>())));
             ratio.add(misled(minimal) ? q.weight : 0.0, misled(body_of(*other)) ? q.weight : 0.0);
         }
         rows.push_back(
@@ -162,13 +162,13 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     a.half_extents = glm::vec3(1.0f, 0.5f, 0.25f);
     b.half_extents = glm::vec3(0.75f, 0.75f, 0.125f);
     b.center = glm::dvec3(0.5, 0.4, 0.3);
-    b.axes = glm::mat3(measure::rotation({0.3, 0.7, 0.2}));
-    const std::vector<measure::ConvexBody> bodies = {measure::ConvexBody::box(a), measure::ConvexBody::box(b),
-                                                     measure::ConvexBody::ball(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
+    b.axes = glm::mat3(sampling::rotation({0.3, 0.7, 0.2}));
+    const std::vector<study::ConvexBody> bodies = {study::ConvexBody::box(a), study::ConvexBody::box(b),
+                                                   study::ConvexBody::ball(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
     const double reach = 2.5;
-    const measure::UnitPoints points(options.seed * 1000 + 260);
+    const sampling::UnitPoints points(options.seed * 1000 + 260);
     std::uint64_t planes = 0, lines = 0;
-    const auto box_met = [](const Obb& box, const measure::Line& line) {  // by slabs
+    const auto box_met = [](const Obb& box, const sampling::Line& line) {  // by slabs
         double low = -1e300, high = 1e300;
         for (int k = 0; k < 3; ++k) {
             const glm::dvec3 axis(box.axes[k]);
@@ -181,17 +181,17 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     };
     for (std::uint64_t i = 0; i < options.trials; ++i) {
         const auto u = points.at<4>(i);
-        const glm::dvec3 n = measure::direction({u[0], u[1]});
+        const glm::dvec3 n = sampling::direction({u[0], u[1]});
         const double distance = reach * (2.0 * u[2] - 1.0);
-        planes += std::all_of(bodies.begin(), bodies.end(), [&](const measure::ConvexBody& k) {
+        planes += std::all_of(bodies.begin(), bodies.end(), [&](const study::ConvexBody& k) {
             return -support(k, -n) <= distance && distance <= support(k, n);
         });
-        const measure::Line line = measure::line_through_disc({glm::dvec3(0.0), reach}, u);
+        const sampling::Line line = sampling::line_through_disc({glm::dvec3(0.0), reach}, u);
         const glm::dvec3 d = bodies[2].points[0] - line.point;
         const bool ball = glm::length(glm::cross(d, line.direction)) <= bodies[2].radius;
         lines += ball && box_met(a, line) && box_met(b, line);
     }
-    const auto row = [&](const char* claim, const char* source, const measure::Enclosure& exact, double all,
+    const auto row = [&](const char* claim, const char* source, const study::Enclosure& exact, double all,
                          std::uint64_t hits) {
         const Share share = share_of(hits, options.trials);
         rows.push_back(measured_row(claim, source, exact.value, all * share.value,
@@ -235,7 +235,7 @@ void triangulation_rows(const VerifyOptions& options, std::vector<VerifyRow>& ro
             camera.near = lens.near, camera.far = lens.far;
             const IntrinsicVolumes b = *measure::of_frustum(camera);
             const Placements placements(frustum, flat_body(v));
-            const measure::UnitPoints points(seed++);
+            const sampling::UnitPoints points(seed++);
             Mean passed;
             for (std::uint64_t i = 0; i < options.trials / 2; ++i) {
                 const Body view = moved(frustum, placements.motion(points.at<6>(i)));

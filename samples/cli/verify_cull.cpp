@@ -22,9 +22,9 @@ struct Counts {
 // Only boxes have a tree; its verdicts where there is one.
 std::vector<cull::Verdict> tree_verdicts(const std::vector<Obb>& boxes, const cull::View& view) {
     std::vector<cull::Verdict> verdicts(boxes.size(), cull::Verdict::outside);
-    const auto tree = tree::BoxTree::build(boxes);
+    const auto tree = boxtree::BoxTree::build(boxes);
     cull::VisibleSet visible;
-    cull::cull(*tree, view, visible);
+    cull::find_visible(*tree, view, visible);
     for (std::size_t n = 0; n < visible.size(); ++n) verdicts[visible.ids()[n]] = visible.verdicts()[n];
     return verdicts;
 }
@@ -45,11 +45,11 @@ void run_batch(Straddlers& straddlers, std::size_t count, Counts& counts) {
     cull::BoundSet<Bound> set;
     set.assign(bounds);
     cull::VerdictBits exact, conservative;
-    cull::cull(set, bounds, view, exact);
-    cull::cull(set, bounds, view, conservative, cull::Mode::conservative);
+    cull::find_visible(set, bounds, view, exact);
+    cull::find_visible(set, bounds, view, conservative, cull::Mode::conservative);
     std::vector<std::uint32_t> masks(count);
     const std::array<cull::View, 2> views{cull::View{*frustum_of(straddlers.camera())}, view};
-    cull::cull(set, bounds, {}, views, masks);
+    cull::find_visible(set, bounds, {}, views, masks);
     const std::vector<cull::Verdict> of_tree = tree_verdicts(bounds, view);
     for (std::size_t i = 0; i < count; ++i) {
         const cull::Verdict verdict = cull::classify(*frustum, bounds[i]);

@@ -2,7 +2,7 @@
 #include <crofton/measure/criterion.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/measure/planar.hpp>
-#include <crofton/measure/random.hpp>
+#include <crofton/sampling/random.hpp>
 #include <numbers>
 
 #include "verify_bodies.hpp"
@@ -63,7 +63,7 @@ std::vector<NamedBody> bodies() {
 // μ by counting.
 VerifyRow counted(const NamedBody& b, const NamedBody& k, std::uint64_t trials, std::uint64_t seed) {
     const Placements placements(b.body, k.body);
-    const measure::UnitPoints points(seed);
+    const sampling::UnitPoints points(seed);
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i) hits += meet(moved(b.body, placements.motion(points.at<6>(i))), k.body);
     const Share share = share_of(hits, trials);
@@ -75,10 +75,10 @@ VerifyRow counted(const NamedBody& b, const NamedBody& k, std::uint64_t trials, 
 VerifyRow counted(const char* claim, const Figure& b, const Figure& k, std::uint64_t trials, std::uint64_t seed) {
     const auto measures = [](const Figure& f) { return measure::of_convex_polygon(f); };
     const double reach = 6.0;
-    const measure::UnitPoints points(seed);
+    const sampling::UnitPoints points(seed);
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i)
-        hits += meet(moved(b, measure::motion2(glm::dvec2(-reach), glm::dvec2(reach), points.at<3>(i))), k);
+        hits += meet(moved(b, sampling::motion2(glm::dvec2(-reach), glm::dvec2(reach), points.at<3>(i))), k);
     const double all = 4.0 * reach * reach;
     const Share share = share_of(hits, trials);
     return measured_row(claim, "theory.md (1), in the plane", measure::kinematic_measure(measures(b), measures(k)),

@@ -1,9 +1,9 @@
 // Global lines: the right densities pass a test of uniformity, the wrong ones fail it; what a patch expects of N lines.
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/global_lines.hpp>
-#include <crofton/measure/random_motion.hpp>
-#include <crofton/measure/wrong_lines.hpp>
+#include <crofton/sampling/global_lines.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <utility>
@@ -14,9 +14,9 @@
 namespace crofton::cli {
 namespace {
 
-using measure::Ball;
-using measure::Line;
-using measure::Random;
+using sampling::Ball;
+using sampling::Line;
+using sampling::Random;
 using std::numbers::pi;
 
 // Uniform lines through the unit ball, whose shadow is a disc: their direction is uniform on the sphere and, given
@@ -31,7 +31,7 @@ class Uniformity {
         const glm::dvec3 foot = line.point - glm::dot(line.point, d) * d;
         const double squared = glm::dot(foot, foot);
         if (squared >= 1.0) return;
-        const auto [x, y] = measure::orthonormal_frame(d);
+        const auto [x, y] = sampling::orthonormal_frame(d);
         const auto part = [](double u, std::size_t n) {
             return std::min(n - 1, static_cast<std::size_t>(u * static_cast<double>(n)));
         };
@@ -91,8 +91,9 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
         "(b) a direction and a disc point", [](Random& r) { return line_through_disc(kUnitBall, r.point<4>()); },
         trials);
     right(
-        "(d) cosine-weighted from a box", [](Random& r) { return measure::line_from_box(kBox, r.point<5>()); }, trials);
-    const auto hull = measure::LinesFromHull::make(octahedron(2.0f));
+        "(d) cosine-weighted from a box", [](Random& r) { return sampling::line_from_box(kBox, r.point<5>()); },
+        trials);
+    const auto hull = sampling::LinesFromHull::make(octahedron(2.0f));
     right(
         "(d) cosine-weighted from an octahedron", [&](Random& r) { return (*hull)(r.point<5>()); }, trials);
     // (c): lines of one bundle are not independent, so at most one of each is taken: number k, where there are so many,
@@ -150,7 +151,7 @@ void plane_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     rows.push_back(measured_row("in the plane, cosine-weighted lines from a point of a circle are uniform",
                                 "theory.md section 6", mean, chi([](Random& r) {
                                     // The sine of the angle to the normal is uniform.
-                                    const glm::dvec2 a = measure::circle_point(r.uniform()), across(-a.y, a.x);
+                                    const glm::dvec2 a = sampling::circle_point(r.uniform()), across(-a.y, a.x);
                                     const double sine = 2.0 * r.uniform() - 1.0;
                                     const glm::dvec2 d = sine * across - std::sqrt(1.0 - sine * sine) * a;
                                     return std::abs(a.x * d.y - a.y * d.x);
@@ -191,8 +192,8 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     row("(a), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_two_sphere_points(kUnitBall, r.point<4>()); });
     row("(b), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_disc(kUnitBall, r.point<4>()); });
     row("(d) from a box, 2A/F", 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x),
-        [](Random& r) { return measure::line_from_box(kBox, r.point<5>()); });
-    const auto hull = measure::LinesFromHull::make(octahedron(2.0f));
+        [](Random& r) { return sampling::line_from_box(kBox, r.point<5>()); });
+    const auto hull = sampling::LinesFromHull::make(octahedron(2.0f));
     row("(d) from an octahedron, 2A/F", hull->area(), [&](Random& r) { return (*hull)(r.point<5>()); });
 
     const double cell = 0.02;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <crofton/measure/improper_tests.hpp>
 #include <crofton/measure/planar.hpp>
-#include <crofton/measure/planar_bounds.hpp>
-#include <crofton/measure/planar_lines.hpp>
-#include <crofton/measure/random.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/study/planar_bounds.hpp>
+#include <crofton/study/planar_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -17,8 +17,8 @@ namespace {
 
 using measure::Disc;
 using measure::PlanarMeasures;
-using measure::PlanarSupport;
 using std::numbers::pi;
+using study::PlanarSupport;
 
 // Uniform lines: a normal direction and a distance in [−reach, reach]; the measure of all of them is 2π·reach.
 VerifyRow counted_lines(std::string claim, std::string source, double predicted,
@@ -26,7 +26,7 @@ VerifyRow counted_lines(std::string claim, std::string source, double predicted,
                         double subtract = 0.0) {
     const double reach = 4.0;
     const std::uint64_t trials = 4 * options.trials;
-    const measure::UnitPoints points(options.seed * 1000 + salt);
+    const sampling::UnitPoints points(options.seed * 1000 + salt);
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i) {
         const auto u = points.at<2>(i);
@@ -65,10 +65,10 @@ void line_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     rows.push_back(
         counted_lines("two discs that meet: L1 + L2 - L_hull lines hit both", "paper (7)", seven, two, options, 105));
     rows.push_back(computed_row("four discs: arcs and tangents = (3)", "paper (9)",
-                                measure::measure_of_lines_by_tangents(discs), measure_of_lines_hitting_all(circles),
+                                study::measure_of_lines_by_tangents(discs), measure_of_lines_hitting_all(circles),
                                 1e-12));
     rows.push_back(counted_lines("four discs: as many lines hit all as arcs and tangents say", "paper (9)",
-                                 measure::measure_of_lines_by_tangents(discs), circles, options, 106));
+                                 study::measure_of_lines_by_tangents(discs), circles, options, 106));
 }
 
 void triangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
@@ -80,7 +80,7 @@ void triangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     rows.push_back(wrong_row("triangle example without the term −4l: m(R→l) = 2π·l", "paper (8) as printed", 2.0 * pi,
                              misprint.measured, misprint.standard_error));
     const std::vector<glm::dvec2> triangle = {{-1.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}};
-    const auto best = measure::optimal_disc(triangle, first);
+    const auto best = study::optimal_disc(triangle, first);
     const double least = best->measure - 4.0;
     rows.push_back(computed_row("triangle example: the best second circle leaves 1.3637·l improper tests",
                                 "paper, section 4", 1.3637, least, 1e-4));
@@ -103,7 +103,7 @@ struct Improper {
 // The measures of improper tests of `bound` around `object`, for motions of `query`.
 Improper improper(const Figure& query, const Figure& bound, const Figure& object, double reach,
                   const VerifyOptions& options, std::uint64_t salt) {
-    const measure::UnitPoints points(options.seed * 1000 + salt);
+    const sampling::UnitPoints points(options.seed * 1000 + salt);
     Improper result;
     for (std::uint64_t i = 0; i < options.trials; ++i) {
         const AnchoredFigure q = anchored(query, reach, points.at<4>(i));
@@ -174,9 +174,9 @@ void theorem_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
 
 // Minimal-perimeter rectangle against rectangles of random orientation, in improper tests of a large frustum.
 void rectangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
-    measure::Random random(options.seed, 5);
+    sampling::Random random(options.seed, 5);
     Figure points;
-    for (int i = 0; i < 12; ++i) points.push_back(glm::dvec2(1.0, 0.35) * measure::disc_point(random.point<2>()));
+    for (int i = 0; i < 12; ++i) points.push_back(glm::dvec2(1.0, 0.35) * sampling::disc_point(random.point<2>()));
     const auto hull = *measure::convex_hull(points);
     const Figure object(hull.begin(), hull.end());
     const auto rectangle = [&](const glm::dvec2& axis) {
@@ -196,7 +196,7 @@ void rectangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) 
         if (perimeter(flush) < perimeter(best)) best = flush;
     }
     const Figure wedge = {{0.0, 0.0}, {60.0, -30.0}, {60.0, 30.0}};
-    const measure::UnitPoints queries(options.seed * 1000 + 150);
+    const sampling::UnitPoints queries(options.seed * 1000 + 150);
     Mean difference, minimal;
     for (std::uint64_t i = 0; i < options.trials; ++i) {
         const AnchoredFigure q = anchored(wedge, 2.5, queries.at<4>(i));
@@ -205,7 +205,7 @@ void rectangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) 
             return (meet(q.figure, bound) && !hits) || (inside && !holds(q.figure, bound));
         };
         const double mine = misled(best) ? q.weight : 0.0;
-        const double other = misled(rectangle(measure::circle_point(random.uniform()))) ? q.weight : 0.0;
+        const double other = misled(rectangle(sampling::circle_point(random.uniform()))) ? q.weight : 0.0;
         minimal.add(mine);
         difference.add(mine - other);
     }

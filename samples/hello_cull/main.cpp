@@ -11,7 +11,7 @@ int main() {
         box.half_extents = {1.0f, 2.0f, 1.0f};
         boxes.push_back(box);
     }
-    const auto tree = crofton::tree::BoxTree::build(boxes);
+    const auto tree = crofton::boxtree::BoxTree::build(boxes);
     if (!tree) return std::fprintf(stderr, "%s\n", tree.error().message.c_str()), 1;
 
     crofton::Camera camera;  // reversed-Z, right-handed; docs/conventions.md
@@ -21,7 +21,7 @@ int main() {
         camera.position.x += 1.0;
         const auto frustum = crofton::frustum_of(camera);
         if (!frustum) return std::fprintf(stderr, "%s\n", frustum.error().message.c_str()), 1;
-        crofton::cull::cull(*tree, {.frustum = *frustum}, visible);
+        crofton::cull::find_visible(*tree, {.frustum = *frustum}, visible);
         // for (auto id : visible.ids()) draw(objects[id]);
         std::printf("frame %d: %zu of %zu boxes in view, %llu tested\n", frame, visible.size(), boxes.size(),
                     static_cast<unsigned long long>(visible.statistics().boxes_tested));

@@ -104,7 +104,7 @@ Ogre::SceneNode* SceneManager::createSceneNodeImpl(const Ogre::String& name) {
 }
 
 void SceneManager::bounds_changed(SceneNode& node) {
-    if (node.getAttachedObjects().empty() && node.item_ == tree::kNone && !node.unbounded_) return;
+    if (node.getAttachedObjects().empty() && node.item_ == boxtree::kNone && !node.unbounded_) return;
     const bool unbounded = is_unbounded(node);
     const std::optional<Obb> box = unbounded ? std::nullopt : box_of(node);
     if (!box || unbounded != node.unbounded_) forget(node);
@@ -113,7 +113,7 @@ void SceneManager::bounds_changed(SceneNode& node) {
         unbounded_.push_back(&node);
     }
     if (!box) return;
-    if (node.item_ != tree::kNone) {
+    if (node.item_ != boxtree::kNone) {
         index_.move(node.item_, *box);
         return;
     }
@@ -125,10 +125,10 @@ void SceneManager::bounds_changed(SceneNode& node) {
 void SceneManager::forget(SceneNode& node) {
     if (node.unbounded_) std::erase(unbounded_, &node);
     node.unbounded_ = false;
-    if (node.item_ == tree::kNone) return;
+    if (node.item_ == boxtree::kNone) return;
     index_.remove(node.item_);
     nodes_[node.item_] = nullptr;
-    node.item_ = tree::kNone;
+    node.item_ = boxtree::kNone;
 }
 
 Frustum SceneManager::frustum_of(const Ogre::Camera& camera) {

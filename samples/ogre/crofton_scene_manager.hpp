@@ -24,7 +24,7 @@ class SceneNode final : public Ogre::SceneNode {
     void setInSceneGraph(bool in_graph) override;
 
     SceneManager& manager_;
-    cull::ItemId item_ = tree::kNone;
+    cull::ItemId item_ = boxtree::kNone;
     bool unbounded_ = false;  // in the manager's list of objects that every camera sees
 };
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <utility>
 
 #include "object_counts.hpp"
@@ -44,7 +44,7 @@ struct Pipeline::State {
     PipelineOptions options;
     Executor& executor;
     Bounds bounds;
-    std::optional<tree::BoxTree> tree;
+    std::optional<boxtree::BoxTree> tree;
     collide::Broadphase broadphase;
     std::vector<Obb> mover_boxes, moved_boxes;
     cull::VisibleSet visible;
@@ -64,7 +64,7 @@ struct Pipeline::State {
     }
 
     Result<void> build_tree() {
-        auto built = tree::BoxTree::build(bounds.boxes(), scene.layer_masks(), {}, executor);
+        auto built = boxtree::BoxTree::build(bounds.boxes(), scene.layer_masks(), {}, executor);
         if (!built) return tl::unexpected(built.error());
         tree.emplace(std::move(*built));
         return {};
@@ -93,10 +93,10 @@ struct Pipeline::State {
     void list_visible(const Frustum& frustum) {
         const cull::View view{frustum};
         if (options.cull == CullMode::tree)
-            cull::cull(*tree, view, visible, {.mode = options.mode, .order = cull::Order::ascending}, executor);
+            cull::find_visible(*tree, view, visible, {.mode = options.mode, .order = cull::Order::ascending}, executor);
         else
-            cull::cull(bounds.boxes(), scene.layer_masks(), view, visible,
-                       {.mode = options.mode, .order = cull::Order::ascending}, executor);
+            cull::find_visible(bounds.boxes(), scene.layer_masks(), view, visible,
+                               {.mode = options.mode, .order = cull::Order::ascending}, executor);
         visible_ids.clear();
         for (std::size_t k = 0; k < visible.size(); ++k) {
             const scene::InstanceId instance = visible.ids()[k];
@@ -114,7 +114,7 @@ struct Pipeline::State {
         mover_boxes.clear();
         for (const scene::InstanceId mover : movers) mover_boxes.push_back(scene.world_boxes()[mover]);
         if (auto updated = broadphase.update(mover_boxes, {}, executor); !updated) return updated;
-        for (const collide::Pair& pair : broadphase.pairs())
+        for (const IdPair& pair : broadphase.pairs())
             frame.colliding_ids.emplace_back(movers[pair.first], movers[pair.second]);
         frame.colliding_pairs = frame.colliding_ids.size();
         const collide::BatchStatistics& decided = broadphase.statistics().boxes;
@@ -123,7 +123,7 @@ struct Pipeline::State {
         frame.separated_by_face_b = decided.separated_by_face_b;
         frame.separated_by_edges = decided.separated_by_edges;
         frame.pairs_refined = decided.refined;
-        for (const collide::Pair& pair : broadphase.pairs()) {
+        for (const IdPair& pair : broadphase.pairs()) {
             const auto manifold = collide::contact_manifold(mover_boxes[pair.first], mover_boxes[pair.second]);
             frame.contacts += static_cast<std::uint64_t>(manifold.count);
         }
@@ -194,14 +194,14 @@ std::span<const scene::InstanceId> Pipeline::movers() const {
     return state_->movers;
 }
 
-const tree::BoxTree& Pipeline::tree() const {
+const boxtree::BoxTree& Pipeline::tree() const {
     return *state_->tree;
 }
 
 std::vector<scene::InstanceId> Pipeline::spatial_order() const {
     std::vector<scene::InstanceId> order;
-    for (const tree::ItemId item : state_->tree->slot_items())
-        if (item != tree::kNone && !state_->scene.is_removed(item)) order.push_back(item);
+    for (const boxtree::ItemId item : state_->tree->slot_items())
+        if (item != boxtree::kNone && !state_->scene.is_removed(item)) order.push_back(item);
     return order;
 }
 

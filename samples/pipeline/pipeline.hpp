@@ -1,10 +1,10 @@
 // One frame of the project's main job: move, bound, cull, collide, count. Drawing is beside it, in draw_list.hpp.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/scene/scene.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -48,7 +48,7 @@ class Pipeline {
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
     [[nodiscard]] const Bounds& bounds() const;
     [[nodiscard]] std::span<const scene::InstanceId> movers() const;
-    [[nodiscard]] const tree::BoxTree& tree() const;  // over bounds().boxes(), items are instances
+    [[nodiscard]] const boxtree::BoxTree& tree() const;  // over bounds().boxes(), items are instances
     // Instances in the order in which the tree holds them: neighbours in space are neighbours here.
     [[nodiscard]] std::vector<scene::InstanceId> spatial_order() const;
 

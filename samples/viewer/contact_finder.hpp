@@ -1,9 +1,9 @@
 // Where bodies touch, and what keeps those apart that nearly do; in world coordinates.
 #pragma once
 #include <array>
-#include <crofton/collide/pose.hpp>
+#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
-#include <crofton/tree/mesh_tree.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,13 +28,13 @@ class ContactFinder {
     // linear = rotation · stretch, with stretch upper triangular: scale on its diagonal, shear above.
     using Stretch = std::array<double, 6>;
     struct Body {
-        const tree::MeshTree* tree;
-        collide::Pose pose;
+        const mesh::MeshTree* tree;
+        RigidTransform pose;
     };
     [[nodiscard]] std::optional<Body> body_of(const scene::Scene& scene, scene::InstanceId instance);
-    [[nodiscard]] const tree::MeshTree* tree_of(const TriangleMesh& mesh, scene::MeshId id, const Stretch& stretch);
+    [[nodiscard]] const mesh::MeshTree* tree_of(const TriangleMesh& mesh, scene::MeshId id, const Stretch& stretch);
 
-    std::map<std::pair<scene::MeshId, Stretch>, std::unique_ptr<tree::MeshTree>> trees_;
+    std::map<std::pair<scene::MeshId, Stretch>, std::unique_ptr<mesh::MeshTree>> trees_;
 };
 
 // The gap between two boxes along the axis by which the separating-axis test tells them apart, as a segment midway

@@ -41,7 +41,7 @@ class Overlay {
     void draw_bounds(LineList& lines, const Settings& settings, const Stage& stage,
                      const pipeline::FrameStatistics& frame);
     // The root is level 0.
-    void draw_tree_level(LineList& lines, const tree::BoxTree& tree, int level);
+    void draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level);
     void draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
     void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);
     void draw_separations(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);

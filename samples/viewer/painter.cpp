@@ -9,11 +9,11 @@ namespace {
 constexpr std::uint8_t kPlain = 255;
 
 // Depth of the leaf that holds an item: steps from the root.
-unsigned depth_of(const tree::BoxTree& tree, tree::ItemId item) {
+unsigned depth_of(const boxtree::BoxTree& tree, boxtree::ItemId item) {
     const std::uint32_t slot = tree.slot_of(item);
-    if (slot == tree::kNone) return 0;
+    if (slot == boxtree::kNone) return 0;
     unsigned depth = 1;
-    for (tree::NodeId node = tree.leaves()[slot / tree::kWidth].parent; node != tree::kNone && node != 0;
+    for (boxtree::NodeId node = tree.leaves()[slot / boxtree::kWidth].parent; node != boxtree::kNone && node != 0;
          node = tree.nodes()[node].parent)
         ++depth;
     return depth;

@@ -159,7 +159,7 @@ Result<void> Session::cull() {
     for (Cascade& cascade : cascades_) {
         const auto frustum = frustum_of(cascade.camera);
         if (!frustum) return tl::unexpected(frustum.error());
-        cull::cull(stage_->pipeline().tree(), {*frustum}, cascade_visible_);
+        cull::find_visible(stage_->pipeline().tree(), {*frustum}, cascade_visible_);
         cascade.visible = cascade_visible_.size();
     }
     painter_.classify(*stage_, frame_, settings_.coloring, selected_);

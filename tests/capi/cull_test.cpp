@@ -76,8 +76,8 @@ TEST_SUITE("capi/cull") {
         same.frustum = *crofton::frustum_of(crofton::Camera{});
         same.layer_mask = 5;
         crofton::cull::VisibleSet expected;
-        crofton::cull::cull(std::span(reinterpret_cast<const crofton::Obb*>(boxes.data()), boxes.size()), masks, same,
-                            expected);
+        crofton::cull::find_visible(std::span(reinterpret_cast<const crofton::Obb*>(boxes.data()), boxes.size()), masks,
+                                    same, expected);
         crofton_tree* tree = nullptr;
         REQUIRE(crofton_tree_create(boxes.data(), masks.data(), boxes.size(), nullptr, &tree) == CROFTON_OK);
         const Tree owner(tree);

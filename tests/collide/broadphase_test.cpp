@@ -20,8 +20,8 @@ std::vector<Obb> random_boxes(std::mt19937_64& random, int count, double place) 
     return boxes;
 }
 
-std::vector<Pair> brute_force(std::span<const Obb> boxes, std::span<const Filter> filters = {}) {
-    std::vector<Pair> pairs;
+std::vector<IdPair> brute_force(std::span<const Obb> boxes, std::span<const Filter> filters = {}) {
+    std::vector<IdPair> pairs;
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
         for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
             if (validate(boxes[i]) && validate(boxes[j]) && (filters.empty() || passes(filters[i], filters[j])) &&
@@ -30,7 +30,7 @@ std::vector<Pair> brute_force(std::span<const Obb> boxes, std::span<const Filter
     return pairs;
 }
 
-bool same(std::span<const Pair> a, std::span<const Pair> b) {
+bool same(std::span<const IdPair> a, std::span<const IdPair> b) {
     return std::ranges::equal(a, b);
 }
 
@@ -140,14 +140,14 @@ TEST_SUITE("collide/broadphase") {
         std::mt19937_64 random(4);
         auto boxes = random_boxes(random, 600, 6.0);
         Broadphase broadphase;
-        std::vector<Pair> before;
+        std::vector<IdPair> before;
         for (int frame = 0; frame < 20; ++frame) {
             if (frame == 10) boxes.resize(500);
             if (frame == 12) boxes.push_back(random_box(random, 1.0));
             REQUIRE(broadphase.update(boxes).has_value());
             const auto now = brute_force(boxes);
             CHECK(same(broadphase.pairs(), now));
-            std::vector<Pair> began, stayed, ended;
+            std::vector<IdPair> began, stayed, ended;
             std::ranges::set_difference(now, before, std::back_inserter(began));
             std::ranges::set_intersection(now, before, std::back_inserter(stayed));
             std::ranges::set_difference(before, now, std::back_inserter(ended));

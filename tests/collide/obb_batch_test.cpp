@@ -20,7 +20,7 @@ std::uint64_t total(const BatchStatistics& s) {
 void check(const std::vector<Obb>& a, const std::vector<Obb>& b, const glm::dvec3& origin) {
     std::vector<std::uint8_t> expected, hits(a.size(), 7), packed(a.size(), 7), indexed(a.size(), 7);
     std::vector<Obb> both;
-    std::vector<Pair> pairs;
+    std::vector<IdPair> pairs;
     for (std::uint32_t i = 0; i < a.size(); ++i) {
         expected.push_back(intersects(a[i], b[i]));
         both.push_back(a[i]);

@@ -22,29 +22,29 @@ oracle::Crowd crowd_of(std::size_t count, double offset, std::uint64_t seed) {
     return crowd;
 }
 
-tree::BoxTree tree_of(const oracle::Crowd& crowd) {
-    auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
+boxtree::BoxTree tree_of(const oracle::Crowd& crowd) {
+    auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
     REQUIRE(tree.has_value());
     return std::move(*tree);
 }
 
 // Every box asked, one after the other.
 template <class Meets>
-std::vector<tree::ItemId> by_brute_force(const oracle::Crowd& crowd, std::uint32_t layers, Meets meets) {
-    std::vector<tree::ItemId> items;
+std::vector<boxtree::ItemId> by_brute_force(const oracle::Crowd& crowd, std::uint32_t layers, Meets meets) {
+    std::vector<boxtree::ItemId> items;
     for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
-        if ((crowd.layers[i] & layers) != 0 && meets(crowd.boxes[i])) items.push_back(static_cast<tree::ItemId>(i));
+        if ((crowd.layers[i] & layers) != 0 && meets(crowd.boxes[i])) items.push_back(static_cast<boxtree::ItemId>(i));
     return items;
 }
 
-std::vector<tree::ItemId> list(const Vector<tree::ItemId>& items) {
+std::vector<boxtree::ItemId> list(const Vector<boxtree::ItemId>& items) {
     return {items.begin(), items.end()};
 }
 
-std::vector<tree::ItemId> all_along(const Ray& ray, const tree::BoxTree& tree, std::uint32_t layers) {
-    std::vector<tree::ItemId> items;
+std::vector<boxtree::ItemId> all_along(const Ray& ray, const boxtree::BoxTree& tree, std::uint32_t layers) {
+    std::vector<boxtree::ItemId> items;
     visit_along(
-        ray, tree, [&](tree::ItemId item, double) { return items.push_back(item), ray.max_t; }, layers);
+        ray, tree, [&](boxtree::ItemId item, double) { return items.push_back(item), ray.max_t; }, layers);
     std::sort(items.begin(), items.end());
     return items;
 }
@@ -65,8 +65,8 @@ TEST_SUITE("collide/tree_query") {
     TEST_CASE("bodies and rays that are none meet nothing, and a tree without items answers") {
         const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
         const oracle::Crowd crowd = crowd_of(300, 0.0, 1);
-        const tree::BoxTree tree = tree_of(crowd);
-        Vector<tree::ItemId> items(3);
+        const boxtree::BoxTree tree = tree_of(crowd);
+        Vector<boxtree::ItemId> items(3);
         Obb bad = crowd.boxes[0];
         bad.center.y = nan;
         overlapping(tree, bad, items);
@@ -82,7 +82,7 @@ TEST_SUITE("collide/tree_query") {
         }
         CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, tree).has_value());
         CHECK_FALSE(raycast(Ray{{0.0, 0.0, -90.0}, {0.0, 0.0, 1.0}, -1.0}, tree).has_value());
-        const auto empty = tree::BoxTree::build({});
+        const auto empty = boxtree::BoxTree::build({});
         CHECK_FALSE(raycast(Ray{}, *empty).has_value());
         overlapping(*empty, Sphere{{}, 1e9}, items);
         CHECK(items.empty());
@@ -91,10 +91,10 @@ TEST_SUITE("collide/tree_query") {
     TEST_CASE("boxes, balls and capsules meet what each box alone says, at any offset") {
         for (const double offset : {0.0, 1e5, 1e7}) {
             const oracle::Crowd crowd = crowd_of(2000, offset, 2);
-            const tree::BoxTree tree = tree_of(crowd);
+            const boxtree::BoxTree tree = tree_of(crowd);
             const glm::dvec3 middle = offset * glm::dvec3(1.0, -0.7, 0.3);
             NearMisses random(3);
-            Vector<tree::ItemId> items;
+            Vector<boxtree::ItemId> items;
             std::size_t found = 0;
             for (int trial = 0; trial < 100; ++trial) {
                 const std::uint32_t layers = random.index(3) ? ~0u : 1u << random.index(5);
@@ -121,8 +121,8 @@ TEST_SUITE("collide/tree_query") {
         for (int i = 0; i < 500; ++i)
             crowd.boxes.push_back({{2.0 * (i % 25), 2.0 * (i / 25), 0.0}, glm::mat3(1.0f), glm::vec3(1.0f)});
         crowd.layers.assign(500, 1u);
-        const tree::BoxTree tree = tree_of(crowd);
-        Vector<tree::ItemId> items;
+        const boxtree::BoxTree tree = tree_of(crowd);
+        Vector<boxtree::ItemId> items;
         for (const int i : {26 * 3, 26 * 5, 26 * 11}) {
             overlapping(tree, crowd.boxes[static_cast<std::size_t>(i)], items);
             CHECK(items.size() == 9);
@@ -136,22 +136,22 @@ TEST_SUITE("collide/tree_query") {
     TEST_CASE("rays visit exactly the boxes that each alone is hit, and end at the nearest") {
         for (const double offset : {0.0, 1e5, 1e7}) {
             const oracle::Crowd crowd = crowd_of(2000, offset, 4);
-            const tree::BoxTree tree = tree_of(crowd);
+            const boxtree::BoxTree tree = tree_of(crowd);
             NearMisses random(5);
             std::size_t found = 0;
             for (int trial = 0; trial < 300; ++trial) {
                 const std::uint32_t layers = random.index(3) ? ~0u : 1u << random.index(5);
                 const Ray ray = random_ray(random, offset * glm::dvec3(1.0, -0.7, 0.3), 90.0);
                 const auto expected =
-                    by_brute_force(crowd, layers, [&](const Obb& b) { return raycast(ray, b).has_value(); });
+                    by_brute_force(crowd, layers, [&](const Obb& b) { return mesh::raycast(ray, b).has_value(); });
                 CHECK(all_along(ray, tree, layers) == expected);
                 const auto nearest = raycast(ray, tree, layers);
                 REQUIRE(nearest.has_value() == !expected.empty());
                 found += expected.size();
                 if (!nearest) continue;
                 BoxHit best{std::numeric_limits<double>::infinity(), 0};
-                for (const tree::ItemId item : expected)
-                    if (const double t = *raycast(ray, crowd.boxes[item]); t < best.t) best = {t, item};
+                for (const boxtree::ItemId item : expected)
+                    if (const double t = *mesh::raycast(ray, crowd.boxes[item]); t < best.t) best = {t, item};
                 CHECK(nearest->t == best.t);
                 CHECK(nearest->item == best.item);
             }
@@ -161,17 +161,17 @@ TEST_SUITE("collide/tree_query") {
 
     TEST_CASE("a visitor ends the ray where it likes") {
         const oracle::Crowd crowd = crowd_of(2000, 0.0, 6);
-        const tree::BoxTree tree = tree_of(crowd);
+        const boxtree::BoxTree tree = tree_of(crowd);
         int visits = 0;
         visit_along(Ray{{-50.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, tree,
-                    [&](tree::ItemId, double) { return ++visits, -1.0; });
+                    [&](boxtree::ItemId, double) { return ++visits, -1.0; });
         CHECK(visits == 1);
     }
 
     TEST_CASE("a ray allocates nothing, nor does a body once the list has grown") {
         const oracle::Crowd crowd = crowd_of(2000, 0.0, 6);
-        const tree::BoxTree tree = tree_of(crowd);
-        Vector<tree::ItemId> items;
+        const boxtree::BoxTree tree = tree_of(crowd);
+        Vector<boxtree::ItemId> items;
         overlapping(tree, Sphere{{}, 1e3}, items);
         const testing::CountingMemory memory;
         overlapping(tree, Sphere{{}, 1e3}, items);
@@ -182,19 +182,19 @@ TEST_SUITE("collide/tree_query") {
 
     TEST_CASE("after moves, inserts and removals and a refit the answers are those of the boxes now") {
         oracle::Crowd crowd = crowd_of(1000, 0.0, 7);
-        tree::BoxTree tree = tree_of(crowd);
+        boxtree::BoxTree tree = tree_of(crowd);
         NearMisses random(8);
         for (int i = 0; i < 300; ++i) {
             const auto item = random.index(1000);
             crowd.boxes[item] = oracle::random_box(random, glm::dvec3(0.0), 40.0);
-            REQUIRE(tree.move(static_cast<tree::ItemId>(item), crowd.boxes[item]).has_value());
+            REQUIRE(tree.move(static_cast<boxtree::ItemId>(item), crowd.boxes[item]).has_value());
         }
         for (int i = 0; i < 100; ++i) {
             crowd.boxes.push_back(oracle::random_box(random, glm::dvec3(0.0), 40.0));
             crowd.layers.push_back(1u);
             REQUIRE(tree.insert(crowd.boxes.back(), 1u).has_value());
         }
-        for (tree::ItemId item = 0; item < 1100; item += 7) {
+        for (boxtree::ItemId item = 0; item < 1100; item += 7) {
             REQUIRE(tree.remove(item).has_value());
             crowd.layers[item] = 0;
         }
@@ -202,7 +202,7 @@ TEST_SUITE("collide/tree_query") {
         for (int trial = 0; trial < 200; ++trial) {
             const Ray ray = random_ray(random, glm::dvec3(0.0), 90.0);
             CHECK(all_along(ray, tree, ~0u) ==
-                  by_brute_force(crowd, ~0u, [&](const Obb& b) { return raycast(ray, b).has_value(); }));
+                  by_brute_force(crowd, ~0u, [&](const Obb& b) { return mesh::raycast(ray, b).has_value(); }));
         }
     }
 }

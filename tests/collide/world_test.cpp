@@ -6,10 +6,11 @@
 #include <crofton/core/thread_pool.hpp>
 #include <limits>
 
-#include "meshes.hpp"
+#include "mesh/meshes.hpp"
 
 using namespace crofton;
 using namespace crofton::collide;
+using namespace crofton::mesh;
 using namespace crofton::testing;
 
 namespace {
@@ -71,13 +72,13 @@ TEST_SUITE("collide/world") {
         World world;
         REQUIRE(world.update(stage.scene).has_value());
         REQUIRE(world.pairs().size() == 2);
-        CHECK(world.pairs()[0].instances == Pair{0, 1});
+        CHECK(world.pairs()[0].instances == IdPair{0, 1});
         CHECK(world.pairs()[0].contact_count > 0);
         for (const MeshContact& contact : world.contacts()) {
             CHECK(glm::length(contact.normal) == doctest::Approx(1.0));
             CHECK(std::abs(contact.segment.begin.x - 1.0) < 0.4);
         }
-        CHECK(world.pairs()[1].instances == Pair{3, 4});
+        CHECK(world.pairs()[1].instances == IdPair{3, 4});
         CHECK(world.pairs()[1].inside == Containment::b_inside_a);
         CHECK(world.statistics().trees_built == 4);
         CHECK(world.statistics().mesh_pairs_hit == 2);

@@ -24,7 +24,7 @@ int main() {
     good = good && scene.update().nodes_updated == 0;
     crofton::cull::VisibleSet visible;
     const auto frustum = crofton::frustum_of(crofton::Camera{});
-    if (frustum) crofton::cull::cull({&box, 1}, {}, {.frustum = *frustum}, visible);
+    if (frustum) crofton::cull::find_visible({&box, 1}, {}, {.frustum = *frustum}, visible);
     good = good && visible.size() == 1;
     good = good && crofton::bake::checksum({}) != 0;
     std::printf("crofton %s: edge sum %g, %zu box in view\n", crofton::version_string(), edges, visible.size());

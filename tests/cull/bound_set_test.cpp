@@ -24,7 +24,7 @@ TEST_SUITE("cull/bound_set") {
         oracle::NearMisses random(2);
         for (int trial = 0; trial < 20; ++trial) {
             const cull::View view{*frustum_of(random.camera())};
-            cull::cull(set, crowd.boxes, view, bits);
+            cull::find_visible(set, crowd.boxes, view, bits);
             for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
                 CHECK(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i]));
             CHECK(bits.verdict(17) == Verdict::straddling);
@@ -34,15 +34,15 @@ TEST_SUITE("cull/bound_set") {
     TEST_CASE("an empty set, a view without planes and normals that are not unit are all answered") {
         BoxSet set;
         cull::VerdictBits bits;
-        cull::cull(set, {}, {*frustum_of(Camera{})}, bits);
+        cull::find_visible(set, {}, {*frustum_of(Camera{})}, bits);
         CHECK(bits.visible.empty());
         const oracle::Crowd crowd = oracle::random_crowd(100, 0.0, 1);
         set.assign(crowd.boxes);
-        cull::cull(set, crowd.boxes, cull::View{}, bits);
+        cull::find_visible(set, crowd.boxes, cull::View{}, bits);
         for (std::size_t i = 0; i < 100; ++i) CHECK(bits.verdict(i) == Verdict::inside);
         cull::View scaled{*frustum_of(Camera{})};
         scaled.frustum.planes[1].normal *= 1.9;
-        cull::cull(set, crowd.boxes, scaled, bits);
+        cull::find_visible(set, crowd.boxes, scaled, bits);
         for (std::size_t i = 0; i < 100; ++i) CHECK(bits.verdict(i) == cull::classify(scaled.frustum, crowd.boxes[i]));
     }
 
@@ -67,7 +67,7 @@ TEST_SUITE("cull/bound_set") {
                     for (std::uint32_t i = 0; i < count; i += 15) crowd.boxes[i] = random.box(view.frustum, 1e-9, 1e-3);
                     set.update(moved, crowd.boxes);
                     const cull::Mode mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
-                    cull::cull(set, crowd.boxes, view, bits, mode);
+                    cull::find_visible(set, crowd.boxes, view, bits, mode);
                     std::size_t visible = 0;
                     for (std::size_t i = 0; i < count; ++i) {
                         REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i], mode));
@@ -129,10 +129,10 @@ TEST_SUITE("cull/bound_set") {
                     box_set.update(moved, boxes);
                     sphere_set.update(moved, spheres);
                     const cull::Mode mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
-                    cull::cull(box_set, boxes, view, bits, mode);
+                    cull::find_visible(box_set, boxes, view, bits, mode);
                     for (std::size_t i = 0; i < count; ++i)
                         REQUIRE(bits.verdict(i) == cull::classify(view.frustum, boxes[i], mode));
-                    cull::cull(sphere_set, spheres, view, bits, mode);
+                    cull::find_visible(sphere_set, spheres, view, bits, mode);
                     for (std::size_t i = 0; i < count; ++i)
                         REQUIRE(bits.verdict(i) == cull::classify(view.frustum, spheres[i], mode));
                 }
@@ -161,7 +161,7 @@ TEST_SUITE("cull/bound_set") {
             if (trial % 4 == 2) view.frustum.planes[trial % 6].offset = trial % 8 == 2 ? 1e49 : -1e49;
             if (trial % 4 == 3) view.frustum.planes[trial % 6].offset = trial % 8 == 3 ? 1e31 : -1e31;
             for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
-                cull::cull(set, crowd.boxes, view, bits, mode);
+                cull::find_visible(set, crowd.boxes, view, bits, mode);
                 for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
                     REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i], mode));
             }
@@ -195,7 +195,7 @@ TEST_SUITE("cull/bound_set") {
             camera.position.x += 1e6;
             camera.far = 60.0;
             const cull::View view{*frustum_of(camera)};
-            cull::cull(set, crowd.boxes, view, bits);
+            cull::find_visible(set, crowd.boxes, view, bits);
             for (std::size_t i = 0; i < 4096; ++i)
                 REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i]));
         }
@@ -215,7 +215,7 @@ TEST_SUITE("cull/bound_set") {
         camera.far = 200.0;
         const cull::View view{*frustum_of(camera)};
         cull::VerdictBits bits;
-        cull::cull(set, crowd.boxes, view, bits);
+        cull::find_visible(set, crowd.boxes, view, bits);
         std::size_t inside = 0;
         for (std::size_t i = 0; i < crowd.boxes.size(); ++i) {
             REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i]));
@@ -238,7 +238,7 @@ TEST_SUITE("cull/bound_set") {
                 for (Sphere& point : points) point.center += random.number(0.0, 0.3) * quantum * random.direction();
                 set.assign(points);
                 cull::VerdictBits bits;
-                cull::cull(set, points, {frustum}, bits);
+                cull::find_visible(set, points, {frustum}, bits);
                 for (std::size_t i = 0; i < points.size(); ++i)
                     REQUIRE(bits.verdict(i) == cull::classify(frustum, points[i]));
             }
@@ -266,10 +266,10 @@ TEST_SUITE("cull/bound_set") {
                 for (const std::size_t used : {0u, 5u, 32u}) {
                     const auto layers =
                         layered ? std::span<const std::uint32_t>(crowd.layers) : std::span<const std::uint32_t>();
-                    cull::cull(set, crowd.boxes, layers, std::span<const cull::View>(views).first(used), masks);
+                    cull::find_visible(set, crowd.boxes, layers, std::span<const cull::View>(views).first(used), masks);
                     std::vector<std::uint32_t> expected(count, 0u);
                     for (std::size_t v = 0; v < used; ++v) {
-                        cull::cull(set, crowd.boxes, views[v], bits);
+                        cull::find_visible(set, crowd.boxes, views[v], bits);
                         for (std::size_t i = 0; i < count; ++i)
                             if (bits.verdict(i) != Verdict::outside &&
                                 (!layered || crowd.layers[i] & views[v].layer_mask))
@@ -290,7 +290,7 @@ TEST_SUITE("cull/bound_set") {
         std::size_t improper = 0;
         for (int trial = 0; trial < 10; ++trial) {
             const cull::View view{*frustum_of(random.camera())};
-            cull::cull(set, crowd.boxes, view, bits);
+            cull::find_visible(set, crowd.boxes, view, bits);
             std::size_t expected = 0, straddling = 0;
             for (std::size_t i = 0; i < crowd.boxes.size(); ++i) {
                 expected += bits.verdict(i) == Verdict::outside &&
@@ -307,9 +307,9 @@ TEST_SUITE("cull/bound_set") {
         std::vector<std::uint32_t> masks(crowd.boxes.size());
         std::vector<cull::Statistics> statistics(2);
         ThreadPool two(2);
-        cull::cull(set, crowd.boxes, {}, views, masks, cull::Mode::exact, two, statistics);
+        cull::find_visible(set, crowd.boxes, {}, views, masks, cull::Mode::exact, two, statistics);
         for (std::size_t v = 0; v < 2; ++v) {
-            cull::cull(set, crowd.boxes, views[v], bits);
+            cull::find_visible(set, crowd.boxes, views[v], bits);
             CHECK(statistics[v].improper == bits.statistics.improper);
             CHECK(statistics[v].straddling == bits.statistics.straddling);
             CHECK(statistics[v].boxes_tested == bits.statistics.boxes_tested);

@@ -10,23 +10,23 @@ using cull::Verdict;
 
 TEST_SUITE("cull/cull") {
     TEST_CASE("nothing to cull gives nothing") {
-        const auto tree = tree::BoxTree::build(std::span<const Obb>{});
+        const auto tree = boxtree::BoxTree::build(std::span<const Obb>{});
         REQUIRE(tree.has_value());
         cull::VisibleSet visible;
-        cull::cull(*tree, {*frustum_of(Camera{})}, visible);
+        cull::find_visible(*tree, {*frustum_of(Camera{})}, visible);
         CHECK(visible.size() == 0);
-        cull::cull(std::span<const Obb>{}, {}, {*frustum_of(Camera{})}, visible);
+        cull::find_visible(std::span<const Obb>{}, {}, {*frustum_of(Camera{})}, visible);
         CHECK(visible.size() == 0);
     }
 
     TEST_CASE("a view that is not finite sees everything in its layers") {
         const oracle::Crowd town = oracle::random_crowd(100, 0.0, 1);
-        const auto tree = tree::BoxTree::build(town.boxes, town.layers);
+        const auto tree = boxtree::BoxTree::build(town.boxes, town.layers);
         REQUIRE(tree.has_value());
         cull::View view{*frustum_of(Camera{}), 2u};
         view.frustum.planes[0].offset = std::nan("");
         cull::VisibleSet visible;
-        cull::cull(*tree, view, visible);
+        cull::find_visible(*tree, view, visible);
         std::size_t expected = 0;
         for (const std::uint32_t mask : town.layers) expected += (mask & 2u) != 0;
         CHECK(visible.size() == expected);
@@ -38,15 +38,15 @@ TEST_SUITE("cull/cull") {
         Obb box;
         box.half_extents = glm::vec3(0.5f);
         const std::vector<Obb> boxes(100000, box);
-        const auto tree = tree::BoxTree::build(boxes);
+        const auto tree = boxtree::BoxTree::build(boxes);
         REQUIRE(tree.has_value());
         cull::VisibleSet visible;
         Camera camera;
         camera.position = {0.0, 0.0, 5.0};
-        cull::cull(*tree, {*frustum_of(camera)}, visible);
+        cull::find_visible(*tree, {*frustum_of(camera)}, visible);
         CHECK(visible.size() == boxes.size());
         camera.forward = {0.0, 0.0, 1.0};
-        cull::cull(*tree, {*frustum_of(camera)}, visible);
+        cull::find_visible(*tree, {*frustum_of(camera)}, visible);
         CHECK(visible.size() == 0);
     }
 
@@ -54,7 +54,7 @@ TEST_SUITE("cull/cull") {
         for (const double offset : {0.0, 1e5, 1e7})
             for (const std::size_t count : {1u, 17u, 3000u}) {
                 const oracle::Crowd town = oracle::random_crowd(count, offset, count);
-                const auto tree = tree::BoxTree::build(town.boxes, town.layers);
+                const auto tree = boxtree::BoxTree::build(town.boxes, town.layers);
                 REQUIRE(tree.has_value());
                 oracle::NearMisses random(7, offset);
                 cull::VisibleSet from_tree, from_list;
@@ -72,14 +72,14 @@ TEST_SUITE("cull/cull") {
                         ids.push_back(static_cast<cull::ItemId>(i));
                         verdicts.push_back(verdict);
                     }
-                    cull::cull(*tree, view, from_tree, options);
-                    cull::cull(town.boxes, town.layers, view, from_list, options);
+                    cull::find_visible(*tree, view, from_tree, options);
+                    cull::find_visible(town.boxes, town.layers, view, from_list, options);
                     for (const cull::VisibleSet* visible : {&from_tree, &from_list}) {
                         CHECK(std::ranges::equal(visible->ids(), ids));
                         CHECK(std::ranges::equal(visible->verdicts(), verdicts));
                     }
                     options.order = cull::Order::tree;
-                    cull::cull(*tree, view, from_tree, options);
+                    cull::find_visible(*tree, view, from_tree, options);
                     std::vector<cull::ItemId> sorted(from_tree.ids().begin(), from_tree.ids().end());
                     std::ranges::sort(sorted);
                     CHECK(sorted == ids);
@@ -94,12 +94,12 @@ TEST_SUITE("cull/cull") {
         camera.far = 60.0;
         const cull::View view{*frustum_of(camera)};
         for (int numbering = 0; numbering < 2; ++numbering) {
-            const auto tree = *tree::BoxTree::build(boxes);
+            const auto tree = *boxtree::BoxTree::build(boxes);
             for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
                 hwy::SetSupportedTargetsForTest(rest & -rest);
                 cull::VisibleSet sorted, unsorted;
-                cull::cull(tree, view, sorted);
-                cull::cull(tree, view, unsorted, {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(tree, view, sorted);
+                cull::find_visible(tree, view, unsorted, {cull::Mode::exact, cull::Order::tree});
                 std::vector<std::pair<cull::ItemId, Verdict>> expected;
                 for (std::size_t i = 0; i < unsorted.size(); ++i)
                     expected.emplace_back(unsorted.ids()[i],
@@ -113,58 +113,17 @@ TEST_SUITE("cull/cull") {
             }
             hwy::SetSupportedTargetsForTest(0);
             std::vector<Obb> along_the_tree;
-            for (const tree::ItemId item : tree.slot_items())
-                if (item != tree::kNone) along_the_tree.push_back(boxes[item]);
+            for (const boxtree::ItemId item : tree.slot_items())
+                if (item != boxtree::kNone) along_the_tree.push_back(boxes[item]);
             boxes = along_the_tree;
         }
-    }
-
-    TEST_CASE("binary trees, oriented or not, give classify's verdicts while items come and go") {
-        for (const bool oriented : {false, true})
-            for (const double offset : {0.0, 1e6}) {
-                std::vector<Obb> boxes = oracle::random_crowd(600, offset, 11).boxes;
-                auto tree = *tree::VisitTree::build(boxes, {.oriented = oriented});
-                oracle::NearMisses random(13, offset);
-                cull::VisibleSet visible;
-                for (int trial = 0; trial < 60; ++trial) {
-                    const cull::ItemId item = random.index(static_cast<unsigned>(boxes.size()));
-                    const Obb box = oracle::random_box(random, offset * glm::dvec3(1.0, -0.7, 0.3), 40.0);
-                    if (trial % 3 == 0) {
-                        tree.remove(item);
-                    } else {
-                        const cull::ItemId id = *tree.insert(box);
-                        boxes.resize(std::max<std::size_t>(boxes.size(), id + 1));
-                        boxes[id] = box;
-                    }
-                    Camera camera = random.camera();
-                    camera.far = camera.near + random.number(1.0, 60.0);
-                    const cull::View view{*frustum_of(camera)};
-                    const cull::Options options{trial % 2 ? cull::Mode::exact : cull::Mode::conservative};
-                    std::vector<cull::ItemId> ids;
-                    std::vector<Verdict> verdicts;
-                    for (std::size_t i = 0; i < boxes.size(); ++i) {
-                        if (!tree.holds(static_cast<cull::ItemId>(i))) continue;
-                        const Verdict verdict = cull::classify(view.frustum, boxes[i], options.mode);
-                        if (verdict == Verdict::outside) continue;
-                        ids.push_back(static_cast<cull::ItemId>(i));
-                        verdicts.push_back(verdict);
-                    }
-                    cull::cull(tree, view, visible, options);
-                    CHECK(std::ranges::equal(visible.ids(), ids));
-                    CHECK(std::ranges::equal(visible.verdicts(), verdicts));
-                }
-            }
-        const tree::VisitTree empty = *tree::VisitTree::build(std::span<const Obb>{});
-        cull::VisibleSet visible;
-        cull::cull(empty, {*frustum_of(Camera{})}, visible);
-        CHECK(visible.size() == 0);
     }
 
     TEST_CASE("after any moves, insertions, removals and rebuilds a tree gives classify's verdicts") {
         // Boxes of every size, from points to 1e20, near and far: frames of nodes and leaves must give way.
         oracle::NearMisses random(17);
         std::vector<Obb> boxes = oracle::random_crowd(2000, 0.0, 12).boxes;
-        tree::BoxTree tree = *tree::BoxTree::build(boxes);
+        boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
         std::vector<char> present(boxes.size(), 1);
         cull::VisibleSet visible;
         std::vector<cull::ItemId> sorted, ids;
@@ -198,9 +157,9 @@ TEST_SUITE("cull/cull") {
             for (std::size_t i = 0; i < boxes.size(); ++i)
                 if (present[i] && cull::classify(view.frustum, boxes[i]) != Verdict::outside)
                     ids.push_back(static_cast<cull::ItemId>(i));
-            cull::cull(tree, view, visible);
+            cull::find_visible(tree, view, visible);
             CHECK(std::ranges::equal(visible.ids(), ids));
-            cull::cull(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+            cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
             sorted.assign(visible.ids().begin(), visible.ids().end());
             std::ranges::sort(sorted);
             CHECK(sorted == ids);

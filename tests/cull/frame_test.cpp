@@ -50,7 +50,7 @@ TEST_SUITE("cull/frame") {
         const testing::CountingMemory counting;
         oracle::NearMisses random(3);
         const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 2);
-        tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
+        boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         cull::BoxSet set;
         set.assign(crowd.boxes);
         cull::VisibleSet visible;
@@ -61,18 +61,18 @@ TEST_SUITE("cull/frame") {
         const std::vector<cull::View> views = flight(40);
         std::size_t warm = 0;
         for (std::size_t f = 0; f < 2 * views.size(); ++f) {
-            for (tree::ItemId i = 0; i < 500; ++i)
+            for (boxtree::ItemId i = 0; i < 500; ++i)
                 REQUIRE(tree.move(7 * i, oracle::random_box(random, glm::dvec3(0.0), 40.0)).has_value());
             tree.refit();
             const std::size_t at = f % views.size();
-            cull::cull(tree, views[at], visible,
-                       {cull::Mode::exact, f % 2 ? cull::Order::ascending : cull::Order::tree});
-            cull::cull(tree, std::span(views).subspan(at / 2, 4), many);
+            cull::find_visible(tree, views[at], visible,
+                               {cull::Mode::exact, f % 2 ? cull::Order::ascending : cull::Order::tree});
+            cull::find_visible(tree, std::span(views).subspan(at / 2, 4), many);
             set.update(items, crowd.boxes);
-            cull::cull(set, crowd.boxes, views[at], bits);
-            cull::cull(others.aabb_set, others.aabbs, views[at], bits);
-            cull::cull(others.sphere_set, others.spheres, views[at], bits);
-            cull::cull(set, crowd.boxes, crowd.layers, std::span(views).subspan(at / 2, 4), masks);
+            cull::find_visible(set, crowd.boxes, views[at], bits);
+            cull::find_visible(others.aabb_set, others.aabbs, views[at], bits);
+            cull::find_visible(others.sphere_set, others.spheres, views[at], bits);
+            cull::find_visible(set, crowd.boxes, crowd.layers, std::span(views).subspan(at / 2, 4), masks);
             if (f == views.size()) warm = counting.allocations();
         }
         CHECK(warm > 0);
@@ -82,8 +82,8 @@ TEST_SUITE("cull/frame") {
     TEST_CASE("any number of threads gives the same ids in the same order, and the same statistics") {
         const oracle::Crowd crowd = oracle::random_crowd(100000, 0.0, 4);
         ThreadPool three(3);
-        const tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
-        const tree::BoxTree tree_of_three = *tree::BoxTree::build(crowd.boxes, crowd.layers, {}, three);
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
+        const boxtree::BoxTree tree_of_three = *boxtree::BoxTree::build(crowd.boxes, crowd.layers, {}, three);
         CHECK(std::ranges::equal(tree.slot_items(), tree_of_three.slot_items()));
         cull::BoxSet set;
         set.assign(crowd.boxes, three);
@@ -91,16 +91,16 @@ TEST_SUITE("cull/frame") {
         cull::VerdictBits one_bits, many_bits;
         for (const cull::View& view : flight(20))
             for (const cull::Order order : {cull::Order::tree, cull::Order::ascending}) {
-                cull::cull(tree, view, one, {cull::Mode::exact, order});
-                cull::cull(tree, view, many, {cull::Mode::exact, order}, three);
+                cull::find_visible(tree, view, one, {cull::Mode::exact, order});
+                cull::find_visible(tree, view, many, {cull::Mode::exact, order}, three);
                 CHECK(one.inside_count() == many.inside_count());
                 REQUIRE(one.size() == many.size());
                 CHECK(std::ranges::equal(one.ids(), many.ids()));
                 CHECK(std::ranges::equal(one.verdicts(), many.verdicts()));
                 CHECK(one.statistics().boxes_tested == many.statistics().boxes_tested);
                 CHECK(one.statistics().improper == many.statistics().improper);
-                cull::cull(set, crowd.boxes, view, one_bits);
-                cull::cull(set, crowd.boxes, view, many_bits, cull::Mode::exact, three);
+                cull::find_visible(set, crowd.boxes, view, one_bits);
+                cull::find_visible(set, crowd.boxes, view, many_bits, cull::Mode::exact, three);
                 CHECK(one_bits.visible == many_bits.visible);
                 CHECK(one_bits.inside == many_bits.inside);
                 CHECK(one_bits.statistics.improper == many_bits.statistics.improper);
@@ -109,7 +109,7 @@ TEST_SUITE("cull/frame") {
 
     TEST_CASE("every instruction set that this machine has gives the same verdicts") {
         const oracle::Crowd crowd = oracle::random_crowd(20000, 1e6, 5);
-        const tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes, crowd.layers);
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         cull::BoxSet set;
         set.assign(crowd.boxes);
         const OtherBounds others(crowd.boxes);
@@ -128,7 +128,7 @@ TEST_SUITE("cull/frame") {
                 for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
                     cull::VisibleSet visible;
                     cull::VerdictBits bits;
-                    cull::cull(tree, view, visible, {mode});
+                    cull::find_visible(tree, view, visible, {mode});
                     Answer one{{visible.ids().begin(), visible.ids().end()},
                                {visible.verdicts().begin(), visible.verdicts().end()},
                                {},
@@ -138,13 +138,13 @@ TEST_SUITE("cull/frame") {
                         one.visible.push_back(bits.visible);
                         one.inside.push_back(bits.inside);
                     };
-                    cull::cull(set, crowd.boxes, view, bits, mode);
+                    cull::find_visible(set, crowd.boxes, view, bits, mode);
                     keep();
-                    cull::cull(others.aabb_set, others.aabbs, view, bits, mode);
+                    cull::find_visible(others.aabb_set, others.aabbs, view, bits, mode);
                     keep();
-                    cull::cull(others.sphere_set, others.spheres, view, bits, mode);
+                    cull::find_visible(others.sphere_set, others.spheres, view, bits, mode);
                     keep();
-                    cull::cull(set, crowd.boxes, crowd.layers, views, one.masks, mode);
+                    cull::find_visible(set, crowd.boxes, crowd.layers, views, one.masks, mode);
                     answers.push_back(one);
                 }
             return answers;
@@ -161,11 +161,11 @@ TEST_SUITE("cull/frame") {
     TEST_CASE("after long random motion a query tests hardly more than in a fresh tree, if rebuilt in the background") {
         oracle::NearMisses random(6);
         oracle::Crowd crowd = oracle::random_crowd(4000, 0.0, 6);
-        tree::BoxTree tree = *tree::BoxTree::build(crowd.boxes);
-        tree::BoxTree neglected = *tree::BoxTree::build(crowd.boxes);
+        boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes);
+        boxtree::BoxTree neglected = *boxtree::BoxTree::build(crowd.boxes);
         for (int frame = 0; frame < 10000; ++frame) {
             for (int n = 0; n < 100; ++n) {
-                const tree::ItemId item = random.index(4000);
+                const boxtree::ItemId item = random.index(4000);
                 Obb& box = crowd.boxes[item];
                 box.center = glm::clamp(box.center + 1.0 * random.direction(), glm::dvec3(-40.0), glm::dvec3(40.0));
                 REQUIRE(tree.move(item, box).has_value());
@@ -175,11 +175,11 @@ TEST_SUITE("cull/frame") {
             (void)tree.maintain(2000);
         }
         neglected.refit();
-        const tree::BoxTree fresh = *tree::BoxTree::build(crowd.boxes);
+        const boxtree::BoxTree fresh = *boxtree::BoxTree::build(crowd.boxes);
         std::uint64_t cost = 0, fresh_cost = 0, neglected_cost = 0;
         cull::VisibleSet visible;
-        const auto tested = [&](const tree::BoxTree& of, const cull::View& view) {
-            cull::cull(of, view, visible);
+        const auto tested = [&](const boxtree::BoxTree& of, const cull::View& view) {
+            cull::find_visible(of, view, visible);
             return visible.statistics().nodes_tested + visible.statistics().boxes_tested;
         };
         for (const cull::View& view : flight(40)) {

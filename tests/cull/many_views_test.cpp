@@ -11,12 +11,12 @@ using namespace crofton;
 namespace {
 
 // One query per view, put together.
-std::map<cull::ItemId, std::uint32_t> one_by_one(const tree::BoxTree& tree, std::span<const cull::View> views,
+std::map<cull::ItemId, std::uint32_t> one_by_one(const boxtree::BoxTree& tree, std::span<const cull::View> views,
                                                  cull::Mode mode) {
     std::map<cull::ItemId, std::uint32_t> masks;
     cull::VisibleSet visible;
     for (std::size_t v = 0; v < views.size(); ++v) {
-        cull::cull(tree, views[v], visible, {mode});
+        cull::find_visible(tree, views[v], visible, {mode});
         for (const cull::ItemId id : visible.ids()) masks[id] |= 1u << v;
     }
     return masks;
@@ -27,13 +27,13 @@ std::map<cull::ItemId, std::uint32_t> one_by_one(const tree::BoxTree& tree, std:
 TEST_SUITE("cull/many_views") {
     TEST_CASE("no views see nothing, a view that is not finite does not spoil the others") {
         const oracle::Crowd crowd = oracle::random_crowd(300, 0.0, 1);
-        const auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
+        const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         cull::ManyVisible visible;
-        cull::cull(*tree, std::span<const cull::View>{}, visible);
+        cull::find_visible(*tree, std::span<const cull::View>{}, visible);
         CHECK(visible.size() == 0);
         std::vector<cull::View> views(3, cull::View{*frustum_of(Camera{}), 3u});
         views[1].frustum.planes[0].offset = std::nan("");
-        cull::cull(*tree, views, visible);
+        cull::find_visible(*tree, views, visible);
         const auto expected = one_by_one(*tree, views, cull::Mode::exact);
         CHECK(visible.size() == expected.size());
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
@@ -43,7 +43,7 @@ TEST_SUITE("cull/many_views") {
         for (const double offset : {0.0, 1e7})
             for (const std::size_t count : {1u, 40u, 6000u}) {
                 const oracle::Crowd crowd = oracle::random_crowd(count, offset, count);
-                auto tree = tree::BoxTree::build(crowd.boxes, crowd.layers);
+                auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
                 REQUIRE(tree.has_value());
                 oracle::NearMisses random(11, offset);
                 // Some leaves no longer in one run, some half empty.
@@ -68,7 +68,7 @@ TEST_SUITE("cull/many_views") {
                 for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact})
                     for (const std::size_t used : {32u, 12u, 4u}) {
                         const auto some = std::span<const cull::View>(views).first(used);
-                        cull::cull(*tree, some, visible, mode);
+                        cull::find_visible(*tree, some, visible, mode);
                         const auto expected = one_by_one(*tree, some, mode);
                         REQUIRE(visible.size() == expected.size());
                         for (std::size_t i = 0; i < visible.size(); ++i)

@@ -10,9 +10,9 @@
 #include <vector>
 
 using namespace crofton;
+using boxtree::BoxTree;
 using cull::ItemId;
 using cull::Verdict;
-using tree::BoxTree;
 
 namespace {
 
@@ -69,8 +69,8 @@ void check_answers(const Crowd& crowd, std::span<const cull::View> views, Execut
             const std::map<ItemId, Verdict> expected = crowd.seen(views[v], mode);
             for (const auto& [item, verdict] : expected) masks[item] |= 1u << v;
             for (const cull::Order order : {cull::Order::ascending, cull::Order::tree}) {
-                cull::cull(crowd.tree, crowd.moving, views[v], visible, {mode, order});
-                cull::cull(crowd.tree, crowd.moving, views[v], threaded, {mode, order}, executor);
+                cull::find_visible(crowd.tree, crowd.moving, views[v], visible, {mode, order});
+                cull::find_visible(crowd.tree, crowd.moving, views[v], threaded, {mode, order}, executor);
                 REQUIRE(std::ranges::equal(visible.ids(), threaded.ids()));
                 REQUIRE(visible.inside_count() == threaded.inside_count());
                 REQUIRE(visible.size() == expected.size());
@@ -85,7 +85,7 @@ void check_answers(const Crowd& crowd, std::span<const cull::View> views, Execut
                     CHECK(visible.statistics().straddling == visible.size() - visible.inside_count());
             }
         }
-        cull::cull(crowd.tree, crowd.moving, views, many, mode);
+        cull::find_visible(crowd.tree, crowd.moving, views, many, mode);
         REQUIRE(many.size() == masks.size());
         for (std::size_t i = 0; i < many.size(); ++i) REQUIRE(masks.at(many.ids()[i]) == many.view_mask(i));
     }
@@ -240,13 +240,13 @@ TEST_SUITE("cull/moving_boxes") {
             REQUIRE(moving.update(tree, std::span<const ItemId>(items).first(count), some).has_value());
             std::vector<cull::View> views;
             for (unsigned v = 0; v < 4; ++v) views.push_back(view_near(random, v));
-            cull::cull(tree, moving, views[0], visible);
+            cull::find_visible(tree, moving, views[0], visible);
             std::size_t expected = 0;
             for (std::size_t i = 0; i < count; ++i)
                 expected += (boxes.layers[i] & views[0].layer_mask) != 0 &&
                             cull::classify(views[0].frustum, some[i]) != Verdict::outside;
             CHECK(visible.size() == expected);
-            cull::cull(tree, moving, views, many);
+            cull::find_visible(tree, moving, views, many);
             if (frame == 5) warm = counting.allocations();
         }
         CHECK(warm > 0);
@@ -265,8 +265,8 @@ TEST_SUITE("cull/moving_boxes") {
             std::vector<ItemId> ids;
             cull::Statistics sum;
             for (unsigned v = 0; v < 6; ++v) {
-                cull::cull(crowd.tree, crowd.moving, view_near(random, v), visible,
-                           {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(crowd.tree, crowd.moving, view_near(random, v), visible,
+                                   {cull::Mode::exact, cull::Order::tree});
                 ids.insert(ids.end(), visible.ids().begin(), visible.ids().end());
                 sum += visible.statistics();
             }

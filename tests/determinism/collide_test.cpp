@@ -1,9 +1,9 @@
 // What touches what, in the same bits everywhere.
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/ray.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/ray.hpp>
 #include <oracle/exact_boxes.hpp>
 
 #include "crowd.hpp"
@@ -24,8 +24,8 @@ std::uint64_t pairs(Executor& executor) {
     for (int frame = 0; frame < 3; ++frame) {
         (void)broadphase.update(boxes, {}, executor);
         for (const auto list : {broadphase.pairs(), broadphase.began(), broadphase.ended()})
-            for (const collide::Pair& pair : list) digest.add(pair.first).add(pair.second);
-        for (std::size_t i = 0; i < 500; ++i) boxes[i].center += 0.5 * measure::direction(random.point<2>());
+            for (const IdPair& pair : list) digest.add(pair.first).add(pair.second);
+        for (std::size_t i = 0; i < 500; ++i) boxes[i].center += 0.5 * sampling::direction(random.point<2>());
     }
     return digest.value();
 }
@@ -53,22 +53,23 @@ std::uint64_t pairs_closely() {
 
 std::uint64_t meshes() {
     Digest digest;
-    const auto a = *tree::MeshTree::build(torus(60, 30, 0.2)), b = *tree::MeshTree::build(torus(30, 12, 0.0));
+    const auto a = *mesh::MeshTree::build(torus(60, 30, 0.2)), b = *mesh::MeshTree::build(torus(30, 12, 0.0));
     Random random(44);
     for (int trial = 0; trial < 60; ++trial) {
         const double apart = random.uniform(0.0, 3.5);
-        const collide::Pose pose{measure::rotation(random.point<3>()), apart * measure::direction(random.point<2>())};
-        Vector<collide::MeshContact> contacts;
-        collide::contacts(a, b, pose, contacts);
+        const RigidTransform pose{sampling::rotation(random.point<3>()),
+                                  apart * sampling::direction(random.point<2>())};
+        Vector<mesh::MeshContact> contacts;
+        mesh::contacts(a, b, pose, contacts);
         for (const auto& c : contacts)
             digest.add(c.triangles.first).add(c.triangles.second).add(c.segment.begin).add(c.segment.end).add(c.normal);
-        const auto depth = collide::penetration(a, b, pose, contacts);
-        const auto distance = collide::distance(a, b, pose);
+        const auto depth = mesh::penetration(a, b, pose, contacts);
+        const auto distance = mesh::distance(a, b, pose);
         digest.add(depth.depth).add(depth.direction).add(distance.distance).add(distance.on_a).add(distance.on_b);
         digest.add(distance.triangles.first).add(distance.triangles.second);
-        digest.add(static_cast<std::uint8_t>(collide::containment(a, b, pose)));
-        digest.add(static_cast<std::uint8_t>(collide::closer_than(a, b, pose, 0.5)));
-        const auto hit = collide::raycast({pose.translation, -pose.translation}, a);
+        digest.add(static_cast<std::uint8_t>(mesh::containment(a, b, pose)));
+        digest.add(static_cast<std::uint8_t>(mesh::closer_than(a, b, pose, 0.5)));
+        const auto hit = mesh::raycast({pose.translation, -pose.translation}, a);
         if (hit) digest.add(hit->t).add(hit->triangle);
     }
     return digest.value();
@@ -94,12 +95,12 @@ TEST_SUITE("determinism/collide") {
         collide::Broadphase broadphase;
         REQUIRE(broadphase.update(boxes).has_value());
         CHECK(broadphase.pairs().size() > 100);
-        for (const collide::Pair& pair : broadphase.pairs())
+        for (const IdPair& pair : broadphase.pairs())
             CHECK(oracle::boxes_meet_by_integers(boxes[pair.first], boxes[pair.second]));
         std::size_t meet = 0;
         for (std::size_t i = 0; i < 200; ++i)
             for (std::size_t j = i + 1; j < 200; ++j) meet += oracle::boxes_meet_by_integers(boxes[i], boxes[j]);
         CHECK(meet == static_cast<std::size_t>(std::ranges::count_if(
-                          broadphase.pairs(), [](const collide::Pair& pair) { return pair.second < 200; })));
+                          broadphase.pairs(), [](const IdPair& pair) { return pair.second < 200; })));
     }
 }

@@ -7,15 +7,15 @@
 #include <crofton/geometry/polygon.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/measure/random.hpp>
-#include <crofton/measure/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
 
 namespace crofton::test {
 
-using measure::Random;
+using sampling::Random;
 
 inline std::uint32_t index(Random& random, std::uint32_t count) {
     return static_cast<std::uint32_t>(random.bits() % count);
@@ -29,7 +29,7 @@ inline double size(Random& random, double scale) {
 inline Obb random_box(Random& random, const glm::dvec3& middle, double spread, double scale) {
     Obb box;
     box.center = middle + spread * glm::dvec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    if (index(random, 8) != 0) box.axes = glm::mat3(measure::rotation(random.point<3>()));
+    if (index(random, 8) != 0) box.axes = glm::mat3(sampling::rotation(random.point<3>()));
     for (int k = 0; k < 3; ++k)
         box.half_extents[k] = index(random, 12) == 0 ? 0.0f : static_cast<float>(size(random, scale));
     return box;
@@ -45,9 +45,9 @@ inline std::vector<Obb> crowd(std::size_t count, double offset, std::uint64_t se
 
 inline Camera random_camera(Random& random, double offset) {
     Camera camera;
-    camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) + 20.0 * measure::direction(random.point<2>());
-    camera.forward = measure::direction(random.point<2>());
-    camera.up = measure::direction(random.point<2>());
+    camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) + 20.0 * sampling::direction(random.point<2>());
+    camera.forward = sampling::direction(random.point<2>());
+    camera.up = sampling::direction(random.point<2>());
     if (index(random, 3) == 0) camera.projection = Projection::orthographic;
     camera.fov_y = random.uniform(0.2, 2.2);
     camera.height = random.uniform(1.0, 20.0);
@@ -66,7 +66,7 @@ inline Obb near_miss(Random& random, const Frustum& frustum, const std::array<gl
     const int depth = -4 - static_cast<int>(index(random, 47));
     const auto edge = [&](std::uint32_t from) { return (1.0 - u) * corners[from] + u * corners[from ^ 1u << along]; };
     const glm::dvec3 target = frustum.origin + (1.0 - v) * edge(corner) + v * edge(corner ^ 1u << (along + 1) % 3);
-    const glm::dvec3 away = measure::direction(random.point<2>());
+    const glm::dvec3 away = sampling::direction(random.point<2>());
     glm::dvec3 center = target + std::ldexp(side, depth) * away;
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 axis(box.axes[k]);
@@ -81,7 +81,7 @@ inline TriangleMesh torus(std::uint32_t around, std::uint32_t across, double wav
     TriangleMesh mesh;
     for (std::uint32_t i = 0; i < around; ++i)
         for (std::uint32_t j = 0; j < across; ++j) {
-            const glm::dvec2 u = measure::circle_point(1.0 * i / around), v = measure::circle_point(1.0 * j / across);
+            const glm::dvec2 u = sampling::circle_point(1.0 * i / around), v = sampling::circle_point(1.0 * j / across);
             const double r = 0.4 * (1.0 + wave * u.y * v.x), x = 1.0 + r * v.x;
             mesh.positions.push_back(glm::vec3(x * u.x, x * u.y, r * v.y));
         }
@@ -98,7 +98,7 @@ inline void add_star(Polygon& polygon, Random& random, const glm::dvec2& center,
                      int count) {
     for (int i = 0; i < count; ++i) {
         const double radius = random.uniform(inner, outer), turn = (i + 0.5 * random.uniform()) / count;
-        polygon.points.push_back(center + radius * measure::circle_point(turn));
+        polygon.points.push_back(center + radius * sampling::circle_point(turn));
     }
     polygon.ring_ends.push_back(static_cast<std::uint32_t>(polygon.points.size()));
 }

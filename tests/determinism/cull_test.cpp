@@ -30,7 +30,7 @@ Scene scene_at(double offset) {
 
 std::uint64_t verdicts(const Scene& scene, Executor& executor) {
     Digest digest;
-    const auto tree = *tree::BoxTree::build(scene.boxes, {}, executor);
+    const auto tree = *boxtree::BoxTree::build(scene.boxes, {}, executor);
     cull::BoxSet set;
     set.assign(scene.boxes, executor);
     std::vector<cull::View> views;
@@ -41,24 +41,24 @@ std::uint64_t verdicts(const Scene& scene, Executor& executor) {
         cull::classify(frustum, scene.boxes, verdicts);
         for (const cull::Verdict verdict : verdicts) digest.add(static_cast<std::uint8_t>(verdict));
         cull::VisibleSet visible;
-        cull::cull(tree, views.back(), visible, {}, executor);
+        cull::find_visible(tree, views.back(), visible, {}, executor);
         digest.add(visible.ids()).add(std::uint64_t{visible.inside_count()});
         cull::VerdictBits bits;
-        cull::cull(set, scene.boxes, views.back(), bits, cull::Mode::conservative, executor);
+        cull::find_visible(set, scene.boxes, views.back(), bits, cull::Mode::conservative, executor);
         digest.add(bits.visible).add(bits.inside);
     }
     std::vector<std::uint32_t> masks(scene.boxes.size());
-    cull::cull(set, scene.boxes, {}, views, masks, cull::Mode::exact, executor);
+    cull::find_visible(set, scene.boxes, {}, views, masks, cull::Mode::exact, executor);
     return digest.add(masks).value();
 }
 
 // Depends on how trees are laid out as well.
 std::uint64_t orders(const Scene& scene, Executor& executor) {
     Digest digest;
-    const auto tree = *tree::BoxTree::build(scene.boxes, {}, executor);
+    const auto tree = *boxtree::BoxTree::build(scene.boxes, {}, executor);
     cull::VisibleSet visible;
     for (const Frustum& frustum : scene.frusta) {
-        cull::cull(tree, {frustum}, visible, {cull::Mode::exact, cull::Order::tree}, executor);
+        cull::find_visible(tree, {frustum}, visible, {cull::Mode::exact, cull::Order::tree}, executor);
         digest.add(visible.ids()).add(std::uint64_t{visible.inside_count()});
     }
     return digest.value();

@@ -19,10 +19,10 @@ namespace {
 std::vector<std::vector<glm::vec3>> clouds() {
     Random random(31);
     std::vector<std::vector<glm::vec3>> clouds(4);
-    for (int i = 0; i < 300; ++i) clouds[0].push_back(glm::vec3(measure::direction(random.point<2>())));
-    const glm::dmat3 turn = measure::rotation(random.point<3>());
+    for (int i = 0; i < 300; ++i) clouds[0].push_back(glm::vec3(sampling::direction(random.point<2>())));
+    const glm::dmat3 turn = sampling::rotation(random.point<3>());
     for (int i = 0; i < 2000; ++i)
-        clouds[1].push_back(glm::vec3(turn * (glm::dvec3(5.0, 2.0, 0.5) * measure::ball_point(random.point<3>()))));
+        clouds[1].push_back(glm::vec3(turn * (glm::dvec3(5.0, 2.0, 0.5) * sampling::ball_point(random.point<3>()))));
     for (int i = 0; i < 125; ++i) clouds[2].push_back(glm::vec3(i % 5, i / 5 % 5, i / 25));
     for (const glm::dvec3& corner : corners(random_box(random, glm::dvec3(7.0), 1.0, 4.0)))
         clouds[3].push_back(glm::vec3(corner));
@@ -47,7 +47,7 @@ std::uint64_t many(Executor& executor) {
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> indices, ends;
     for (std::uint32_t i = 0; i < 3000; ++i)
-        positions.push_back(glm::vec3(10.0 * measure::ball_point(random.point<3>())));
+        positions.push_back(glm::vec3(10.0 * sampling::ball_point(random.point<3>())));
     for (std::uint32_t cluster = 0; cluster < 150; ++cluster) {
         for (std::uint32_t k = 0; k <= cluster % 40; ++k) indices.push_back(index(random, 3000));
         ends.push_back(static_cast<std::uint32_t>(indices.size()));
@@ -70,7 +70,7 @@ std::uint64_t rectangles() {
     Digest digest;
     Random random(33);
     std::vector<glm::dvec2> points;
-    for (int i = 0; i < 500; ++i) points.push_back(glm::dvec2(3.0, 1.0) * measure::disc_point(random.point<2>()));
+    for (int i = 0; i < 500; ++i) points.push_back(glm::dvec2(3.0, 1.0) * sampling::disc_point(random.point<2>()));
     for (const auto criterion : {fit::PlanarCriterion::perimeter, fit::PlanarCriterion::area}) {
         const auto rectangle = *fit::minimal_rectangle(points, criterion);
         digest.add(rectangle.center).add(rectangle.axis).add(rectangle.half_extents);

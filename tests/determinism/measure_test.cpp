@@ -1,11 +1,11 @@
 // Measures and random motions in the same bits everywhere.
-#include <crofton/measure/convex_body.hpp>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/measure/global_lines.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/measure/planar_bounds.hpp>
-#include <crofton/measure/planar_lines.hpp>
-#include <crofton/measure/spatial_lines.hpp>
+#include <crofton/sampling/global_lines.hpp>
+#include <crofton/study/convex_body.hpp>
+#include <crofton/study/planar_bounds.hpp>
+#include <crofton/study/planar_lines.hpp>
+#include <crofton/study/spatial_lines.hpp>
 
 #include "crowd.hpp"
 #include "digest.hpp"
@@ -26,15 +26,14 @@ std::uint64_t in_space() {
         digest.add(volumes.volume).add(volumes.area).add(volumes.mean_curvature);
         digest.add(criterion.volume_weight).add(criterion.area_weight).add(criterion.mean_curvature_weight);
         std::vector<glm::dvec3> points;
-        for (int i = 0; i < 60; ++i) points.push_back(measure::ball_point(random.point<3>()));
+        for (int i = 0; i < 60; ++i) points.push_back(sampling::ball_point(random.point<3>()));
         const auto hull = *measure::of_hull(points);
         digest.add(hull.volume).add(hull.area).add(hull.mean_curvature);
     }
-    const std::vector<measure::ConvexBody> bodies{
-        measure::ConvexBody::ball(glm::dvec3(0.0), 1.0),
-        measure::ConvexBody::box(random_box(random, glm::dvec3(0.25), 0.0, 4.0))};
-    const auto planes = *measure::measure_of_planes_hitting_all(bodies),
-               lines = *measure::measure_of_lines_hitting_all(bodies);
+    const std::vector<study::ConvexBody> bodies{study::ConvexBody::ball(glm::dvec3(0.0), 1.0),
+                                                study::ConvexBody::box(random_box(random, glm::dvec3(0.25), 0.0, 4.0))};
+    const auto planes = *study::measure_of_planes_hitting_all(bodies),
+               lines = *study::measure_of_lines_hitting_all(bodies);
     return digest.add(planes.value).add(planes.error).add(lines.value).add(lines.error).value();
 }
 
@@ -42,17 +41,17 @@ std::uint64_t in_the_plane() {
     Digest digest;
     Random random(62);
     std::vector<measure::Disc> discs;
-    std::vector<measure::PlanarSupport> figures;
+    std::vector<study::PlanarSupport> figures;
     for (int i = 0; i < 4; ++i) {
-        discs.push_back({0.5 * measure::disc_point(random.point<2>()), random.uniform(0.6, 1.0)});
-        figures.push_back(measure::PlanarSupport(discs.back()));
+        discs.push_back({0.5 * sampling::disc_point(random.point<2>()), random.uniform(0.6, 1.0)});
+        figures.push_back(study::PlanarSupport(discs.back()));
     }
-    digest.add(measure::measure_of_lines_hitting_all(figures)).add(measure::measure_of_lines_by_tangents(discs));
+    digest.add(study::measure_of_lines_hitting_all(figures)).add(study::measure_of_lines_by_tangents(discs));
     std::vector<glm::dvec2> object;
-    for (int i = 0; i < 20; ++i) object.push_back(0.5 * measure::disc_point(random.point<2>()));
-    const measure::PlanarSupport ancestor(measure::Disc{{0.0, 0.0}, 2.0});
-    const auto disc = *measure::optimal_disc(object, ancestor);
-    const auto rectangle = *measure::optimal_rectangle(object, ancestor);
+    for (int i = 0; i < 20; ++i) object.push_back(0.5 * sampling::disc_point(random.point<2>()));
+    const study::PlanarSupport ancestor(measure::Disc{{0.0, 0.0}, 2.0});
+    const auto disc = *study::optimal_disc(object, ancestor);
+    const auto rectangle = *study::optimal_rectangle(object, ancestor);
     digest.add(disc.bound.center).add(disc.bound.radius).add(disc.measure);
     return digest.add(rectangle.measure).add(rectangle.lower_bound).value();
 }

@@ -18,7 +18,7 @@ scene::Scene moving_scene(Executor& executor) {
     const auto mesh = *scene.add_mesh(torus(12, 6, 0.2), "torus");
     std::vector<scene::NodeId> nodes;
     const auto transform = [&] {
-        scene::Transform local{measure::rotation(random.point<3>()), 5.0 * measure::direction(random.point<2>())};
+        scene::Transform local{sampling::rotation(random.point<3>()), 5.0 * sampling::direction(random.point<2>())};
         if (index(random, 3) == 0) local.linear[0] *= -1.5;
         return local;
     };

@@ -1,7 +1,7 @@
 // Trees and what is stored of them, in the same bits everywhere.
-#include <crofton/tree/box_tree.hpp>
-#include <crofton/tree/mesh_tree.hpp>
-#include <crofton/tree/visit_tree.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/study/binary_tree.hpp>
 #include <oracle/tree_contents.hpp>
 
 #include "crowd.hpp"
@@ -13,22 +13,22 @@ using namespace crofton::test;
 
 namespace {
 
-std::uint64_t digest_of(const tree::BoxTree& tree) {
+std::uint64_t digest_of(const boxtree::BoxTree& tree) {
     Digest digest;
     for (const std::byte byte : tree.serialise()) digest.add(static_cast<std::uint8_t>(byte));
     return digest.value();
 }
 
 // A build, then frames in which items move, come and go while a rebuild goes on.
-tree::BoxTree lived_in_tree(Executor& executor) {
+boxtree::BoxTree lived_in_tree(Executor& executor) {
     std::vector<Obb> boxes = crowd(5000, 0.0, 21);
-    auto tree = *tree::BoxTree::build(boxes, {}, executor);
+    auto tree = *boxtree::BoxTree::build(boxes, {}, executor);
     Random random(22);
     for (int frame = 0; frame < 12; ++frame) {
         for (int i = 0; i < 300; ++i) {
-            const tree::ItemId item = index(random, 5000);
+            const boxtree::ItemId item = index(random, 5000);
             const Obb box = random_box(random, glm::dvec3(0.0), 45.0, 4.0);
-            if (tree.slot_of(item) == tree::kNone) continue;
+            if (tree.slot_of(item) == boxtree::kNone) continue;
             if (i % 10 == 0)
                 (void)tree.remove(item);
             else
@@ -44,21 +44,21 @@ tree::BoxTree lived_in_tree(Executor& executor) {
 std::uint64_t visit_trees() {
     Digest digest;
     const std::vector<Obb> boxes = crowd(400, 0.0, 23);
-    for (const auto split : {tree::Split::median, tree::Split::nested})
+    for (const auto split : {study::Split::median, study::Split::nested})
         for (const bool oriented : {false, true}) {
-            auto tree = *tree::VisitTree::build(boxes, {.split = split, .oriented = oriented});
+            auto tree = *study::BinaryTree::build(boxes, {.split = split, .oriented = oriented});
             for (const Obb& box : crowd(50, 0.0, 24)) (void)tree.insert(box);
             digest.add(tree.cost());
-            tree.visit([&](const Obb& bound) { return digest.add(bound), tree::Visit::descend; },
-                       [&](tree::ItemId item) { digest.add(item); });
+            tree.visit([&](const Obb& bound) { return digest.add(bound), study::Visit::descend; },
+                       [&](boxtree::ItemId item) { digest.add(item); });
         }
     return digest.value();
 }
 
 std::uint64_t mesh_tree() {
-    const auto tree = *tree::MeshTree::build(torus(60, 30, 0.2));
+    const auto tree = *mesh::MeshTree::build(torus(60, 30, 0.2));
     Digest digest;
-    for (const tree::MeshNode& node : tree.nodes())
+    for (const mesh::MeshNode& node : tree.nodes())
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
             for (std::size_t i = 0; i < 3; ++i) {
                 digest.add(node.center[i][lane]).add(node.half[i][lane]);
@@ -66,7 +66,7 @@ std::uint64_t mesh_tree() {
             }
             digest.add(node.child[lane]);
         }
-    for (const tree::MeshLeaf& leaf : tree.leaves()) digest.add(leaf.triangle);
+    for (const mesh::MeshLeaf& leaf : tree.leaves()) digest.add(leaf.triangle);
     return digest.value();
 }
 
@@ -75,7 +75,7 @@ std::uint64_t mesh_tree() {
 TEST_SUITE("determinism/tree") {
     TEST_CASE("a tree as built, and after frames of motion, is the same bytes everywhere") {
         check_everywhere(0xb57423808a6d5be1,
-                         [](Executor& e) { return digest_of(*tree::BoxTree::build(crowd(5000, 1e6, 20), {}, e)); });
+                         [](Executor& e) { return digest_of(*boxtree::BoxTree::build(crowd(5000, 1e6, 20), {}, e)); });
         check_everywhere(0x52a2263819e05e93, [](Executor& e) { return digest_of(lived_in_tree(e)); });
     }
 
@@ -85,7 +85,7 @@ TEST_SUITE("determinism/tree") {
     }
 
     TEST_CASE("what was published holds every item within all bounds above it") {
-        CHECK(oracle::holds_all(*tree::BoxTree::build(crowd(5000, 1e6, 20))));
+        CHECK(oracle::holds_all(*boxtree::BoxTree::build(crowd(5000, 1e6, 20))));
         CHECK(oracle::holds_all(lived_in_tree(serial_executor())));
     }
 }

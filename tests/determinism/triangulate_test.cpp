@@ -23,7 +23,7 @@ std::vector<Polygon> polygons() {
         Polygon& holed = result.emplace_back();
         add_star(holed, random, {0.0, 0.0}, 9.0, 12.0, corners + 5);
         for (int k = 0; k < 3; ++k)
-            add_star(holed, random, 3.5 * measure::circle_point(k / 3.0 + 0.1), 0.5, 2.0, corners / 3 + 3);
+            add_star(holed, random, 3.5 * sampling::circle_point(k / 3.0 + 0.1), 0.5, 2.0, corners / 3 + 3);
     }
     Polygon& comb = result.emplace_back();
     for (int i = 0; i <= 10; ++i) comb.points.push_back({i, 0.0});

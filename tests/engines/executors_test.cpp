@@ -27,16 +27,16 @@ std::vector<crofton::Obb> random_boxes(std::size_t count) {
 
 struct Answers {
     std::vector<std::uint32_t> seen;
-    std::vector<crofton::collide::Pair> pairs;
+    std::vector<crofton::IdPair> pairs;
     bool operator==(const Answers&) const = default;
 };
 
 Answers answers(const std::vector<crofton::Obb>& boxes, crofton::Executor& executor) {
     Answers result;
-    const auto tree = crofton::tree::BoxTree::build(boxes, {}, executor);
+    const auto tree = crofton::boxtree::BoxTree::build(boxes, {}, executor);
     REQUIRE(tree);
     crofton::cull::VisibleSet visible;
-    crofton::cull::cull(*tree, {.frustum = *crofton::frustum_of(crofton::Camera{})}, visible, {}, executor);
+    crofton::cull::find_visible(*tree, {.frustum = *crofton::frustum_of(crofton::Camera{})}, visible, {}, executor);
     result.seen.assign(visible.ids().begin(), visible.ids().end());
     crofton::collide::Broadphase broadphase;
     REQUIRE(broadphase.update(boxes, {}, executor));

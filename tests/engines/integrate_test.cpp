@@ -36,10 +36,10 @@ void draw(crofton::scene::MeshId, const crofton::scene::Transform&) {
     ++drawn;
 }
 int touching = 0;
-void on_touch(crofton::collide::Pair) {
+void on_touch(crofton::IdPair) {
     ++touching;
 }
-void on_part(crofton::collide::Pair) {}
+void on_part(crofton::IdPair) {}
 
 crofton::Frustum vulkan_frustum(const glm::mat4& view, float aspect) {
     glm::mat4 projection = glm::perspectiveRH_ZO(1.0f, aspect, 0.1f, 500.0f);  // near → 0, far → 1
@@ -143,7 +143,7 @@ TEST_SUITE("engines/integrate") {
             scene.add_instance(nodes.back(), crate).value();
         }
         scene.update();
-        tree::BoxTree tree = tree::BoxTree::build(scene.world_boxes(), scene.layer_masks()).value();
+        boxtree::BoxTree tree = boxtree::BoxTree::build(scene.world_boxes(), scene.layer_masks()).value();
 
         cull::VisibleSet visible;
         collide::Broadphase broadphase;
@@ -161,13 +161,13 @@ TEST_SUITE("engines/integrate") {
             tree.refit();
 
             // 2. What is seen.
-            cull::cull(tree, {.frustum = frustum_of(camera).value()}, visible);
-            for (const tree::ItemId id : visible.ids()) draw(scene.mesh_of(id), scene.world(scene.node_of(id)));
+            cull::find_visible(tree, {.frustum = frustum_of(camera).value()}, visible);
+            for (const boxtree::ItemId id : visible.ids()) draw(scene.mesh_of(id), scene.world(scene.node_of(id)));
 
             // 3. What touches what, and what has just stopped to.
             if (!broadphase.update(scene.world_boxes())) std::abort();
-            for (const collide::Pair pair : broadphase.began()) on_touch(pair);
-            for (const collide::Pair pair : broadphase.ended()) on_part(pair);
+            for (const IdPair pair : broadphase.began()) on_touch(pair);
+            for (const IdPair pair : broadphase.ended()) on_part(pair);
 
             // 4. What it cost.
             const cull::Statistics& cost = visible.statistics();
@@ -187,14 +187,14 @@ TEST_SUITE("engines/integrate") {
             boxes[i].center = {static_cast<double>(i % 20) - 10.0, 0.0, -5.0 - static_cast<double>(i / 20)};
             boxes[i].half_extents = glm::vec3(0.3f);
         }
-        tree::BoxTree tree = tree::BoxTree::build(boxes).value();
-        std::vector<tree::ItemId> moving_ids{3, 77, 290};
+        boxtree::BoxTree tree = boxtree::BoxTree::build(boxes).value();
+        std::vector<boxtree::ItemId> moving_ids{3, 77, 290};
         std::vector<Obb> moving_boxes{boxes[3], boxes[77], boxes[290]};
         cull::MovingBoxes movers;
         cull::VisibleSet visible, expected;
         const Camera camera;
         // Once: what begins to move leaves the tree, and keeps its id and its layers.
-        for (const tree::ItemId id : moving_ids)
+        for (const boxtree::ItemId id : moving_ids)
             if (!tree.lift(id)) std::abort();
         tree.refit();
 
@@ -202,10 +202,10 @@ TEST_SUITE("engines/integrate") {
             // Every frame: the boxes are yours and are not copied.
             for (Obb& box : moving_boxes) box.center.y += 0.1;
             if (!movers.update(tree, moving_ids, moving_boxes)) std::abort();
-            cull::cull(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
+            cull::find_visible(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
 
             for (std::size_t k = 0; k < moving_ids.size(); ++k) boxes[moving_ids[k]] = moving_boxes[k];
-            cull::cull(boxes, {}, {.frustum = frustum_of(camera).value()}, expected);
+            cull::find_visible(boxes, {}, {.frustum = frustum_of(camera).value()}, expected);
             CHECK(std::ranges::equal(visible.ids(), expected.ids()));
         }
         // What has come to rest goes back.
@@ -214,7 +214,7 @@ TEST_SUITE("engines/integrate") {
         moving_boxes.pop_back();
 
         CHECK(movers.update(tree, moving_ids, moving_boxes));
-        cull::cull(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
+        cull::find_visible(tree, movers, {.frustum = frustum_of(camera).value()}, visible);
         CHECK(std::ranges::equal(visible.ids(), expected.ids()));
         CHECK(visible.size() > 100);
     }
@@ -231,8 +231,8 @@ TEST_SUITE("engines/integrate") {
         const auto baked = bake::BakedScene::from_memory(*file);  // or BakedScene::open("level.crofton")
         if (!baked) std::printf("%s\n", baked.error().message.c_str());
         cull::VisibleSet visible;
-        cull::cull(baked->tree(), {.frustum = frustum_of(Camera{}).value()}, visible);
-        for (const tree::ItemId id : visible.ids()) {
+        cull::find_visible(baked->tree(), {.frustum = frustum_of(Camera{}).value()}, visible);
+        for (const boxtree::ItemId id : visible.ids()) {
             const bake::InstanceRecord& instance = baked->instances()[id];
             draw(instance.mesh, baked->nodes()[instance.node].world);
         }
@@ -251,7 +251,7 @@ TEST_SUITE("engines/integrate") {
                                  nullptr);
         crofton::ThreadPool pool(2);  // or an Executor over your own job system
         std::vector<crofton::Obb> boxes(1000);
-        CHECK(crofton::tree::BoxTree::build(boxes, {}, pool));
+        CHECK(crofton::boxtree::BoxTree::build(boxes, {}, pool));
         crofton::set_log_handler(nullptr, nullptr);
         crofton::reset_memory_hooks();
     }

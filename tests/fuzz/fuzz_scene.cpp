@@ -1,6 +1,6 @@
 // Scene files of every format: the first byte says which.
 #include <assets/scene_source.hpp>
-#include <crofton/tree/box_tree.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <cstdlib>
 
 #include "input_file.hpp"

@@ -6,12 +6,12 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace crofton;
     const auto bytes = std::as_bytes(std::span(data, size));
-    if (auto tree = tree::BoxTree::deserialise(bytes)) {
+    if (auto tree = boxtree::BoxTree::deserialise(bytes)) {
         if (!tree->validate()) std::abort();
         fuzz::query(*tree);
         fuzz::change(*tree);
         if (!tree->validate()) std::abort();
     }
-    if (const auto tree = tree::BoxTree::deserialise(bytes, tree::Trust::contents)) fuzz::query(*tree);
+    if (const auto tree = boxtree::BoxTree::deserialise(bytes, boxtree::Trust::contents)) fuzz::query(*tree);
     return 0;
 }

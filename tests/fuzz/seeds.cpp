@@ -1,8 +1,8 @@
 // fuzz_seeds FOLDER: writes what each fuzzer begins with into FOLDER/<fuzzer>/.
 #include <assets/test_files.hpp>
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/scene/scene.hpp>
-#include <crofton/tree/box_tree.hpp>
 
 namespace {
 
@@ -62,7 +62,7 @@ std::vector<Obb> boxes(int count) {
 
 void write_trees(Folder out) {
     for (const int count : {0, 1, 20, 300}) {
-        auto tree = *tree::BoxTree::build(boxes(count));
+        auto tree = *boxtree::BoxTree::build(boxes(count));
         if (count > 10) (void)tree.remove(7);
         out.add(tree.serialise());
     }

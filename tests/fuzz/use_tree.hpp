@@ -1,24 +1,24 @@
 // All that can be asked of a tree, and done to it, once it has been accepted.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <cstdlib>
 
 namespace crofton::fuzz {
 
-inline void query(const tree::BoxTree& tree) {
+inline void query(const boxtree::BoxTree& tree) {
     cull::VisibleSet visible;
     for (const auto order : {cull::Order::ascending, cull::Order::tree}) {
-        cull::cull(tree, {*frustum_of(Camera{})}, visible, {cull::Mode::exact, order});
-        for (const tree::ItemId item : visible.ids())
+        cull::find_visible(tree, {*frustum_of(Camera{})}, visible, {cull::Mode::exact, order});
+        for (const boxtree::ItemId item : visible.ids())
             if (item >= tree.boxes().size()) std::abort();
     }
 }
 
-inline void change(tree::BoxTree& tree) {
+inline void change(boxtree::BoxTree& tree) {
     Obb box;
     box.half_extents = glm::vec3(1.0f);
-    for (tree::ItemId item = 0; item < tree.boxes().size() && item < 40; item += 3) {
+    for (boxtree::ItemId item = 0; item < tree.boxes().size() && item < 40; item += 3) {
         (void)tree.move(item, box);
         (void)tree.set_layer_mask(item, item);
         if (item % 2 == 0) (void)tree.remove(item);

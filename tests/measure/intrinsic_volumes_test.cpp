@@ -2,13 +2,14 @@
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/measure/random.hpp>
-#include <crofton/measure/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <numbers>
 #include <vector>
 
 using namespace crofton;
 using namespace crofton::measure;
+using namespace crofton::sampling;
 using std::numbers::pi;
 
 TEST_SUITE("measure/intrinsic_volumes") {

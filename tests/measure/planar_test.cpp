@@ -1,12 +1,13 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/measure/planar.hpp>
-#include <crofton/measure/random_motion.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <numbers>
 #include <vector>
 
 using namespace crofton;
 using namespace crofton::measure;
+using namespace crofton::sampling;
 using std::numbers::pi;
 
 TEST_SUITE("measure/planar") {

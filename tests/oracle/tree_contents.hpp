@@ -1,6 +1,6 @@
 // Oracle: walks a box tree from its leaves up and compares every bound with every box below it.
 #pragma once
-#include <crofton/tree/box_tree.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -8,25 +8,25 @@ namespace crofton::oracle {
 
 // True iff each item that is not removed lies in exactly one slot, the links agree, and every box lies in all bounds
 // above it.
-inline bool holds_all(const tree::BoxTree& tree) {
+inline bool holds_all(const boxtree::BoxTree& tree) {
     std::vector<int> seen(tree.boxes().size());
-    for (tree::NodeId n = 0; n < tree.nodes().size(); ++n)
+    for (boxtree::NodeId n = 0; n < tree.nodes().size(); ++n)
         for (unsigned lane = 0; lane < tree.nodes()[n].count; ++lane) {
             const std::uint32_t child = tree.nodes()[n].child[lane];
-            if (!(child & tree::kLeafBit)) {
+            if (!(child & boxtree::kLeafBit)) {
                 if (tree.nodes()[child].parent != n || tree.nodes()[child].lane_in_parent != lane) return false;
                 continue;
             }
-            const tree::LeafId l = child & ~tree::kLeafBit;
+            const boxtree::LeafId l = child & ~boxtree::kLeafBit;
             for (unsigned i = 0; i < tree.leaves()[l].count; ++i) {
-                const tree::ItemId item = tree.slot_items()[l * tree::kWidth + i];
+                const boxtree::ItemId item = tree.slot_items()[l * boxtree::kWidth + i];
                 ++seen[item];
-                if (tree.slot_of(item) != l * tree::kWidth + i) return false;
+                if (tree.slot_of(item) != l * boxtree::kWidth + i) return false;
                 const Aabb exact = aabb_of(tree.boxes()[item]);
                 // aabb_of itself is rounded outward by a step.
                 const double slack = 0x1p-50 * (glm::length(exact.min) + glm::length(exact.max));
                 unsigned at = lane;
-                for (tree::NodeId up = n; up != tree::kNone;
+                for (boxtree::NodeId up = n; up != boxtree::kNone;
                      at = tree.nodes()[up].lane_in_parent, up = tree.nodes()[up].parent) {
                     const Aabb bounds = tree.child_bounds(up, at);
                     for (int j = 0; j < 3; ++j)
@@ -35,7 +35,7 @@ inline bool holds_all(const tree::BoxTree& tree) {
             }
         }
     for (std::size_t i = 0; i < seen.size(); ++i)
-        if (seen[i] != (tree.slot_of(static_cast<tree::ItemId>(i)) == tree::kNone ? 0 : 1)) return false;
+        if (seen[i] != (tree.slot_of(static_cast<boxtree::ItemId>(i)) == boxtree::kNone ? 0 : 1)) return false;
     return true;
 }
 

@@ -22,7 +22,7 @@ Difference compare(const TriangleMesh& mesh, double cell_area, const std::array<
     const auto by_line = LineTracer::build(mesh);
     REQUIRE(by_bundle.has_value());
     const Bundle bundle = make_bundle(by_bundle->bounds(), cell_area, u, seed);
-    std::vector<measure::Line> lines;
+    std::vector<sampling::Line> lines;
     for (std::size_t i = 0; i < bundle.cells(); ++i) lines.push_back(bundle.line(i));
     BundleTracer::Scratch scratch;
     LineHits ours, theirs;
@@ -102,7 +102,7 @@ TEST_SUITE("radiosity/bundle_tracer") {
         const auto tracer = BundleTracer::build(flat.mesh);
         BundleTracer::Scratch scratch;
         LineHits hits;
-        const measure::UnitPoints points(5, measure::Sequence::quasi_random);
+        const sampling::UnitPoints points(5, sampling::Sequence::quasi_random);
         double crossings = 0.0, lines = 0.0;
         constexpr int kBundles = 1024;
         for (std::uint64_t k = 0; k < kBundles; ++k) {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/measure/random.hpp>
-#include <crofton/measure/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -67,10 +67,10 @@ TEST_SUITE("triangulate/triangles_passed") {
         for (int m = 0; m < 3; ++m) runs[m].result = *triangulate::triangulate(polygon, {.method = methods[m]});
         REQUIRE(runs[2].result.optimal);
         CHECK(runs[2].result.weight < runs[1].result.weight);
-        measure::Random random(6);
+        sampling::Random random(6);
         constexpr int kFrusta = 20000;
         for (int trial = 0; trial < kFrusta; ++trial) {
-            const glm::dmat3 rotation = measure::rotation(random.point<3>());
+            const glm::dmat3 rotation = sampling::rotation(random.point<3>());
             const auto u = random.point<3>();
             camera.position = low + size * glm::dvec3(u[0], u[1], u[2]);
             camera.forward = -rotation[2];

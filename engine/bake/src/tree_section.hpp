@@ -1,13 +1,13 @@
 // The tree's place in the file.
 #pragma once
 #include <crofton/bake/container.hpp>
-#include <crofton/tree/box_tree.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 
 namespace crofton::bake {
 
 // Builds the tree over the boxes and adds it.
 [[nodiscard]] Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                     Writer& writer, Executor& executor);
-[[nodiscard]] Result<tree::BoxTree> read_tree(const Reader& reader);
+[[nodiscard]] Result<boxtree::BoxTree> read_tree(const Reader& reader);
 
 }  // namespace crofton::bake

@@ -1,8 +1,8 @@
 #include <crofton/capi/collide.h>
 
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/collide/obb_obb.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
 
 #include "collider.hpp"
 #include "convert.hpp"
@@ -17,11 +17,11 @@ struct crofton_broadphase {
     collide::Broadphase broadphase{};
 };
 
-static_assert(sizeof(crofton_pair) == sizeof(collide::Pair) && sizeof(crofton_filter) == sizeof(collide::Filter));
+static_assert(sizeof(crofton_pair) == sizeof(IdPair) && sizeof(crofton_filter) == sizeof(collide::Filter));
 
 namespace {
 
-std::span<const collide::Pair> pairs_of(const collide::Broadphase& broadphase, uint32_t which) {
+std::span<const IdPair> pairs_of(const collide::Broadphase& broadphase, uint32_t which) {
     switch (which) {
         case CROFTON_PAIRS_BEGAN:
             return broadphase.began();
@@ -36,7 +36,7 @@ std::span<const collide::Pair> pairs_of(const collide::Broadphase& broadphase, u
 
 }  // namespace
 
-crofton_status capi::to_pose(const crofton_transform* transform, const char* function, collide::Pose& pose) {
+crofton_status capi::to_pose(const crofton_transform* transform, const char* function, RigidTransform& pose) {
     CROFTON_CHECK(check_pointer(transform, function));
     const scene::Transform source = to_transform(*transform);
     pose = {source.linear, source.translation};
@@ -105,7 +105,7 @@ crofton_status crofton_collider_create(const crofton_mesh* mesh, crofton_collide
     CROFTON_CHECK(check_pointer(collider, __func__));
     TriangleMesh copy;
     CROFTON_CHECK(to_mesh(mesh, __func__, copy));
-    auto built = tree::MeshTree::build(copy);
+    auto built = mesh::MeshTree::build(copy);
     if (!built) return report(built.error(), __func__);
     *collider = create<crofton_collider>(std::move(*built));
     return CROFTON_OK;
@@ -120,7 +120,7 @@ crofton_status crofton_colliders_meet(const crofton_collider* a, const crofton_c
     const PosedColliders posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_pointer(meet, __func__));
-    *meet = collide::intersects(a->tree, b->tree, posed.pose) ? 1 : 0;
+    *meet = mesh::intersects(a->tree, b->tree, posed.pose) ? 1 : 0;
     return CROFTON_OK;
 }
 
@@ -130,7 +130,7 @@ crofton_status crofton_colliders_distance(const crofton_collider* a, const croft
     const PosedColliders posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_pointer(distance, __func__));
-    const collide::MeshDistance found = collide::distance(a->tree, b->tree, posed.pose);
+    const mesh::MeshDistance found = mesh::distance(a->tree, b->tree, posed.pose);
     *distance = found.distance;
     copy_vector(found.on_a, on_a);
     copy_vector(found.on_b, on_b);
@@ -144,8 +144,8 @@ crofton_status crofton_colliders_triangle_pairs(const crofton_collider* a, const
     CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_room(pairs, capacity, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
-    Vector<collide::TrianglePair> found;
-    collide::intersecting_triangles(a->tree, b->tree, posed.pose, found);
+    Vector<mesh::TrianglePair> found;
+    mesh::intersecting_triangles(a->tree, b->tree, posed.pose, found);
     for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) pairs[i] = {found[i].first, found[i].second};
     *count = found.size();
     return CROFTON_OK;

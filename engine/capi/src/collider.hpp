@@ -3,20 +3,20 @@
 #include <crofton/capi/collide.h>
 
 #include <algorithm>
-#include <crofton/collide/pose.hpp>
-#include <crofton/tree/mesh_tree.hpp>
+#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include "call.hpp"
 
 struct crofton_collider {
     static constexpr std::uint32_t kKind = 0x43724f05;
     crofton::capi::Header header;
-    crofton::tree::MeshTree tree;
+    crofton::mesh::MeshTree tree;
 };
 
 namespace crofton::capi {
 
-[[nodiscard]] crofton_status to_pose(const crofton_transform* transform, const char* function, collide::Pose& pose);
+[[nodiscard]] crofton_status to_pose(const crofton_transform* transform, const char* function, RigidTransform& pose);
 
 // Both boxes are there and valid; an error names the first of them 0, the second 1.
 [[nodiscard]] crofton_status check_boxes(const crofton_box* a, const crofton_box* b, const char* function);
@@ -36,7 +36,7 @@ class PosedColliders {
     }
     [[nodiscard]] crofton_status status() const { return status_; }
 
-    collide::Pose pose;
+    RigidTransform pose;
 
   private:
     SharedUse a_, b_;

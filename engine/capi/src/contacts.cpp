@@ -1,7 +1,7 @@
 #include <crofton/capi/contacts.h>
 
 #include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
 
 #include "collider.hpp"
 #include "convert.hpp"
@@ -10,9 +10,9 @@ using namespace crofton;
 using namespace crofton::capi;
 
 static_assert(CROFTON_MAX_MANIFOLD_POINTS == std::size(collide::Manifold{}.points));
-static_assert(CROFTON_A_INSIDE_B == static_cast<int>(collide::Containment::a_inside_b) &&
-              CROFTON_B_INSIDE_A == static_cast<int>(collide::Containment::b_inside_a) &&
-              CROFTON_PARTLY_INSIDE == static_cast<int>(collide::Containment::partly));
+static_assert(CROFTON_A_INSIDE_B == static_cast<int>(mesh::Containment::a_inside_b) &&
+              CROFTON_B_INSIDE_A == static_cast<int>(mesh::Containment::b_inside_a) &&
+              CROFTON_PARTLY_INSIDE == static_cast<int>(mesh::Containment::partly));
 
 crofton_status crofton_boxes_manifold(const crofton_box* a, const crofton_box* b, crofton_manifold* manifold) {
     CROFTON_CHECK(check_boxes(a, b, __func__));
@@ -46,8 +46,8 @@ crofton_status crofton_colliders_contacts(const crofton_collider* a, const croft
     CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_room(contacts, capacity, __func__));
     CROFTON_CHECK(check_pointer(count, __func__));
-    Vector<collide::MeshContact> found;
-    collide::contacts(a->tree, b->tree, posed.pose, found);
+    Vector<mesh::MeshContact> found;
+    mesh::contacts(a->tree, b->tree, posed.pose, found);
     for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) {
         contacts[i].triangles = {found[i].triangles.first, found[i].triangles.second};
         copy_vector(found[i].segment.begin, contacts[i].begin);
@@ -63,9 +63,9 @@ crofton_status crofton_colliders_depth(const crofton_collider* a, const crofton_
     const PosedColliders posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_pointer(depth, __func__));
-    Vector<collide::MeshContact> found;
-    collide::contacts(a->tree, b->tree, posed.pose, found);
-    const collide::MeshDepth result = collide::penetration(a->tree, b->tree, posed.pose, found);
+    Vector<mesh::MeshContact> found;
+    mesh::contacts(a->tree, b->tree, posed.pose, found);
+    const mesh::MeshDepth result = mesh::penetration(a->tree, b->tree, posed.pose, found);
     *depth = result.depth;
     copy_vector(result.direction, direction);
     return CROFTON_OK;
@@ -76,6 +76,6 @@ crofton_status crofton_colliders_containment(const crofton_collider* a, const cr
     const PosedColliders posed(a, b, b_to_a, __func__);
     CROFTON_CHECK(posed.status());
     CROFTON_CHECK(check_pointer(containment, __func__));
-    *containment = static_cast<uint32_t>(collide::containment(a->tree, b->tree, posed.pose));
+    *containment = static_cast<uint32_t>(mesh::containment(a->tree, b->tree, posed.pose));
     return CROFTON_OK;
 }

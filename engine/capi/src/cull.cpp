@@ -54,7 +54,7 @@ crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* lay
     CROFTON_CHECK(check_pointer(tree, __func__));
     HostJobs executor(jobs);
     auto built =
-        tree::BoxTree::build(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), {}, executor);
+        boxtree::BoxTree::build(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), {}, executor);
     if (!built) return report(built.error(), __func__);
     *tree = create<crofton_tree>(std::move(*built));
     return CROFTON_OK;
@@ -128,7 +128,7 @@ crofton_status crofton_cull_tree(const crofton_tree* tree, const crofton_view* v
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_query(view, options, jobs, __func__));
     HostJobs executor(jobs);
-    cull::cull(tree->tree, set_view(*visible, *view), visible->visible, to_options(options), executor);
+    cull::find_visible(tree->tree, set_view(*visible, *view), visible->visible, to_options(options), executor);
     return CROFTON_OK;
 }
 
@@ -140,8 +140,8 @@ crofton_status crofton_cull_boxes(const crofton_box* boxes, const uint32_t* laye
     CROFTON_CHECK(check_array(boxes, count, __func__));
     CROFTON_CHECK(check_query(view, options, jobs, __func__));
     HostJobs executor(jobs);
-    cull::cull(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), set_view(*visible, *view),
-               visible->visible, to_options(options), executor);
+    cull::find_visible(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0),
+                       set_view(*visible, *view), visible->visible, to_options(options), executor);
     return CROFTON_OK;
 }
 

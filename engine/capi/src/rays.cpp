@@ -17,7 +17,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr crofton_ray_hit kMiss{kNever, CROFTON_NONE};
 
-crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item, collide::Ray& result) {
+crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item, Ray& result) {
     result = {to_vector(ray.origin), to_vector(ray.direction), ray.max_t};
     return status_of(validate(result, item), function);
 }
@@ -26,7 +26,7 @@ template <class Cast>
 crofton_status cast_all(const crofton_ray* rays, size_t count, crofton_ray_hit* hits, const char* function, Cast cast) {
     CROFTON_CHECK(check_array(rays, count, function));
     CROFTON_CHECK(check_array(hits, count, function));
-    collide::Ray ray;
+    Ray ray;
     for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(to_ray(rays[i], function, i, ray));
     for (std::size_t i = 0; i < count; ++i)
         hits[i] = cast({to_vector(rays[i].origin), to_vector(rays[i].direction), rays[i].max_t});
@@ -38,7 +38,7 @@ crofton_status items_within(const crofton_tree& tree, const Body& body, uint32_t
                             size_t capacity, size_t* found, const char* function) {
     CROFTON_CHECK(check_room(items, capacity, function));
     CROFTON_CHECK(check_pointer(found, function));
-    Vector<tree::ItemId> all;
+    Vector<boxtree::ItemId> all;
     collide::overlapping(tree.tree, body, all, layer_mask);
     std::copy_n(all.data(), std::min(capacity, all.size()), items);
     *found = all.size();
@@ -52,9 +52,9 @@ crofton_status crofton_box_raycast(const crofton_box* box, const crofton_ray* ra
     CROFTON_CHECK(check_pointer(ray, __func__));
     CROFTON_CHECK(check_pointer(t, __func__));
     CROFTON_CHECK(status_of(validate(to_box(box), 0), __func__));
-    collide::Ray checked;
+    Ray checked;
     CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
-    *t = collide::raycast(checked, to_box(box)).value_or(kNever);
+    *t = mesh::raycast(checked, to_box(box)).value_or(kNever);
     return CROFTON_OK;
 }
 
@@ -62,8 +62,8 @@ crofton_status crofton_collider_raycast(const crofton_collider* collider, const 
                                         crofton_ray_hit* hits) {
     const SharedUse use(collider, __func__);
     if (use.failed()) return use.status();
-    return cast_all(rays, count, hits, __func__, [&](const collide::Ray& ray) {
-        const auto hit = collide::raycast(ray, collider->tree);
+    return cast_all(rays, count, hits, __func__, [&](const Ray& ray) {
+        const auto hit = mesh::raycast(ray, collider->tree);
         return hit ? crofton_ray_hit{hit->t, hit->triangle} : kMiss;
     });
 }
@@ -73,9 +73,9 @@ crofton_status crofton_collider_hits_any(const crofton_collider* collider, const
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_pointer(ray, __func__));
     CROFTON_CHECK(check_pointer(hit, __func__));
-    collide::Ray checked;
+    Ray checked;
     CROFTON_CHECK(to_ray(*ray, __func__, kNoItem, checked));
-    *hit = collide::hits_any(checked, collider->tree) ? 1 : 0;
+    *hit = mesh::hits_any(checked, collider->tree) ? 1 : 0;
     return CROFTON_OK;
 }
 
@@ -83,7 +83,7 @@ crofton_status crofton_tree_raycast(const crofton_tree* tree, const crofton_ray*
                                     uint32_t layer_mask, crofton_ray_hit* hits) {
     const SharedUse use(tree, __func__);
     if (use.failed()) return use.status();
-    return cast_all(rays, count, hits, __func__, [&](const collide::Ray& ray) {
+    return cast_all(rays, count, hits, __func__, [&](const Ray& ray) {
         const auto hit = collide::raycast(ray, tree->tree, layer_mask);
         return hit ? crofton_ray_hit{hit->t, hit->item} : kMiss;
     });

@@ -1,11 +1,11 @@
 // A hierarchy over boxes, as the functions of several headers see it.
 #pragma once
-#include <crofton/tree/box_tree.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 
 #include "call.hpp"
 
 struct crofton_tree {
     static constexpr std::uint32_t kKind = 0x43724f02;
     crofton::capi::Header header;
-    crofton::tree::BoxTree tree;
+    crofton::boxtree::BoxTree tree;
 };

@@ -2,8 +2,8 @@
 // it.
 #pragma once
 #include <crofton/collide/box_block.hpp>
-#include <crofton/collide/pair.hpp>
 #include <crofton/core/function_ref.hpp>
+#include <crofton/geometry/id_pair.hpp>
 
 namespace crofton::collide {
 

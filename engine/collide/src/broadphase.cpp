@@ -48,7 +48,7 @@ struct Broadphase::State {
     Vector<Worker> workers;
     PairList list;
     Vector<std::uint8_t> hits;
-    Vector<Pair> pairs, previous, began, stayed, ended;
+    Vector<IdPair> pairs, previous, began, stayed, ended;
     Vector<std::uint32_t> rejected;
 
     void refit(std::span<const Obb> boxes, Executor& executor);
@@ -67,16 +67,16 @@ Broadphase::~Broadphase() = default;
 Broadphase::Broadphase(Broadphase&&) noexcept = default;
 Broadphase& Broadphase::operator=(Broadphase&&) noexcept = default;
 
-std::span<const Pair> Broadphase::pairs() const {
+std::span<const IdPair> Broadphase::pairs() const {
     return state_->pairs;
 }
-std::span<const Pair> Broadphase::began() const {
+std::span<const IdPair> Broadphase::began() const {
     return state_->began;
 }
-std::span<const Pair> Broadphase::stayed() const {
+std::span<const IdPair> Broadphase::stayed() const {
     return state_->stayed;
 }
-std::span<const Pair> Broadphase::ended() const {
+std::span<const IdPair> Broadphase::ended() const {
     return state_->ended;
 }
 std::span<const std::uint32_t> Broadphase::rejected() const {
@@ -190,7 +190,7 @@ void Broadphase::State::keep_boxes_that_meet(std::span<const Obb> boxes, Executo
     hits.resize(pairs.size());
     for (Worker& worker : workers) worker.boxes = {};
     executor.parallel_for(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
-        workers[worker].boxes += intersects(boxes, std::span<const Pair>(pairs).subspan(begin, end - begin),
+        workers[worker].boxes += intersects(boxes, std::span<const IdPair>(pairs).subspan(begin, end - begin),
                                             std::span<std::uint8_t>(hits).subspan(begin, end - begin));
     });
     std::size_t kept = 0;

@@ -3,7 +3,7 @@
 #include <crofton/collide/convex_query.hpp>
 #include <glm/geometric.hpp>
 
-#include "closest_points.hpp"
+#include <crofton/geometry/closest_points.hpp>
 
 namespace crofton::collide {
 namespace {

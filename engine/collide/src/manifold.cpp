@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "closest_points.hpp"
+#include <crofton/geometry/closest_points.hpp>
 
 namespace crofton::collide {
 namespace {

@@ -125,7 +125,7 @@ BatchStatistics intersects(std::span<const Obb> a, std::span<const Obb> b, std::
         hits);
 }
 
-BatchStatistics intersects(std::span<const Obb> boxes, std::span<const Pair> pairs, std::span<std::uint8_t> hits) {
+BatchStatistics intersects(std::span<const Obb> boxes, std::span<const IdPair> pairs, std::span<std::uint8_t> hits) {
     CROFTON_ASSERT(hits.size() == pairs.size(), "one answer a pair");
     return intersect_all(
         pairs.size(),

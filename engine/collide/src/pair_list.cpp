@@ -20,20 +20,21 @@ void PairList::count(std::span<std::uint32_t> first, std::span<std::uint32_t> se
     }
 }
 
-void PairList::place(Vector<Pair>& sorted) {
+void PairList::place(Vector<IdPair>& sorted) {
     std::uint32_t total = 0;
     for (std::uint32_t& place : place_) total += std::exchange(place, total);
     sorted.resize(total);
 }
 
-void PairList::add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<Pair>& sorted) {
+void PairList::add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                   Vector<IdPair>& sorted) {
     for (std::size_t i = 0; i < first.size(); ++i)
         if (first[i] != second[i]) sorted[place_[first[i]]++] = {first[i], second[i]};
 }
 
 // Partners of one item stand together but in any order: most have none or few, and insertion mends those in one pass.
 // One number a pair: whether items or only partners differ is not worth a branch.
-void PairList::finish(Vector<Pair>& sorted) const {
+void PairList::finish(Vector<IdPair>& sorted) const {
     constexpr std::size_t kFew = 12;
     std::size_t begin = 0;
     for (const std::uint32_t end : place_) {
@@ -42,10 +43,10 @@ void PairList::finish(Vector<Pair>& sorted) const {
                       sorted.begin() + static_cast<std::ptrdiff_t>(end));
         begin = end;
     }
-    const auto key = [](const Pair& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
+    const auto key = [](const IdPair& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
     std::uint64_t before = 0;
     for (std::size_t i = 0; i < sorted.size(); ++i) {
-        const Pair pair = sorted[i];
+        const IdPair pair = sorted[i];
         if (key(pair) >= before) {
             before = key(pair);
             continue;
@@ -56,8 +57,8 @@ void PairList::finish(Vector<Pair>& sorted) const {
     }
 }
 
-void compare_pairs(std::span<const Pair> before, std::span<const Pair> now, Vector<Pair>& began, Vector<Pair>& stayed,
-                   Vector<Pair>& ended) {
+void compare_pairs(std::span<const IdPair> before, std::span<const IdPair> now, Vector<IdPair>& began,
+                   Vector<IdPair>& stayed, Vector<IdPair>& ended) {
     began.clear();
     stayed.clear();
     ended.clear();

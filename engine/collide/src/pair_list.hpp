@@ -14,16 +14,16 @@ class PairList {
     // Rewrites pairs of slots as pairs of items in order; a pair that the filters refuse becomes {0, 0}.
     void count(std::span<std::uint32_t> first, std::span<std::uint32_t> second, std::span<const std::uint32_t> items,
                std::span<const Filter> filters);
-    void place(Vector<Pair>& sorted);
-    void add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<Pair>& sorted);
-    void finish(Vector<Pair>& sorted) const;
+    void place(Vector<IdPair>& sorted);
+    void add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<IdPair>& sorted);
+    void finish(Vector<IdPair>& sorted) const;
 
   private:
     Vector<std::uint32_t> place_;  // by item: how many, then where the next goes
 };
 
 // Merges two sorted lists: what is only in `now`, in both, and only in `before`.
-void compare_pairs(std::span<const Pair> before, std::span<const Pair> now, Vector<Pair>& began, Vector<Pair>& stayed,
-                   Vector<Pair>& ended);
+void compare_pairs(std::span<const IdPair> before, std::span<const IdPair> now, Vector<IdPair>& began,
+                   Vector<IdPair>& stayed, Vector<IdPair>& ended);
 
 }  // namespace crofton::collide

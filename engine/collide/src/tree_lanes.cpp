@@ -12,7 +12,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, tree::kWidth>;
+using D = hn::CappedTag<float, boxtree::kWidth>;
 using V = hn::Vec<D>;
 
 // Bounds of lanes along the three axes, relative to the origin.
@@ -20,18 +20,18 @@ struct Bounds {
     V middle[3], half[3];
 };
 
-HWY_INLINE V lower(D d, const tree::Pair* row) {
+HWY_INLINE V lower(D d, const boxtree::Int16x2* row) {
     const hn::RebindToSigned<D> di;
     const auto pair = hn::BitCast(di, hn::Load(hn::RebindToUnsigned<D>(), row));
     return hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)));
 }
-HWY_INLINE V upper(D d, const tree::Pair* row) {
+HWY_INLINE V upper(D d, const boxtree::Int16x2* row) {
     const hn::RebindToSigned<D> di;
     return hn::ConvertTo(d, hn::ShiftRight<16>(hn::BitCast(di, hn::Load(hn::RebindToUnsigned<D>(), row))));
 }
 
 // Exact: integers of 16 bits times a power of two.
-HWY_INLINE Bounds bounds_of(D d, const tree::Node& node, std::size_t l) {
+HWY_INLINE Bounds bounds_of(D d, const boxtree::Node& node, std::size_t l) {
     const V unit = hn::Set(d, node.unit);
     return {{hn::Mul(lower(d, node.middle_xy + l), unit), hn::Mul(upper(d, node.middle_xy + l), unit),
              hn::Mul(lower(d, node.middle_half_z + l), unit)},
@@ -41,7 +41,7 @@ HWY_INLINE Bounds bounds_of(D d, const tree::Node& node, std::size_t l) {
 
 // The sums of integers are exact too. A centre is off by half a position_unit at most, and each of three half edges by
 // half an edge_unit.
-HWY_INLINE Bounds bounds_of(D d, const tree::Leaf& leaf, std::size_t l) {
+HWY_INLINE Bounds bounds_of(D d, const boxtree::Leaf& leaf, std::size_t l) {
     const V position_unit = hn::Set(d, leaf.position_unit), edge_unit = hn::Set(d, leaf.edge_unit);
     const V off = hn::Set(d, 0.5f * leaf.position_unit + 1.5f * leaf.edge_unit);
     const V sum_x = hn::Add(hn::Add(hn::Abs(lower(d, leaf.edge_xy[0] + l)), hn::Abs(lower(d, leaf.edge_xy[1] + l))),
@@ -72,12 +72,12 @@ HWY_INLINE std::uint32_t along(const Block& block, const LaneRay& ray, float* en
     const float size = size_of(ray, block.reach);
     const std::uint32_t used = (1u << block.count) - 1u;
     if (!(size < 1e30f)) {  // beyond what the filter can tell
-        for (unsigned lane = 0; lane < tree::kWidth; ++lane) entry[lane] = 0.0f;
+        for (unsigned lane = 0; lane < boxtree::kWidth; ++lane) entry[lane] = 0.0f;
         return used;
     }
     const V slop = hn::Set(d, kRounding * size), grow = hn::Set(d, 1.0f + kRounding);
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(d)) {
         const Bounds bounds = bounds_of(d, block, l);
         V first = hn::Zero(d), last = hn::Set(d, ray.limit);
         for (int k = 0; k < 3; ++k) {
@@ -101,7 +101,7 @@ HWY_INLINE std::uint32_t within(const Block& block, const LaneBox& box) {
     const D d;
     const V slop = hn::Set(d, kRounding * block.reach), grow = hn::Set(d, 1.0f + kRounding);
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(d)) {
+    for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(d)) {
         const Bounds bounds = bounds_of(d, block, l);
         auto apart = hn::Lt(hn::Zero(d), hn::Zero(d));
         for (int k = 0; k < 3; ++k) {
@@ -116,16 +116,16 @@ HWY_INLINE std::uint32_t within(const Block& block, const LaneBox& box) {
     return lanes & ((1u << block.count) - 1u);
 }
 
-std::uint32_t NodeAlong(const tree::Node& node, const LaneRay& ray, float* entry) {
+std::uint32_t NodeAlong(const boxtree::Node& node, const LaneRay& ray, float* entry) {
     return along(node, ray, entry);
 }
-std::uint32_t LeafAlong(const tree::Leaf& leaf, const LaneRay& ray, float* entry) {
+std::uint32_t LeafAlong(const boxtree::Leaf& leaf, const LaneRay& ray, float* entry) {
     return along(leaf, ray, entry);
 }
-std::uint32_t NodeWithin(const tree::Node& node, const LaneBox& box) {
+std::uint32_t NodeWithin(const boxtree::Node& node, const LaneBox& box) {
     return within(node, box);
 }
-std::uint32_t LeafWithin(const tree::Leaf& leaf, const LaneBox& box) {
+std::uint32_t LeafWithin(const boxtree::Leaf& leaf, const LaneBox& box) {
     return within(leaf, box);
 }
 
@@ -141,16 +141,16 @@ HWY_EXPORT(LeafAlong);
 HWY_EXPORT(NodeWithin);
 HWY_EXPORT(LeafWithin);
 
-std::uint32_t lanes_along(const tree::Node& node, const LaneRay& ray, float* entry) {
+std::uint32_t lanes_along(const boxtree::Node& node, const LaneRay& ray, float* entry) {
     return HWY_DYNAMIC_DISPATCH(NodeAlong)(node, ray, entry);
 }
-std::uint32_t lanes_along(const tree::Leaf& leaf, const LaneRay& ray, float* entry) {
+std::uint32_t lanes_along(const boxtree::Leaf& leaf, const LaneRay& ray, float* entry) {
     return HWY_DYNAMIC_DISPATCH(LeafAlong)(leaf, ray, entry);
 }
-std::uint32_t lanes_within(const tree::Node& node, const LaneBox& box) {
+std::uint32_t lanes_within(const boxtree::Node& node, const LaneBox& box) {
     return HWY_DYNAMIC_DISPATCH(NodeWithin)(node, box);
 }
-std::uint32_t lanes_within(const tree::Leaf& leaf, const LaneBox& box) {
+std::uint32_t lanes_within(const boxtree::Leaf& leaf, const LaneBox& box) {
     return HWY_DYNAMIC_DISPATCH(LeafWithin)(leaf, box);
 }
 

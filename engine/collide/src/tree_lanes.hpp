@@ -1,7 +1,7 @@
 // Bodies and rays against the sixteen children of a node, or the sixteen boxes of a leaf, of a BoxTree: filters that
 // lose nothing.
 #pragma once
-#include <crofton/tree/layout.hpp>
+#include <crofton/boxtree/layout.hpp>
 #include <cstdint>
 
 namespace crofton::collide {
@@ -20,11 +20,11 @@ struct LaneBox {
 
 // A bit for every lane whose axis-aligned bounds the ray may meet within its limit, and where it enters those at the
 // earliest.
-[[nodiscard]] std::uint32_t lanes_along(const tree::Node& node, const LaneRay& ray, float* entry);
-[[nodiscard]] std::uint32_t lanes_along(const tree::Leaf& leaf, const LaneRay& ray, float* entry);
+[[nodiscard]] std::uint32_t lanes_along(const boxtree::Node& node, const LaneRay& ray, float* entry);
+[[nodiscard]] std::uint32_t lanes_along(const boxtree::Leaf& leaf, const LaneRay& ray, float* entry);
 
 // A bit for every lane whose axis-aligned bounds may meet the box.
-[[nodiscard]] std::uint32_t lanes_within(const tree::Node& node, const LaneBox& box);
-[[nodiscard]] std::uint32_t lanes_within(const tree::Leaf& leaf, const LaneBox& box);
+[[nodiscard]] std::uint32_t lanes_within(const boxtree::Node& node, const LaneBox& box);
+[[nodiscard]] std::uint32_t lanes_within(const boxtree::Leaf& leaf, const LaneBox& box);
 
 }  // namespace crofton::collide

@@ -8,13 +8,13 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "ray_box.hpp"
+#include <crofton/mesh/ray_box.hpp>
 #include "tree_lanes.hpp"
 
 namespace crofton::collide {
 namespace {
 
-using tree::kWidth;
+using boxtree::kWidth;
 
 constexpr float kFar = std::numeric_limits<float>::max();
 
@@ -22,7 +22,7 @@ constexpr float kFar = std::numeric_limits<float>::max();
 template <class Step>
 class Stack {
   public:
-    explicit Stack(const tree::BoxTree& tree) {
+    explicit Stack(const boxtree::BoxTree& tree) {
         const std::size_t needed = std::size_t{tree.height()} * kWidth;
         if (needed > few_.size()) {
             many_.resize(needed);
@@ -49,7 +49,7 @@ void for_each_lane(std::uint32_t lanes, Visit visit) {
 
 // The items of some of a leaf's lanes.
 template <class Visit>
-void for_each_item(const tree::BoxTree& tree, tree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
+void for_each_item(const boxtree::BoxTree& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
                    Visit visit) {
     for_each_lane(lanes, [&](unsigned lane) {
         if (tree.leaves()[leaf].layers[lane] & layers) visit(tree.slot_items()[std::size_t{leaf} * kWidth + lane]);
@@ -78,23 +78,23 @@ LaneBox box_for(const Block& block, const Aabb& bounds) {
 }
 
 template <class Body>
-void collect(const tree::BoxTree& tree, const Body& body, const Aabb& bounds, std::uint32_t layers,
-             Vector<tree::ItemId>& items) {
+void collect(const boxtree::BoxTree& tree, const Body& body, const Aabb& bounds, std::uint32_t layers,
+             Vector<boxtree::ItemId>& items) {
     items.clear();
     if (!std::isfinite(bounds.min.x + bounds.min.y + bounds.min.z + bounds.max.x + bounds.max.y + bounds.max.z)) return;
     Stack<std::uint32_t> stack(tree);
     stack.push(0);
     while (!stack.is_empty()) {
         const std::uint32_t child = stack.pop();
-        if (child & tree::kLeafBit) {
-            const tree::LeafId id = child & ~tree::kLeafBit;
-            const tree::Leaf& leaf = tree.leaves()[id];
-            for_each_item(tree, id, lanes_within(leaf, box_for(leaf, bounds)), layers, [&](tree::ItemId item) {
+        if (child & boxtree::kLeafBit) {
+            const boxtree::LeafId id = child & ~boxtree::kLeafBit;
+            const boxtree::Leaf& leaf = tree.leaves()[id];
+            for_each_item(tree, id, lanes_within(leaf, box_for(leaf, bounds)), layers, [&](boxtree::ItemId item) {
                 if (intersects(tree.boxes()[item], body)) items.push_back(item);
             });
             continue;
         }
-        const tree::Node& node = tree.nodes()[child];
+        const boxtree::Node& node = tree.nodes()[child];
         for_each_lane(lanes_within(node, box_for(node, bounds)), [&](unsigned lane) {
             if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
         });
@@ -147,7 +147,7 @@ struct RayStep {
 
 }  // namespace
 
-void overlapping(const tree::BoxTree& tree, const Obb& body, Vector<tree::ItemId>& items, std::uint32_t layers) {
+void overlapping(const boxtree::BoxTree& tree, const Obb& body, Vector<boxtree::ItemId>& items, std::uint32_t layers) {
     items.clear();
     if (!validate(body)) return;
     glm::dvec3 reach(0.0);
@@ -155,17 +155,19 @@ void overlapping(const tree::BoxTree& tree, const Obb& body, Vector<tree::ItemId
     collect(tree, body, around(body.center, reach), layers, items);
 }
 
-void overlapping(const tree::BoxTree& tree, const Sphere& body, Vector<tree::ItemId>& items, std::uint32_t layers) {
+void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtree::ItemId>& items,
+                 std::uint32_t layers) {
     collect(tree, body, around(body.center, glm::dvec3(body.radius)), layers, items);
 }
 
-void overlapping(const tree::BoxTree& tree, const Capsule& body, Vector<tree::ItemId>& items, std::uint32_t layers) {
+void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtree::ItemId>& items,
+                 std::uint32_t layers) {
     Aabb bounds = around(body.begin, glm::dvec3(body.radius));
     bounds.include(around(body.end, glm::dvec3(body.radius)));
     collect(tree, body, bounds, layers, items);
 }
 
-void visit_along(const Ray& ray, const tree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
+void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit, std::uint32_t layers) {
     if (!validate(ray)) return;
     const Traveller traveller(ray);
     Ray rest = ray;
@@ -176,18 +178,18 @@ void visit_along(const Ray& ray, const tree::BoxTree& tree, RayVisitor visit, st
         const RayStep step = stack.pop();
         if (step.entry > limit) continue;
         std::array<float, kWidth> entry;
-        if (step.child & tree::kLeafBit) {
-            const tree::LeafId id = step.child & ~tree::kLeafBit;
-            const tree::Leaf& leaf = tree.leaves()[id];
+        if (step.child & boxtree::kLeafBit) {
+            const boxtree::LeafId id = step.child & ~boxtree::kLeafBit;
+            const boxtree::Leaf& leaf = tree.leaves()[id];
             const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
-            for_each_item(tree, id, lanes, layers, [&](tree::ItemId item) {
-                if (const auto t = entry_of(rest, tree.boxes()[item])) rest.max_t = visit(item, *t);
+            for_each_item(tree, id, lanes, layers, [&](boxtree::ItemId item) {
+                if (const auto t = mesh::entry_of(rest, tree.boxes()[item])) rest.max_t = visit(item, *t);
             });
             if (!(rest.max_t >= 0.0)) return;
             limit = traveller.distance(rest.max_t);
             continue;
         }
-        const tree::Node& node = tree.nodes()[step.child];
+        const boxtree::Node& node = tree.nodes()[step.child];
         const std::size_t base = stack.size();
         for_each_lane(lanes_along(node, traveller.seen_from(node, limit), entry.data()), [&](unsigned lane) {
             if ((node.layers_any[lane] & layers) == 0) return;
@@ -200,11 +202,11 @@ void visit_along(const Ray& ray, const tree::BoxTree& tree, RayVisitor visit, st
     }
 }
 
-std::optional<BoxHit> raycast(const Ray& ray, const tree::BoxTree& tree, std::uint32_t layers) {
+std::optional<BoxHit> raycast(const Ray& ray, const boxtree::BoxTree& tree, std::uint32_t layers) {
     std::optional<BoxHit> nearest;
     visit_along(
         ray, tree,
-        [&](tree::ItemId item, double t) {
+        [&](boxtree::ItemId item, double t) {
             if (!nearest || t < nearest->t || item < nearest->item) nearest = {t, item};
             return t;
         },

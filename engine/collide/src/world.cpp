@@ -11,7 +11,7 @@ namespace {
 
 // The tree of a mesh, or of an instance whose transform is no rigid motion.
 struct Body {
-    tree::MeshTree tree;
+    mesh::MeshTree tree;
     glm::dmat3 linear{1.0};  // that the vertices were multiplied by
     bool built = false, usable = false;
 };
@@ -27,13 +27,13 @@ bool is_rotation(const glm::dmat3& m) {
 void build(const TriangleMesh& mesh, const glm::dmat3& linear, Body& body) {
     body.built = true;
     body.linear = linear;
-    Result<tree::MeshTree> tree = [&] {
-        if (linear == glm::dmat3(1.0)) return tree::MeshTree::build(mesh);
+    Result<mesh::MeshTree> tree = [&] {
+        if (linear == glm::dmat3(1.0)) return mesh::MeshTree::build(mesh);
         TriangleMesh turned;
         turned.indices = mesh.indices;
         turned.positions.reserve(mesh.positions.size());
         for (const glm::vec3& p : mesh.positions) turned.positions.push_back(glm::vec3(linear * glm::dvec3(p)));
-        return tree::MeshTree::build(turned);
+        return mesh::MeshTree::build(turned);
     }();
     body.usable = tree.has_value();
     if (tree) body.tree = std::move(*tree);
@@ -41,13 +41,13 @@ void build(const TriangleMesh& mesh, const glm::dmat3& linear, Body& body) {
 
 struct Outcome {
     bool hit = false;
-    Containment inside = Containment::none;
+    mesh::Containment inside = mesh::Containment::none;
     std::uint32_t worker = 0, begin = 0, count = 0;
 };
 
 struct Worker {
-    Vector<MeshContact> found, all;
-    MeshStatistics statistics;
+    Vector<mesh::MeshContact> found, all;
+    mesh::MeshStatistics statistics;
 };
 
 }  // namespace
@@ -61,14 +61,14 @@ struct World::State {
     Vector<Outcome> outcomes;
     Vector<Worker> workers;
     Vector<InstancePair> pairs;
-    Vector<MeshContact> contacts;
-    Vector<Pair> now, before, began, stayed, ended;
+    Vector<mesh::MeshContact> contacts;
+    Vector<IdPair> now, before, began, stayed, ended;
     Vector<std::uint32_t> rejected;
 
     Body& prepare(const scene::Scene& scene, std::uint32_t instance);
     [[nodiscard]] const Body& body_of(const scene::Scene& scene, std::uint32_t instance) const;
     void test_meshes(const scene::Scene& scene, Executor& executor);
-    void test_pair(const scene::Scene& scene, const Pair& pair, std::uint32_t worker, Outcome& outcome);
+    void test_pair(const scene::Scene& scene, const IdPair& pair, std::uint32_t worker, Outcome& outcome);
     void gather();
 };
 
@@ -83,16 +83,16 @@ World& World::operator=(World&&) noexcept = default;
 std::span<const InstancePair> World::pairs() const {
     return state_->pairs;
 }
-std::span<const MeshContact> World::contacts() const {
+std::span<const mesh::MeshContact> World::contacts() const {
     return state_->contacts;
 }
-std::span<const Pair> World::began() const {
+std::span<const IdPair> World::began() const {
     return state_->began;
 }
-std::span<const Pair> World::stayed() const {
+std::span<const IdPair> World::stayed() const {
     return state_->stayed;
 }
-std::span<const Pair> World::ended() const {
+std::span<const IdPair> World::ended() const {
     return state_->ended;
 }
 std::span<const std::uint32_t> World::rejected() const {
@@ -120,22 +120,22 @@ const Body& World::State::body_of(const scene::Scene& scene, std::uint32_t insta
                                                                     : by_instance[instance];
 }
 
-void World::State::test_pair(const scene::Scene& scene, const Pair& pair, std::uint32_t worker_index,
+void World::State::test_pair(const scene::Scene& scene, const IdPair& pair, std::uint32_t worker_index,
                              Outcome& outcome) {
     Worker& worker = workers[worker_index];
     const auto pose_of = [&](std::uint32_t instance) {
         const scene::Transform& world = scene.world(scene.node_of(instance));
-        return Pose{is_rotation(world.linear) ? world.linear : glm::dmat3(1.0), world.translation};
+        return RigidTransform{is_rotation(world.linear) ? world.linear : glm::dmat3(1.0), world.translation};
     };
     const Body &a = body_of(scene, pair.first), &b = body_of(scene, pair.second);
     outcome = {};
     if (!a.usable || !b.usable) return;
-    const Pose pose_a = pose_of(pair.first), b_to_a = relative(pose_a, pose_of(pair.second));
+    const RigidTransform pose_a = pose_of(pair.first), b_to_a = relative(pose_a, pose_of(pair.second));
     if (options.contacts) {
-        collide::contacts(a.tree, b.tree, b_to_a, worker.found, &worker.statistics);
-        outcome = {!worker.found.empty(), Containment::none, worker_index,
+        mesh::contacts(a.tree, b.tree, b_to_a, worker.found, &worker.statistics);
+        outcome = {!worker.found.empty(), mesh::Containment::none, worker_index,
                    static_cast<std::uint32_t>(worker.all.size()), static_cast<std::uint32_t>(worker.found.size())};
-        for (MeshContact contact : worker.found) {
+        for (mesh::MeshContact contact : worker.found) {
             contact.segment = {transform(pose_a, contact.segment.begin), transform(pose_a, contact.segment.end)};
             contact.normal = pose_a.rotation * contact.normal;
             worker.all.push_back(contact);
@@ -145,13 +145,13 @@ void World::State::test_pair(const scene::Scene& scene, const Pair& pair, std::u
     }
     if (!outcome.hit && options.containment) {
         outcome.inside = containment_of_disjoint(a.tree, b.tree, b_to_a);
-        outcome.hit = outcome.inside != Containment::none;
+        outcome.hit = outcome.inside != mesh::Containment::none;
     }
 }
 
 void World::State::test_meshes(const scene::Scene& scene, Executor& executor) {
-    const std::span<const Pair> candidates = broadphase.pairs();
-    for (const Pair& pair : candidates)
+    const std::span<const IdPair> candidates = broadphase.pairs();
+    for (const IdPair& pair : candidates)
         for (const std::uint32_t instance : {pair.first, pair.second})
             if (!prepare(scene, instance).usable) rejected.push_back(instance);
     outcomes.resize(candidates.size());
@@ -168,7 +168,7 @@ void World::State::test_meshes(const scene::Scene& scene, Executor& executor) {
 
 // In the order of the pairs, whoever tested them.
 void World::State::gather() {
-    const std::span<const Pair> candidates = broadphase.pairs();
+    const std::span<const IdPair> candidates = broadphase.pairs();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (!options.meshes) {
             pairs.push_back({candidates[i]});

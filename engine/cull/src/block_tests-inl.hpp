@@ -33,7 +33,7 @@ HWY_INLINE MF present(const KernelView& view, std::uint32_t every, const std::ui
 struct NodeRows {
     VU middle_xy, half_xy, middle_half_z;
 
-    HWY_INLINE NodeRows(const tree::Node& node, std::size_t l) {
+    HWY_INLINE NodeRows(const boxtree::Node& node, std::size_t l) {
         const DU du;
         middle_xy = hn::Load(du, node.middle_xy + l);
         half_xy = hn::Load(du, node.half_xy + l);
@@ -58,7 +58,7 @@ struct NodeSide {
     }
 };
 
-HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, std::uint32_t planes) {
+HWY_INLINE NodeTest test_node(const KernelView& view, const boxtree::Node& node, std::uint32_t planes) {
     const DU du;
     NodeTest result;
     result.alive = result.settled = 0;
@@ -67,7 +67,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
         before[i] = block_plane(view, i, node);
     }
-    for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+    for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
         const NodeRows rows(node, l);
         MF alive = present(view, node.layers_every, node.layers_any, node.count, l);
         VU straddled = hn::Set(du, planes);
@@ -86,7 +86,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const tree::Node& node, st
 }
 
 // Lanes of `lanes` below which everything is in a layer that the view sees.
-HWY_INLINE std::uint32_t seen(const KernelView& view, const tree::Node& node, std::uint32_t lanes) {
+HWY_INLINE std::uint32_t seen(const KernelView& view, const boxtree::Node& node, std::uint32_t lanes) {
     if (HWY_LIKELY(node.layers_every & view.layer_mask)) return lanes;
     std::uint32_t result = 0;
     for (std::uint32_t rest = lanes; rest; rest &= rest - 1) {

@@ -19,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t kSixteen = tree::kWidth;
+constexpr std::size_t kSixteen = boxtree::kWidth;
 using DD = hn::CappedTag<double, kSixteen>;
 
 // As Obb has it: a centre, three axes, three half extents.

@@ -6,8 +6,8 @@
 
 namespace crofton::cull {
 
-void to_bits(std::span<const tree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits) {
-    for (const tree::ItemId id : ids) CROFTON_ASSERT(id < items, "an id beyond the number of items");
+void to_bits(std::span<const boxtree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits) {
+    for (const boxtree::ItemId id : ids) CROFTON_ASSERT(id < items, "an id beyond the number of items");
     bits.assign(items / 64 + 2, 0);  // one more for the kernel
     mark_ids_kernel(ids.data(), ids.size(), bits.data());
     bits.resize((items + 63) / 64);
@@ -22,7 +22,7 @@ void merge_ranges(std::span<const std::uint64_t> bits, std::uint32_t max_gap, Ve
             word >>= skip;
             at += skip;
             const auto run = static_cast<unsigned>(std::countr_one(word));
-            const auto first = static_cast<tree::ItemId>(64 * w + at);
+            const auto first = static_cast<boxtree::ItemId>(64 * w + at);
             if (!ranges.empty() && first - (ranges.back().first + ranges.back().count) <= max_gap)
                 ranges.back().count = first + run - ranges.back().first;
             else

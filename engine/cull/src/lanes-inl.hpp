@@ -1,7 +1,7 @@
 // Lanes of floats and of pairs of 16-bit integers. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
 #include <bit>
-#include <crofton/tree/layout.hpp>
+#include <crofton/boxtree/layout.hpp>
 #include <cstring>
 
 #if defined(CROFTON_CULL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using DF = hn::CappedTag<float, tree::kWidth>;
+using DF = hn::CappedTag<float, boxtree::kWidth>;
 using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;

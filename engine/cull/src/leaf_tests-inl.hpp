@@ -23,7 +23,7 @@ struct LeafRows {
     VU xy, z_edge2_z, edge01_z, edge_xy[3];
     int edge_shift;
 
-    HWY_INLINE LeafRows(const tree::Leaf& leaf, std::size_t l) : edge_shift(leaf.edge_shift) {
+    HWY_INLINE LeafRows(const boxtree::Leaf& leaf, std::size_t l) : edge_shift(leaf.edge_shift) {
         const DU du;
         xy = hn::Load(du, leaf.xy + l);
         z_edge2_z = hn::Load(du, leaf.z_edge2_z + l);
@@ -100,15 +100,15 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
 }
 
 // Not inlined, and given no vectors: what calls it keeps its own in registers.
-static HWY_NOINLINE void settle_leaf(const tree::Leaf& leaf, std::size_t l, const LeafPlane* planes, unsigned count,
+static HWY_NOINLINE void settle_leaf(const boxtree::Leaf& leaf, std::size_t l, const LeafPlane* planes, unsigned count,
                                      BoxTest& test) {
     settle(box_rows(LeafRows(leaf, l), planes, count), test);
 }
 
 // Of two planes or more. In the exact mode a box that crosses two is asked for a common point, unless its centre is
 // one.
-HWY_INLINE BoxTest test_leaf(const tree::Leaf& leaf, std::size_t l, MF present, const LeafPlane* planes, unsigned count,
-                             bool exact) {
+HWY_INLINE BoxTest test_leaf(const boxtree::Leaf& leaf, std::size_t l, MF present, const LeafPlane* planes,
+                             unsigned count, bool exact) {
     const DF d;
     const MF none = hn::FirstN(d, 0);
     const LeafRows rows(leaf, l);

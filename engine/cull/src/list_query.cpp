@@ -78,8 +78,8 @@ bool takes_vectors(const Frustum& frustum) {
 }  // namespace
 
 template <class Bound>
-void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
-          VerdictBits& verdicts, Mode mode, Executor& executor) {
+void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
+                  VerdictBits& verdicts, Mode mode, Executor& executor) {
     CROFTON_ASSERT(bounds.size() == set.size(), "cull needs the bounds that the set was given");
     verdicts.visible.resize((set.size() + 63) / 64);
     verdicts.inside.resize((set.size() + 63) / 64);
@@ -183,9 +183,10 @@ class ListViews {
 }  // namespace
 
 template <class Bound>
-void cull(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
-          std::span<const std::uint32_t> layer_masks, std::span<const View> views, std::span<std::uint32_t> view_masks,
-          Mode mode, Executor& executor, std::span<Statistics> statistics) {
+void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
+                  std::span<const std::uint32_t> layer_masks, std::span<const View> views,
+                  std::span<std::uint32_t> view_masks, Mode mode, Executor& executor,
+                  std::span<Statistics> statistics) {
     CROFTON_ASSERT(bounds.size() == set.size(), "cull needs the bounds that the set was given");
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     CROFTON_ASSERT(view_masks.size() == set.size(), "cull needs one view mask per bound");
@@ -208,12 +209,12 @@ std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids
     return list_bits_kernel(bits.data(), bits.size(), ids.data());
 }
 
-#define CROFTON_CULL_LIST_QUERIES(Bound)                                                                      \
-    template void cull(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&,     \
-                       VerdictBits&, Mode, Executor&);                                                        \
-    template void cull(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,                  \
-                       std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>, Mode, \
-                       Executor&, std::span<Statistics>);
+#define CROFTON_CULL_LIST_QUERIES(Bound)                                                                              \
+    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&,     \
+                               VerdictBits&, Mode, Executor&);                                                        \
+    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,                  \
+                               std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>, Mode, \
+                               Executor&, std::span<Statistics>);
 CROFTON_CULL_LIST_QUERIES(Obb)
 CROFTON_CULL_LIST_QUERIES(Aabb)
 CROFTON_CULL_LIST_QUERIES(Sphere)

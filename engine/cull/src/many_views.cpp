@@ -13,7 +13,7 @@ namespace crofton::cull {
 
 class ManyViewsQuery {
   public:
-    ManyViewsQuery(const tree::BoxTree& tree, std::span<const View> views, Mode mode)
+    ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, Mode mode)
         : tree_(tree), views_(views), mode_(mode) {}
 
     void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
@@ -24,8 +24,8 @@ class ManyViewsQuery {
   private:
     // Leaves room for `more` items.
     void find_resting(ManyVisible& visible, std::size_t more) {
-        const std::size_t leaves = tree_.leaves().size() + tree::kWidth;
-        grow(visible.ids_, tree_.boxes().size() + more + tree::kWidth);
+        const std::size_t leaves = tree_.leaves().size() + boxtree::kWidth;
+        grow(visible.ids_, tree_.boxes().size() + more + boxtree::kWidth);
         visible.mask_bytes_ = views_.size() > 16 ? 4 : views_.size() > 8 ? 2 : 1;
         grow(visible.masks_, visible.ids_.size() * visible.mask_bytes_);
         grow(visible.whole_, leaves);
@@ -33,7 +33,7 @@ class ManyViewsQuery {
         grow(visible.listed_, leaves);
         grow(visible.touched_, leaves / 1024 + 1);
         grow(visible.planes_, leaves * views_.size());
-        grow(visible.stack_, std::size_t{tree_.height() + 1} * tree::kWidth);
+        grow(visible.stack_, std::size_t{tree_.height() + 1} * boxtree::kWidth);
         visible.size_ = 0;
         if (views_.empty()) return;
         bool vectors = true;
@@ -77,7 +77,7 @@ class ManyViewsQuery {
     void add_moving(const MovingBoxes& moving, ManyVisible& visible) const {
         grow(visible.moving_masks_, moving.size());
         const std::span<std::uint32_t> masks = std::span(visible.moving_masks_).first(moving.size());
-        cull(moving.set(), moving.boxes(), {}, views_, masks, mode_);
+        find_visible(moving.set(), moving.boxes(), {}, views_, masks, mode_);
         for (std::size_t k = 0; k < masks.size(); ++k) {
             if (masks[k] == 0) continue;
             const ItemId item = moving.items()[k];
@@ -109,7 +109,7 @@ class ManyViewsQuery {
     // A view that the kernel cannot take is among them.
     void run_one_by_one(ManyVisible& visible) const {
         for (const ItemId item : tree_.slot_items()) {
-            if (item == tree::kNone) continue;
+            if (item == boxtree::kNone) continue;
             std::uint32_t mask = 0;
             for (std::size_t v = 0; v < views_.size(); ++v)
                 if (tree_.layer_masks()[item] & views_[v].layer_mask &&
@@ -119,18 +119,18 @@ class ManyViewsQuery {
         }
     }
 
-    const tree::BoxTree& tree_;
+    const boxtree::BoxTree& tree_;
     std::span<const View> views_;
     Mode mode_;
 };
 
-void cull(const tree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, Mode mode) {
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, Mode mode) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     ManyViewsQuery(tree, views, mode).run(visible);
 }
 
-void cull(const tree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views, ManyVisible& visible,
-          Mode mode) {
+void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
+                  ManyVisible& visible, Mode mode) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     ManyViewsQuery(resting, views, mode).run(visible, &moving);
 }

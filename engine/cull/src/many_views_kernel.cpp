@@ -61,15 +61,15 @@ class ManyWalk {
             const auto child = static_cast<std::uint32_t>(entry >> 32);
             const auto planes = static_cast<std::uint32_t>(entry);
             if (planes & kWhole && note_whole(child, 1u << v)) continue;
-            if (child & tree::kLeafBit)
-                note_open(child & ~tree::kLeafBit, planes & ~kWhole, v);
+            if (child & boxtree::kLeafBit)
+                note_open(child & ~boxtree::kLeafBit, planes & ~kWhole, v);
             else
                 size = visit_node(v, child, planes & ~kWhole, size);
         }
     }
 
     HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size) {
-        const tree::Node& node = in_.nodes[id];
+        const boxtree::Node& node = in_.nodes[id];
         const NodeTest test = test_node(in_.views[v], node, planes);
         const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.settled);
         if (node.only_leaves) {
@@ -78,7 +78,7 @@ class ManyWalk {
         }
         for_each_bit(test.alive, [&](unsigned lane) {
             const bool is_whole = whole >> lane & 1;
-            if (!is_whole && !(node.child[lane] & tree::kLeafBit)) prefetch_node(node.child[lane]);
+            if (!is_whole && !(node.child[lane] & boxtree::kLeafBit)) prefetch_node(node.child[lane]);
             out_.stack[size++] = std::uint64_t{node.child[lane]} << 32 | (is_whole ? kWhole : test.planes[lane]);
         });
         return size;
@@ -86,13 +86,13 @@ class ManyWalk {
 
     // False for a node whose leaves are not consecutive.
     HWY_INLINE bool note_whole(std::uint32_t child, std::uint32_t view) {
-        if (child & tree::kLeafBit) {
-            const std::uint32_t leaf = child & ~tree::kLeafBit;
+        if (child & boxtree::kLeafBit) {
+            const std::uint32_t leaf = child & ~boxtree::kLeafBit;
             out_.whole[leaf] |= view;
             touch(leaf, leaf);
             return true;
         }
-        const tree::LeafRange range = in_.ranges[child];
+        const boxtree::LeafRange range = in_.ranges[child];
         if (range.count == 0) return false;
         const std::uint32_t end = range.first + range.count;
         const DU du;
@@ -117,19 +117,19 @@ class ManyWalk {
     }
 
     // Leaf by leaf only where they are not consecutive.
-    HWY_INLINE void note_leaves(const tree::Node& node, const NodeTest& test, std::uint32_t whole, std::uint32_t v) {
+    HWY_INLINE void note_leaves(const boxtree::Node& node, const NodeTest& test, std::uint32_t whole, std::uint32_t v) {
         if (test.alive == 0) return;
-        const std::uint32_t first = node.child[0] & ~tree::kLeafBit, open = test.alive & ~whole;
+        const std::uint32_t first = node.child[0] & ~boxtree::kLeafBit, open = test.alive & ~whole;
         if (HWY_UNLIKELY(!are_consecutive(node))) {
             for_each_bit(whole, [&](unsigned lane) { note_whole(node.child[lane], 1u << v); });
-            for_each_bit(open,
-                         [&](unsigned lane) { note_open(node.child[lane] & ~tree::kLeafBit, test.planes[lane], v); });
+            for_each_bit(
+                open, [&](unsigned lane) { note_open(node.child[lane] & ~boxtree::kLeafBit, test.planes[lane], v); });
             return;
         }
         const DU du;
         const DP dp;
         const VU bit = hn::Set(du, 1u << v);
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
             const auto add = [&](std::uint32_t* views, std::uint32_t lanes) HWY_ATTR {
                 const VU more = hn::IfThenElseZero(mask_of(lanes >> l), bit);
                 hn::StoreU(hn::Or(hn::LoadU(du, views + first + l), more), du, views + first + l);
@@ -145,10 +145,10 @@ class ManyWalk {
         touch(first, first + node.count - 1);
     }
 
-    static HWY_INLINE bool are_consecutive(const tree::Node& node) {
+    static HWY_INLINE bool are_consecutive(const boxtree::Node& node) {
         const DU du;
         const VU lanes = hn::Iota(du, 0);
-        for (std::size_t l = 0; l < tree::kWidth && l < node.count; l += hn::Lanes(du)) {
+        for (std::size_t l = 0; l < boxtree::kWidth && l < node.count; l += hn::Lanes(du)) {
             const VU next = hn::Add(lanes, hn::Set(du, node.child[0] + static_cast<std::uint32_t>(l)));
             const auto differs = hn::Ne(hn::Load(du, node.child + l), next);
             if (!hn::AllFalse(du, hn::And(differs, hn::FirstN(du, node.count - l)))) return false;
@@ -157,7 +157,7 @@ class ManyWalk {
     }
 
     HWY_INLINE std::uint16_t* planes_of(std::uint32_t v) const {
-        return out_.planes + v * (std::size_t{in_.leaf_count} + tree::kWidth);
+        return out_.planes + v * (std::size_t{in_.leaf_count} + boxtree::kWidth);
     }
 
     // Writes the leaves that are seen whole or not at all, and lists the others.
@@ -212,21 +212,21 @@ class ManyWalk {
 
     HWY_INLINE void copy_leaf(std::uint32_t leaf, VU views, std::size_t at) {
         const DU du;
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
-            const VU items = hn::Load(du, in_.slot_items + std::size_t{leaf} * tree::kWidth + l);
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
+            const VU items = hn::Load(du, in_.slot_items + std::size_t{leaf} * boxtree::kWidth + l);
             hn::StoreU(items, du, out_.ids + out_.count + at + l);
             store_masks(views, out_.count + at + l);
         }
     }
 
     HWY_INLINE void prefetch_leaf(std::uint32_t leaf) const {
-        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * tree::kWidth);
-        for (std::size_t at = 0; at < offsetof(tree::Leaf, layers); at += 64)
+        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * boxtree::kWidth);
+        for (std::size_t at = 0; at < offsetof(boxtree::Leaf, layers); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
     }
 
     HWY_INLINE void prefetch_node(std::uint32_t node) const {
-        for (std::size_t at = 0; at < offsetof(tree::Node, layers_any); at += 64)
+        for (std::size_t at = 0; at < offsetof(boxtree::Node, layers_any); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
     }
 
@@ -245,14 +245,14 @@ class ManyWalk {
         out_.whole[id] = out_.open[id] = 0;
         const DU du;
         const std::size_t count = in_.leaf_counts[id];
-        for (std::size_t l = 0; l < tree::kWidth && l < count; l += hn::Lanes(du)) {
+        for (std::size_t l = 0; l < boxtree::kWidth && l < count; l += hn::Lanes(du)) {
             VU mask = hn::Set(du, whole);
             for_each_bit(open, [&](unsigned v) HWY_ATTR {
                 const MF sees = test_view(v, id, l, planes_of(v)[id]);
                 mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(du, sees), hn::Set(du, 1u << v)));
             });
             const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, count - l));
-            hn::StoreU(hn::Compress(hn::Load(du, in_.slot_items + std::size_t{id} * tree::kWidth + l), seen), du,
+            hn::StoreU(hn::Compress(hn::Load(du, in_.slot_items + std::size_t{id} * boxtree::kWidth + l), seen), du,
                        out_.ids + out_.count);
             store_masks(hn::Compress(mask, seen), out_.count);
             out_.count += hn::CountTrue(du, seen);
@@ -261,7 +261,7 @@ class ManyWalk {
 
     // The boxes of a leaf that view v sees, lanes l on.
     HWY_INLINE MF test_view(std::uint32_t v, std::uint32_t id, std::size_t l, std::uint32_t straddled) const {
-        const tree::Leaf& leaf = in_.leaves[id];
+        const boxtree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = in_.views[v];
         LeafPlane planes[KernelView::kMaxPlanes];
         unsigned count = 0;
@@ -273,9 +273,9 @@ class ManyWalk {
                                                     : test_leaf(leaf, l, lanes, planes, count, in_.exact);
         const MF seen = hn::Or(test.inside, test.straddling);
         if (HWY_LIKELY(hn::AllFalse(DF(), test.undecided))) return seen;
-        alignas(64) std::uint32_t decided[tree::kWidth] = {};
+        alignas(64) std::uint32_t decided[boxtree::kWidth] = {};
         for_each_bit(bits_of(test.undecided), [&](unsigned lane) {
-            const auto slot = static_cast<std::uint32_t>(id * tree::kWidth + l + lane);
+            const auto slot = static_cast<std::uint32_t>(id * boxtree::kWidth + l + lane);
             decided[lane] = in_.decide(in_.context, slot, v);
         });
         const DU du;

@@ -1,17 +1,17 @@
 // Many views against a box tree, in vectors.
 #pragma once
-#include <crofton/tree/layout.hpp>
+#include <crofton/boxtree/layout.hpp>
 
 #include "kernel_view.hpp"
 
 namespace crofton::cull {
 
 struct ManyViewsInput {
-    const tree::Node* nodes;
-    const tree::Leaf* leaves;
-    const tree::LeafRange* ranges;
+    const boxtree::Node* nodes;
+    const boxtree::Leaf* leaves;
+    const boxtree::LeafRange* ranges;
     const std::uint8_t* leaf_counts;
-    const tree::ItemId* slot_items;
+    const boxtree::ItemId* slot_items;
     std::uint32_t leaf_count;
     const KernelView* views;
     std::uint32_t view_count;
@@ -22,7 +22,7 @@ struct ManyViewsInput {
 };
 
 struct ManyViewsOutput {
-    tree::ItemId* ids;       // room for all items and 16 more, as in masks
+    boxtree::ItemId* ids;    // room for all items and 16 more, as in masks
     void* masks;             // integers of mask_bytes
     std::size_t mask_bytes;  // 1, 2 or 4, with a bit for each view
     std::size_t count;

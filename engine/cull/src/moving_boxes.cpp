@@ -6,8 +6,8 @@
 
 namespace crofton::cull {
 
-Result<void> MovingBoxes::update(const tree::BoxTree& tree, std::span<const ItemId> items, std::span<const Obb> boxes,
-                                 Executor& executor) {
+Result<void> MovingBoxes::update(const boxtree::BoxTree& tree, std::span<const ItemId> items,
+                                 std::span<const Obb> boxes, Executor& executor) {
     if (items.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "moving boxes: as many boxes as items are needed");
     for (const ItemId item : items)
@@ -21,25 +21,25 @@ Result<void> MovingBoxes::update(const tree::BoxTree& tree, std::span<const Item
     return {};
 }
 
-void cull(const tree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
-          const Options& options, Executor& executor) {
+void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
+                  const Options& options, Executor& executor) {
     Query(view, visible, options, &moving).run(resting, executor);
 }
 
 // Straddling ones go to `straddling`.
-void Query::add_moving(const tree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor) {
+void Query::add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor) {
     VerdictBits& bits = visible_.moving_bits_;
-    cull(moving_->set(), moving_->boxes(), view_, bits, options_.mode, executor);
+    find_visible(moving_->set(), moving_->boxes(), view_, bits, options_.mode, executor);
     if (kCountStatistics) visible_.statistics_ += bits.statistics;
-    if (visible_.listed_.size() < moving_->size() + tree::kWidth)
-        visible_.listed_.resize(moving_->size() + tree::kWidth);
+    if (visible_.listed_.size() < moving_->size() + boxtree::kWidth)
+        visible_.listed_.resize(moving_->size() + boxtree::kWidth);
     for (std::size_t w = 0; w < bits.visible.size(); ++w) bits.visible[w] &= ~bits.inside[w];
     append_moving(tree, bits.inside, visible_.ids_.data(), inside);
     append_moving(tree, bits.visible, visible_.straddling_.data(), straddling);
 }
 
 // The items of the bits that are set, if they are in one of the view's layers.
-void Query::append_moving(const tree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
+void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
                           std::size_t& count) {
     std::uint32_t* listed = visible_.listed_.data();
     const std::size_t found = list_bits(bits, visible_.listed_);

@@ -12,7 +12,7 @@ namespace crofton::cull {
 namespace {
 
 // Vector stores run past the end of what they mean to write.
-constexpr std::size_t kPadding = tree::kWidth;
+constexpr std::size_t kPadding = boxtree::kWidth;
 // Below this a query is over before another thread has woken.
 constexpr std::size_t kParallelItems = 65536;
 // Beside an item's id, which is below 2^30.
@@ -39,8 +39,8 @@ KernelView kernel_view_of(const View& view) {
         result.planes[i].offset = plane.offset;
         int n[3];
         for (int j = 0; j < 3; ++j) n[j] = static_cast<int>(std::lround(plane.normal[j] * 0x1p14));
-        result.pair_planes[i] = {tree::pair_of(n[0], n[1]), tree::pair_of(n[2], 0),
-                                 tree::pair_of(std::abs(n[0]), std::abs(n[1])), tree::pair_of(0, std::abs(n[2]))};
+        result.pair_planes[i] = {boxtree::pair_of(n[0], n[1]), boxtree::pair_of(n[2], 0),
+                                 boxtree::pair_of(std::abs(n[0]), std::abs(n[1])), boxtree::pair_of(0, std::abs(n[2]))};
         result.planes[i].length_f = static_cast<float>(glm::length(plane.normal));
     }
     return result;
@@ -50,7 +50,7 @@ KernelView kernel_view_of(const View& view) {
 // answer comes in the same order.
 Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
     const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
-    std::uint64_t level[tree::kWidth];
+    std::uint64_t level[boxtree::kWidth];
     entries[0] = root;
     count = 1;
     if (!many) return;
@@ -79,7 +79,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
     finish(inside, straddling, boxes.size());
 }
 
-void Query::run(const tree::BoxTree& tree, Executor& executor) {
+void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
     if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
@@ -103,39 +103,17 @@ void Query::run(const tree::BoxTree& tree, Executor& executor) {
     finish(tree, inside, straddling, executor);
 }
 
-// A bound contains what is below it, so its verdict is theirs unless it straddles.
-void Query::run(const tree::VisitTree& tree) {
-    start(tree.id_count());
-    if (tree.root() == nullptr) return finish(0, 0, tree.id_count());
-    Verdict last = Verdict::outside;  // of the bound that was asked last: the item's own, or one that was taken whole
-    std::size_t inside = 0, straddling = 0;
-    const auto test = [&](const Obb& bound) {
-        last = classify(view_.frustum, bound, options_.mode);
-        if (last == Verdict::outside) return tree::Visit::skip;
-        return last == Verdict::inside ? tree::Visit::take : tree::Visit::descend;
-    };
-    const auto found = [&](ItemId item) {
-        if (last == Verdict::inside)
-            visible_.ids_[inside++] = item;
-        else
-            visible_.straddling_[straddling++] = item;
-    };
-    const std::size_t tests = view_.layer_mask != 0 ? tree.visit(test, found) : 0;
-    if (kCountStatistics) visible_.statistics_.nodes_tested = tests;
-    finish(inside, straddling, tree.id_count());
-}
-
 // The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers; the parts are
 // then put together in order, so that the answer does not depend on who did what.
-void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
+void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
                          Executor& executor) {
     constexpr std::size_t kGrain = kTreeGroup, kParts = Tasks::kMost / kGrain;
     // What each part can hold at most; 16 more for what vectors write past the end.
     const auto most = [&](std::uint64_t entry) {
         const auto child = static_cast<std::uint32_t>(entry >> 32);
-        if (child & tree::kLeafBit) return std::size_t{tree::kWidth};
+        if (child & boxtree::kLeafBit) return std::size_t{boxtree::kWidth};
         const std::size_t leaves = tree.leaf_ranges()[child].count;
-        return tree::kWidth * (leaves > 0 ? leaves : std::max(tree.leaves().size(), tree.nodes().size()));
+        return boxtree::kWidth * (leaves > 0 ? leaves : std::max(tree.leaves().size(), tree.nodes().size()));
     };
     std::size_t starts[kParts + 1] = {};
     const std::size_t parts = (tasks.count + kGrain - 1) / kGrain;
@@ -149,10 +127,10 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
     grow(visible_.undecided_, starts[parts]);
     // Below an entry there are no more nodes than leaves, if the builder made it; otherwise room for all of them is
     // kept.
-    const auto work_size = [&](std::size_t p) { return (starts[p + 1] - starts[p]) / tree::kWidth * 2 + kPadding; };
-    grow(visible_.work_, kWorkLists * (starts[parts] / tree::kWidth * 2 + kPadding * parts));
+    const auto work_size = [&](std::size_t p) { return (starts[p + 1] - starts[p]) / boxtree::kWidth * 2 + kPadding; };
+    grow(visible_.work_, kWorkLists * (starts[parts] / boxtree::kWidth * 2 + kPadding * parts));
     static_assert(sizeof(SlotRun) == sizeof(visible_.runs_[0]));
-    grow(visible_.runs_, starts[parts] / tree::kWidth + parts);
+    grow(visible_.runs_, starts[parts] / boxtree::kWidth + parts);
     TreeKernelOutput outputs[kParts] = {};
     std::size_t kept[kParts] = {};
     executor.parallel_for(tasks.count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -161,9 +139,9 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
         output.inside = visible_.part_inside_.data() + starts[p];
         output.straddling = visible_.part_straddling_.data() + starts[p];
         output.undecided = visible_.undecided_.data() + starts[p];
-        output.work = visible_.work_.data() + kWorkLists * (starts[p] / tree::kWidth * 2 + kPadding * p);
+        output.work = visible_.work_.data() + kWorkLists * (starts[p] / boxtree::kWidth * 2 + kPadding * p);
         output.work_size = work_size(p);
-        output.runs = reinterpret_cast<SlotRun*>(visible_.runs_.data()) + starts[p] / tree::kWidth + p;
+        output.runs = reinterpret_cast<SlotRun*>(visible_.runs_.data()) + starts[p] / boxtree::kWidth + p;
         run_tree_kernel(input, tasks.entries + begin, end - begin, output);
         kept[p] = decide(tree, output);
     });
@@ -182,7 +160,7 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
     executor.parallel_for(parts, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t p = begin; p < end; ++p) {
             const TreeKernelOutput& part = outputs[p];
-            tree::ItemId* to = visible_.ids_.data() + whole_at[p];
+            boxtree::ItemId* to = visible_.ids_.data() + whole_at[p];
             for (std::size_t i = 0; i < part.run_count; ++i)
                 to = std::copy_n(tree.slot_items().data() + part.runs[i].first, part.runs[i].count, to);
             std::copy_n(part.inside, part.inside_count, visible_.ids_.data() + inside_at[p]);
@@ -194,12 +172,12 @@ void Query::run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input
 }
 
 // A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
-void Query::run_all(const tree::BoxTree& tree, Executor& executor) {
+void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
     std::size_t inside = 0, straddling = 0;
-    for (tree::LeafId l = 0; l < tree.leaves().size(); ++l)
+    for (boxtree::LeafId l = 0; l < tree.leaves().size(); ++l)
         for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane) {
             if (!(tree.leaves()[l].layers[lane] & view_.layer_mask)) continue;
-            const ItemId item = tree.slot_items()[l * tree::kWidth + lane];
+            const ItemId item = tree.slot_items()[l * boxtree::kWidth + lane];
             const Verdict verdict = classify(view_.frustum, tree.boxes()[item], options_.mode);
             if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
             if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
@@ -209,7 +187,7 @@ void Query::run_all(const tree::BoxTree& tree, Executor& executor) {
 
 // Replaces the undecided slots by the items that are visible after all, with kInside where that is so; the others are
 // improper.
-std::size_t Query::decide(const tree::BoxTree& tree, TreeKernelOutput& output) const {
+std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) const {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
         // The boxes lie in the order of their ids, far from each other: ask for them ahead.
@@ -242,7 +220,7 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.improper += output.improper + output.undecided_count - kept;
 }
 
-void Query::finish(const tree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
+void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
     if (moving_) add_moving(tree, inside, straddling, executor);
     finish(inside, straddling, tree.boxes().size());
 }

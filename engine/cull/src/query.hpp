@@ -16,25 +16,26 @@ class Query {
         : view_(view), visible_(visible), options_(options), moving_(moving) {}
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
-    void run(const tree::BoxTree& tree, Executor& executor);
-    void run(const tree::VisitTree& tree);
+    void run(const boxtree::BoxTree& tree, Executor& executor);
 
   private:
     void start(std::size_t items);
-    void run_all(const tree::BoxTree& tree, Executor& executor);
+    void run_all(const boxtree::BoxTree& tree, Executor& executor);
     struct Tasks {
-        static constexpr std::size_t kMost = std::size_t{tree::kWidth} * tree::kWidth;
+        static constexpr std::size_t kMost = std::size_t{boxtree::kWidth} * boxtree::kWidth;
         std::uint64_t entries[kMost];
         std::size_t count = 0;
 
         Tasks(const TreeKernelInput& input, bool many);
     };
-    void run_parallel(const tree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks, Executor& executor);
-    [[nodiscard]] std::size_t decide(const tree::BoxTree& tree, TreeKernelOutput& output) const;
+    void run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
+                      Executor& executor);
+    [[nodiscard]] std::size_t decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) const;
     void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
-    void add_moving(const tree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
-    void append_moving(const tree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to, std::size_t& count);
-    void finish(const tree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
+    void add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
+    void append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
+                       std::size_t& count);
+    void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     void sort(std::size_t inside, std::size_t straddling, std::size_t items);
 

@@ -33,7 +33,7 @@ class Walk {
     // Group after group of entries through the nodes; what lies inside as a whole is noted, and so are the leaves that
     // stay open. These follow when all nodes are done. The groups settle the order of the answer.
     HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
-        constexpr std::size_t kMaxGroups = tree::kWidth * tree::kWidth / kTreeGroup;
+        constexpr std::size_t kMaxGroups = boxtree::kWidth * boxtree::kWidth / kTreeGroup;
         std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
         for (std::size_t first = 0; first < entry_count; first += kTreeGroup, ++groups) {
             descend(entries + first, std::min(kTreeGroup, entry_count - first));
@@ -84,7 +84,7 @@ class Walk {
         for (std::size_t head = 0; head < nodes_.count; ++head) {
             if (head + kNodesAhead < nodes_.count) prefetch_node(nodes_.children[head + kNodesAhead]);
             const std::uint32_t planes = nodes_.planes[head];
-            const tree::Node& node = in_.nodes[nodes_.children[head]];
+            const boxtree::Node& node = in_.nodes[nodes_.children[head]];
             if (kCountStatistics) out_.nodes_tested += node.count;
             if (is_one(planes))
                 visit_crossed_once(node, planes);
@@ -100,18 +100,18 @@ class Walk {
         const auto planes = static_cast<std::uint32_t>(entry);
         if (planes & kWhole)
             whole_[whole_count_++] = child;
-        else if (child & tree::kLeafBit)
-            (is_one(planes) ? crossing_ : cornered_).append(child & ~tree::kLeafBit, planes);
+        else if (child & boxtree::kLeafBit)
+            (is_one(planes) ? crossing_ : cornered_).append(child & ~boxtree::kLeafBit, planes);
         else
             nodes_.append(child, planes);
     }
 
     // Below the first levels most nodes that cross a frustum cross one plane.
-    HWY_INLINE void visit_crossed_once(const tree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_crossed_once(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
         const BlockPlane plane = block_plane(*in_.view, i, node);
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du)) {
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
             const NodeSide side(NodeRows(node, l), in_.view->pair_planes[i], plane);
             const MF alive =
                 hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
@@ -119,16 +119,16 @@ class Walk {
         }
     }
 
-    HWY_INLINE void visit_crossed(const tree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_crossed(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
         const NodeTest test = test_node(*in_.view, node, planes);
-        for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(du))
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
             note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
     }
 
     // Where they go, children l on of a node that are not certainly outside; kOnce: none straddles several planes.
     template <bool kOnce>
-    HWY_INLINE void note(const tree::Node& node, std::size_t l, MF alive, VU straddled) {
+    HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled) {
         const DU du;
         const VU zero = hn::Zero(du), children = hn::Load(du, node.child + l);
         const auto lanes = hn::RebindMask(du, alive), straddles = hn::Ne(straddled, zero);
@@ -140,7 +140,7 @@ class Walk {
         hn::StoreU(hn::Compress(children, whole), du, whole_ + whole_count_);
         whole_count_ += hn::CountTrue(du, whole);
         const auto open = hn::AndNot(whole, lanes);
-        const VU leaves = hn::AndNot(hn::Set(du, tree::kLeafBit), children);
+        const VU leaves = hn::AndNot(hn::Set(du, boxtree::kLeafBit), children);
         auto of_leaves = open;
         if (!node.only_leaves) {
             const auto is_node = hn::Eq(leaves, children);
@@ -156,14 +156,14 @@ class Walk {
         cornered_.append(leaves, straddled, hn::AndNot(once, of_leaves));
     }
 
-    HWY_INLINE void prefetch_leaf(tree::LeafId leaf) const {
-        for (std::size_t at = 0; at < offsetof(tree::Leaf, layers); at += 64)
+    HWY_INLINE void prefetch_leaf(boxtree::LeafId leaf) const {
+        for (std::size_t at = 0; at < offsetof(boxtree::Leaf, layers); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
-        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * tree::kWidth);
+        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * boxtree::kWidth);
     }
 
-    HWY_INLINE void prefetch_node(tree::NodeId node) const {
-        for (std::size_t at = 0; at < offsetof(tree::Node, layers_any); at += 64)
+    HWY_INLINE void prefetch_node(boxtree::NodeId node) const {
+        for (std::size_t at = 0; at < offsetof(boxtree::Node, layers_any); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
     }
 
@@ -173,23 +173,23 @@ class Walk {
         const std::size_t before = out_.whole_count;
         for (std::size_t i = 0; i < whole_count_; ++i) {
             const std::uint32_t child = whole_[i];
-            if (child & tree::kLeafBit) {
-                note_leaf(child & ~tree::kLeafBit);
+            if (child & boxtree::kLeafBit) {
+                note_leaf(child & ~boxtree::kLeafBit);
                 continue;
             }
-            const tree::LeafRange range = in_.ranges[child];
-            const tree::Node& node = in_.nodes[child];
+            const boxtree::LeafRange range = in_.ranges[child];
+            const boxtree::Node& node = in_.nodes[child];
             if (range.count == 0)
                 for (std::uint32_t lane = 0; lane < node.count; ++lane) whole_[whole_count_++] = node.child[lane];
             else if (range.items > 0)
-                note_run(range.first * tree::kWidth, range.items);
+                note_run(range.first * boxtree::kWidth, range.items);
             else
                 for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) note_leaf(leaf);
         }
         if (kCountStatistics) out_.accepted_whole += out_.whole_count - before;
     }
 
-    HWY_INLINE void note_leaf(tree::LeafId leaf) { note_run(leaf * tree::kWidth, in_.leaf_counts[leaf]); }
+    HWY_INLINE void note_leaf(boxtree::LeafId leaf) { note_run(leaf * boxtree::kWidth, in_.leaf_counts[leaf]); }
 
     // Joined with the run before it if it follows that.
     HWY_INLINE void note_run(std::uint32_t first, std::uint32_t items) {
@@ -206,8 +206,8 @@ class Walk {
         const DU du;
         for (std::size_t r = 0; r < out_.run_count; ++r) {
             if (r + kRunsAhead < out_.run_count) hwy::Prefetch(in_.slot_items + runs_[r + kRunsAhead].first);
-            const tree::ItemId* from = in_.slot_items + runs_[r].first;
-            tree::ItemId* to = out_.inside + out_.inside_count;
+            const boxtree::ItemId* from = in_.slot_items + runs_[r].first;
+            boxtree::ItemId* to = out_.inside + out_.inside_count;
             for (std::size_t i = 0; i < runs_[r].count; i += hn::Lanes(du))
                 hn::StoreU(hn::Load(du, from + i), du, to + i);
             out_.inside_count += runs_[r].count;
@@ -222,14 +222,14 @@ class Walk {
         count += hn::CountTrue(du, bits);
     }
 
-    HWY_INLINE void emit(tree::LeafId id, std::size_t l, const BoxTest& test) {
+    HWY_INLINE void emit(boxtree::LeafId id, std::size_t l, const BoxTest& test) {
         const DU du;
-        const VU items = hn::Load(du, in_.slot_items + id * tree::kWidth + l);
+        const VU items = hn::Load(du, in_.slot_items + id * boxtree::kWidth + l);
         append(items, test.inside, out_.inside, out_.inside_count);
         append(items, test.straddling, out_.straddling, out_.straddling_count);
         if (kCountStatistics) out_.improper += hn::CountTrue(DF(), test.improper);
         if (HWY_UNLIKELY(!hn::AllFalse(DF(), test.undecided)))
-            append(hn::Iota(du, static_cast<std::uint32_t>(id * tree::kWidth + l)), test.undecided, out_.undecided,
+            append(hn::Iota(du, static_cast<std::uint32_t>(id * boxtree::kWidth + l)), test.undecided, out_.undecided,
                    out_.undecided_count);
     }
 
@@ -237,12 +237,12 @@ class Walk {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
             prefetch_leaf(crossing_.children[at + kLeavesAhead]);
-            const tree::LeafId id = crossing_.children[at];
-            const tree::Leaf& leaf = in_.leaves[id];
+            const boxtree::LeafId id = crossing_.children[at];
+            const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(crossing_.planes[at]);
             const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
-            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(DU())) {
+            for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
                 const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
                 emit(id, l, test_leaf(LeafRows(leaf, l), lanes, plane));
             }
@@ -253,8 +253,8 @@ class Walk {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
             prefetch_leaf(cornered_.children[at + kLeavesAhead]);
-            const tree::LeafId id = cornered_.children[at];
-            const tree::Leaf& leaf = in_.leaves[id];
+            const boxtree::LeafId id = cornered_.children[at];
+            const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
             LeafPlane planes[KernelView::kMaxPlanes];
             unsigned count = 0;
@@ -263,7 +263,7 @@ class Walk {
                 planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
             }
             // Nearly all have two: then there is no loop.
-            for (std::size_t l = 0; l < tree::kWidth; l += hn::Lanes(DU())) {
+            for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
                 const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
                 emit(id, l,
                      HWY_LIKELY(count == 2) ? test_leaf(leaf, l, lanes, planes, 2, in_.exact)
@@ -295,11 +295,11 @@ void RunTree(const TreeKernelInput& input, const std::uint64_t* entries, std::si
 std::size_t ExpandTree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
     const auto child = static_cast<std::uint32_t>(entry >> 32);
     const auto planes = static_cast<std::uint32_t>(entry);
-    if (child & tree::kLeafBit || planes & kWhole) {
+    if (child & boxtree::kLeafBit || planes & kWhole) {
         entries[0] = entry;
         return 1;
     }
-    const tree::Node& node = input.nodes[child];
+    const boxtree::Node& node = input.nodes[child];
     const NodeTest test = test_node(*input.view, node, planes);
     std::size_t count = 0;
     const std::uint32_t whole = seen(*input.view, node, test.alive & test.settled);

@@ -1,17 +1,17 @@
 // One view against a box tree, in vectors: what a filter can decide, and the list of what it cannot.
 #pragma once
-#include <crofton/tree/layout.hpp>
+#include <crofton/boxtree/layout.hpp>
 
 #include "kernel_view.hpp"
 
 namespace crofton::cull {
 
 struct TreeKernelInput {
-    const tree::Node* nodes;
-    const tree::Leaf* leaves;
-    const tree::LeafRange* ranges;
+    const boxtree::Node* nodes;
+    const boxtree::Leaf* leaves;
+    const boxtree::LeafRange* ranges;
     const std::uint8_t* leaf_counts;
-    const tree::ItemId* slot_items;
+    const boxtree::ItemId* slot_items;
     const KernelView* view;
     bool exact;  // boxes that straddle two planes or more may yet be outside: undecided
 };
@@ -26,8 +26,8 @@ struct SlotRun {
 // `whole_count` of them, come first in `inside`, or where there are `runs` stay in the tree's slots and are named
 // there.
 struct TreeKernelOutput {
-    tree::ItemId* inside;
-    tree::ItemId* straddling;
+    boxtree::ItemId* inside;
+    boxtree::ItemId* straddling;
     std::uint32_t* undecided;  // slots
     std::uint32_t* work;
     std::size_t work_size;

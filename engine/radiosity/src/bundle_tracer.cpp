@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 #include <crofton/core/assert.hpp>
-#include <crofton/measure/random_motion.hpp>
 #include <crofton/radiosity/bundle_tracer.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -113,8 +113,8 @@ bool is_before(const Hit& a, const Hit& b, float tie) {
 Bundle make_bundle(const Aabb& bounds, double cell_area, const std::array<double, 2>& u, std::uint64_t seed) {
     CROFTON_ASSERT(cell_area > 0.0, "a bundle's cells need an area");
     Bundle bundle;
-    bundle.direction = measure::direction(u);
-    const auto frame = measure::orthonormal_frame(bundle.direction);
+    bundle.direction = sampling::direction(u);
+    const auto frame = sampling::orthonormal_frame(bundle.direction);
     bundle.right = frame[0], bundle.up = frame[1];
     bundle.cell = std::sqrt(cell_area);
     bundle.seed = seed;
@@ -131,7 +131,7 @@ Bundle make_bundle(const Aabb& bounds, double cell_area, const std::array<double
     return bundle;
 }
 
-measure::Line Bundle::line(std::size_t cell_number) const {
+sampling::Line Bundle::line(std::size_t cell_number) const {
     const auto row = static_cast<std::uint32_t>(cell_number / columns);
     Vector<float> x(columns + 8), y(columns + 8);
     detail::jitter_row(short_seed(seed), row * columns, columns, row, x.data(), y.data());

@@ -30,11 +30,11 @@ struct Triangles {
 }  // namespace
 
 FactorRow factors_by_local_lines(const LineTracer& tracer, const Patches& patches, std::uint32_t i, std::uint64_t lines,
-                                 LocalDensity density, std::uint64_t seed, measure::Sequence sequence) {
+                                 LocalDensity density, std::uint64_t seed, sampling::Sequence sequence) {
     CROFTON_ASSERT(i < patches.count() && lines >= 1, "no such patch, or no lines");
     constexpr std::size_t kBatch = 1024;
     const Triangles triangles(patches, i);
-    const measure::UnitPoints points(seed, sequence);
+    const sampling::UnitPoints points(seed, sequence);
     FactorRow row;
     row.lines = lines;
     Vector<double> squares(patches.count(), 0.0);
@@ -99,7 +99,7 @@ Result<FactorMatrix> factors_by_global_lines(const LineTracer& tracer, const Pat
     for (std::uint64_t first = 0; first < blocks; first += kWave) {
         const std::size_t count = static_cast<std::size_t>(std::min(kWave, blocks - first));
         executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<measure::Line> lines;
+            Vector<sampling::Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
                 source.draw(first + b, lines);
                 tracer.all_hits(lines, hits[b]);

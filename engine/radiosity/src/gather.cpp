@@ -1,7 +1,7 @@
 // What arrives on every patch along one set of lines.
-#include <crofton/measure/random_motion.hpp>
 #include <crofton/radiosity/form_factors.hpp>
 #include <crofton/radiosity/solver.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <numeric>
 
 #include "local_lines.hpp"
@@ -51,7 +51,7 @@ void Solver::gather_bundles(const Gathering& what, Light& arrived, Executor& exe
     const double count = std::max(kLeastBundles, std::ceil(lines / lines_of_bundle()));
     const double cell_area = 0.25 * box_area_ * count / lines;
     const std::uint64_t bundles = static_cast<std::uint64_t>(count);
-    const measure::UnitPoints points(mixed(options_.seed, what.stream), options_.sequence);
+    const sampling::UnitPoints points(mixed(options_.seed, what.stream), options_.sequence);
     const std::size_t wave = 2 * std::size_t{executor.concurrency()};
     Vector<LineHits> hits(wave);
     Vector<Bundle> drawn(wave);
@@ -84,7 +84,7 @@ void Solver::gather_lines(const Gathering& what, Light& arrived, Executor& execu
     for (std::uint64_t first = 0; first < blocks; first += kWave) {
         const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(kWave, blocks - first));
         executor.parallel_for(now, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<measure::Line> lines;
+            Vector<sampling::Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
                 source.draw(runs_ * blocks + first + b, lines);
                 tracer_.all_hits(lines, hits[b]);
@@ -110,7 +110,7 @@ void Solver::cast_local(const Gathering& what, std::span<const std::uint32_t> pa
     const auto patch_of = [&](std::uint64_t ray) {
         return patches[static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), ray) - ends.begin())];
     };
-    const measure::UnitPoints points(mixed(mixed(options_.seed, stream), runs_));
+    const sampling::UnitPoints points(mixed(mixed(options_.seed, stream), runs_));
     trace_in_order(
         tracer_, count, executor,
         [&](std::uint64_t ray) {

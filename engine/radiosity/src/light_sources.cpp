@@ -21,15 +21,15 @@ double total(const glm::dvec3& v) {
 // Points of the unit cube for each patch: shifted lattice points that go on from run to run.
 class PatchPoints {
   public:
-    PatchPoints(std::uint64_t seed, measure::Sequence sequence) : seed_(seed), sequence_(sequence) {}
+    PatchPoints(std::uint64_t seed, sampling::Sequence sequence) : seed_(seed), sequence_(sequence) {}
 
     [[nodiscard]] std::array<double, 3> at(std::size_t patch, std::uint64_t index) const {
-        if (sequence_ == measure::Sequence::pseudo_random)
-            return measure::Random(mixed(seed_, patch), index).point<3>();
+        if (sequence_ == sampling::Sequence::pseudo_random)
+            return sampling::Random(mixed(seed_, patch), index).point<3>();
         // Powers of the root of x⁴ = x + 1: the additive recurrence of least discrepancy known for three dimensions.
         constexpr double kRoot = 1.2207440846057596;
         constexpr std::array<double, 3> kStep = {1.0 / kRoot, 1.0 / (kRoot * kRoot), 1.0 / (kRoot * kRoot * kRoot)};
-        std::array<double, 3> point = measure::Random(seed_, patch).point<3>();
+        std::array<double, 3> point = sampling::Random(seed_, patch).point<3>();
         for (std::size_t k = 0; k < 3; ++k) {
             point[k] += static_cast<double>(index) * kStep[k];
             point[k] -= std::floor(point[k]);
@@ -39,7 +39,7 @@ class PatchPoints {
 
   private:
     std::uint64_t seed_;
-    measure::Sequence sequence_;
+    sampling::Sequence sequence_;
 };
 
 }  // namespace
@@ -65,7 +65,7 @@ void Solver::shoot_lamps(Light& arrived, Executor& executor) {
         const auto found = std::upper_bound(sums.begin(), sums.end() - 1, u * sum);
         return lamps[static_cast<std::size_t>(found - sums.begin())];
     };
-    const measure::UnitPoints points(mixed(options_.seed, kLampStream), options_.sequence);
+    const sampling::UnitPoints points(mixed(options_.seed, kLampStream), options_.sequence);
     const std::uint64_t first = runs_ * options_.first_shot;
     const double each = sum / static_cast<double>(options_.first_shot);
     lines_traced_ += options_.first_shot;

@@ -7,7 +7,7 @@
 namespace crofton::radiosity {
 namespace {
 
-measure::Ball ball_around(const Aabb& box) {
+sampling::Ball ball_around(const Aabb& box) {
     return {box.center(), glm::length(box.half_extents())};
 }
 
@@ -26,7 +26,7 @@ const char* to_string(LineMethod method) {
     }
 }
 
-LineSource::LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed, measure::Sequence sequence)
+LineSource::LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed, sampling::Sequence sequence)
     : bounds_(bounds), ball_(ball_around(bounds)), method_(method), seed_(seed), points_(seed, sequence) {
     CROFTON_ASSERT(surface_area() > 0.0, "lines need a body of two dimensions at least");
 }
@@ -37,21 +37,21 @@ double LineSource::surface_area() const {
     return 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x);
 }
 
-void LineSource::draw(std::uint64_t block, Vector<measure::Line>& lines) const {
+void LineSource::draw(std::uint64_t block, Vector<sampling::Line>& lines) const {
     lines.clear();
     if (method_ == LineMethod::bundles) {
-        measure::Random random(seed_, block);
+        sampling::Random random(seed_, block);
         const double shadow = std::numbers::pi * ball_.radius * ball_.radius;
-        measure::append_line_bundle(ball_, shadow / static_cast<double>(kBlock), random, lines);
+        sampling::append_line_bundle(ball_, shadow / static_cast<double>(kBlock), random, lines);
         return;
     }
     for (std::uint64_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
         if (method_ == LineMethod::sphere_points)
-            lines.push_back(measure::line_through_two_sphere_points(ball_, points_.at<4>(i)));
+            lines.push_back(sampling::line_through_two_sphere_points(ball_, points_.at<4>(i)));
         else if (method_ == LineMethod::disc)
-            lines.push_back(measure::line_through_disc(ball_, points_.at<4>(i)));
+            lines.push_back(sampling::line_through_disc(ball_, points_.at<4>(i)));
         else
-            lines.push_back(measure::line_from_box(bounds_, points_.at<5>(i)));
+            lines.push_back(sampling::line_from_box(bounds_, points_.at<5>(i)));
     }
 }
 
@@ -62,7 +62,7 @@ VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineS
     };
     Vector<Counts> counts(static_cast<std::size_t>(blocks));
     executor.parallel_for(counts.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        Vector<measure::Line> lines;
+        Vector<sampling::Line> lines;
         LineHits hits;
         for (std::size_t b = begin; b < end; ++b) {
             source.draw(b, lines);

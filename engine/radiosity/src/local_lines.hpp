@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/measure/random_motion.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/radiosity/patches.hpp>
+#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::radiosity {
@@ -26,7 +26,7 @@ inline Ray local_ray(const Patches& patches, std::uint32_t triangle, double u, d
     const double root = std::sqrt(u);
     const glm::dvec3 point = t.a + root * (1.0 - v) * (t.b - t.a) + root * v * (t.c - t.a);
     const glm::dvec3 normal = glm::normalize(glm::cross(t.b - t.a, t.c - t.a)), side = glm::normalize(t.b - t.a);
-    const glm::dvec2 around = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) * measure::circle_point(turn);
+    const glm::dvec2 around = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) * sampling::circle_point(turn);
     Ray ray;
     ray.line.point = point;
     ray.line.direction = cosine * normal + around.x * side + around.y * glm::cross(normal, side);

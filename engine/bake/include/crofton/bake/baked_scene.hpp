@@ -2,8 +2,8 @@
 #pragma once
 #include <crofton/bake/container.hpp>
 #include <crofton/bake/mapped_file.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/scene/scene.hpp>
-#include <crofton/tree/box_tree.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -68,8 +68,8 @@ class BakedScene {
     [[nodiscard]] std::span<const InstanceRecord> instances() const { return instances_; }
     [[nodiscard]] std::span<const NodeRecord> nodes() const { return nodes_; }
     // Over the instances: item i is instance i; its boxes() and layer masks are theirs. Yours to change.
-    [[nodiscard]] tree::BoxTree& tree() { return *tree_; }
-    [[nodiscard]] const tree::BoxTree& tree() const { return *tree_; }
+    [[nodiscard]] boxtree::BoxTree& tree() { return *tree_; }
+    [[nodiscard]] const boxtree::BoxTree& tree() const { return *tree_; }
 
   private:
     [[nodiscard]] Result<void> check_meshes() const;
@@ -83,7 +83,7 @@ class BakedScene {
     std::span<const std::uint32_t> indices_, rings_;
     std::span<const glm::dvec2> points_;
     std::span<const char> names_;
-    std::optional<tree::BoxTree> tree_;
+    std::optional<boxtree::BoxTree> tree_;
 };
 
 }  // namespace crofton::bake

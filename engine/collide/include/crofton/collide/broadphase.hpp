@@ -1,10 +1,10 @@
 // Which of many moving boxes meet?
 #pragma once
 #include <crofton/collide/obb_batch.hpp>
-#include <crofton/collide/pair.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/id_pair.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <cstdint>
 #include <memory>
@@ -53,10 +53,10 @@ class Broadphase {
     Result<void> update(std::span<const Obb> boxes, std::span<const Filter> filters = {},
                         Executor& executor = serial_executor());
 
-    [[nodiscard]] std::span<const Pair> pairs() const;  // all, in order
-    [[nodiscard]] std::span<const Pair> began() const;  // in pairs() now, not after the update before
-    [[nodiscard]] std::span<const Pair> stayed() const;
-    [[nodiscard]] std::span<const Pair> ended() const;
+    [[nodiscard]] std::span<const IdPair> pairs() const;  // all, in order
+    [[nodiscard]] std::span<const IdPair> began() const;  // in pairs() now, not after the update before
+    [[nodiscard]] std::span<const IdPair> stayed() const;
+    [[nodiscard]] std::span<const IdPair> ended() const;
     [[nodiscard]] std::span<const std::uint32_t> rejected() const;  // ascending
     [[nodiscard]] const BroadphaseStatistics& statistics() const;
 

@@ -1,8 +1,8 @@
 // Many pairs of boxes at once: the exact answers of intersects(Obb, Obb), sixteen pairs to a step.
 #pragma once
 #include <crofton/collide/box_block.hpp>
-#include <crofton/collide/pair.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/id_pair.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <cstdint>
 #include <span>
@@ -44,6 +44,6 @@ BatchStatistics intersects(const PackedBoxes& a, const PackedBoxes& b, std::span
 BatchStatistics intersects(std::span<const Obb> a, std::span<const Obb> b, std::span<std::uint8_t> hits);
 
 // hits[i] = intersects(boxes[pairs[i].first], boxes[pairs[i].second]). Requires hits.size() == pairs.size().
-BatchStatistics intersects(std::span<const Obb> boxes, std::span<const Pair> pairs, std::span<std::uint8_t> hits);
+BatchStatistics intersects(std::span<const Obb> boxes, std::span<const IdPair> pairs, std::span<std::uint8_t> hits);
 
 }  // namespace crofton::collide

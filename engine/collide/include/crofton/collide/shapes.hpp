@@ -1,9 +1,9 @@
 // Simple bodies that boxes meet: spheres, capsules, triangles, half-spaces.
 #pragma once
-#include <crofton/collide/triangle_triangle.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/geometry/plane.hpp>
 #include <crofton/geometry/sphere.hpp>
+#include <crofton/mesh/triangle_triangle.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton::collide {

@@ -1,10 +1,10 @@
 // Which of many boxes does a body or a ray meet? Asked of the tree that culling uses.
 #pragma once
-#include <crofton/collide/ray.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/shapes.hpp>
 #include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/tree/box_tree.hpp>
+#include <crofton/mesh/ray.hpp>
 #include <cstdint>
 #include <optional>
 
@@ -15,25 +15,26 @@ namespace crofton::collide {
 
 // Replaces `items` by those whose boxes meet the body, ascending. Right as intersects(box, body) is: exactly for boxes.
 // A body that is not finite or fails validate(Obb) meets nothing.
-void overlapping(const tree::BoxTree& tree, const Obb& body, Vector<tree::ItemId>& items, std::uint32_t layers = ~0u);
-void overlapping(const tree::BoxTree& tree, const Sphere& body, Vector<tree::ItemId>& items,
+void overlapping(const boxtree::BoxTree& tree, const Obb& body, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
-void overlapping(const tree::BoxTree& tree, const Capsule& body, Vector<tree::ItemId>& items,
+void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtree::ItemId>& items,
+                 std::uint32_t layers = ~0u);
+void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
 
 // Told of an item whose box the ray enters at t; answers how far along the ray boxes are still of interest: the t of
 // the nearest hit so far, for instance, or a negative number to stop.
-using RayVisitor = FunctionRef<double(tree::ItemId item, double t)>;
+using RayVisitor = FunctionRef<double(boxtree::ItemId item, double t)>;
 
 // Visits items whose boxes the ray meets (t as raycast(ray, box) gives it) no farther than the visitor's last answer;
 // before the first, than max_t. Near ones come first as far as the tree's nodes tell, and always in the same order.
-void visit_along(const Ray& ray, const tree::BoxTree& tree, RayVisitor visit, std::uint32_t layers = ~0u);
+void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit, std::uint32_t layers = ~0u);
 
 struct BoxHit {
     double t = 0.0;
-    tree::ItemId item = 0;
+    boxtree::ItemId item = 0;
 };
 // The box that the ray enters first; of boxes with equal t that of the lowest item.
-[[nodiscard]] std::optional<BoxHit> raycast(const Ray& ray, const tree::BoxTree& tree, std::uint32_t layers = ~0u);
+[[nodiscard]] std::optional<BoxHit> raycast(const Ray& ray, const boxtree::BoxTree& tree, std::uint32_t layers = ~0u);
 
 }  // namespace crofton::collide

@@ -1,7 +1,7 @@
 // A scene's collisions, frame after frame: instances in, contacts out.
 #pragma once
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
 #include <crofton/scene/scene.hpp>
 #include <memory>
 #include <span>
@@ -17,14 +17,14 @@ struct WorldOptions {
 
 // Two instances whose meshes meet, or whose boxes do where meshes are not asked for.
 struct InstancePair {
-    Pair instances;
-    Containment inside = Containment::none;              // of first (a) and second (b)
+    IdPair instances;
+    mesh::Containment inside = mesh::Containment::none;  // of first (a) and second (b)
     std::uint32_t first_contact = 0, contact_count = 0;  // in contacts()
 };
 
 struct WorldStatistics {
     BroadphaseStatistics boxes;  // by group of axes, early outs
-    MeshStatistics meshes;
+    mesh::MeshStatistics meshes;
     std::uint64_t mesh_pairs_tested = 0;
     std::uint64_t mesh_pairs_hit = 0;
     std::uint32_t trees_built = 0;  // in this update
@@ -45,11 +45,11 @@ class World {
     Result<void> update(const scene::Scene& scene, std::span<const Filter> filters = {},
                         Executor& executor = serial_executor());
 
-    [[nodiscard]] std::span<const InstancePair> pairs() const;    // ordered by instances
-    [[nodiscard]] std::span<const MeshContact> contacts() const;  // in the world's frame
-    [[nodiscard]] std::span<const Pair> began() const;            // pairs of instances, against the update before
-    [[nodiscard]] std::span<const Pair> stayed() const;
-    [[nodiscard]] std::span<const Pair> ended() const;
+    [[nodiscard]] std::span<const InstancePair> pairs() const;          // ordered by instances
+    [[nodiscard]] std::span<const mesh::MeshContact> contacts() const;  // in the world's frame
+    [[nodiscard]] std::span<const IdPair> began() const;                // pairs of instances, against the update before
+    [[nodiscard]] std::span<const IdPair> stayed() const;
+    [[nodiscard]] std::span<const IdPair> ended() const;
     [[nodiscard]] std::span<const std::uint32_t> rejected() const;  // instances, ascending
     [[nodiscard]] const WorldStatistics& statistics() const;
 

@@ -1,18 +1,17 @@
 // Which items does a view see? From a list of boxes or from a tree of them.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/statistics.hpp>
 #include <crofton/cull/visible_set.hpp>
 #include <crofton/geometry/frustum.hpp>
-#include <crofton/tree/box_tree.hpp>
-#include <crofton/tree/visit_tree.hpp>
 #include <cstdint>
 #include <span>
 
 namespace crofton::cull {
 
-using tree::ItemId;
+using boxtree::ItemId;
 
 // Sees the items whose layer mask shares a bit with its own.
 struct View {
@@ -34,15 +33,12 @@ struct Options {
 // Finds the items that `view` sees and whose box is not outside; `visible` is overwritten, and once it has grown to the
 // largest answer nothing is allocated. Same answer, bit for bit, from tree and list, with any executor and instruction
 // set.
-void cull(const tree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options = {},
-          Executor& executor = serial_executor());
-
-// The same from a binary tree, whose inner bounds may be oriented; its items are in all layers.
-void cull(const tree::VisitTree& tree, const View& view, VisibleSet& visible, const Options& options = {});
+void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options = {},
+                  Executor& executor = serial_executor());
 
 // Item i is boxes[i] with layer mask layer_masks[i], or all layers if that span is empty. Boxes that are not finite are
 // straddling: reported, never lost.
-void cull(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view, VisibleSet& visible,
-          const Options& options = {}, Executor& executor = serial_executor());
+void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view,
+                  VisibleSet& visible, const Options& options = {}, Executor& executor = serial_executor());
 
 }  // namespace crofton::cull

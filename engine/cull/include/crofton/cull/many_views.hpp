@@ -33,8 +33,9 @@ class ManyVisible {
     std::size_t size_ = 0;
 };
 
-// For each view the items that cull() finds for it alone. Requires at most 32 views. Allocates nothing once `visible`
-// has been used for as many views of a tree of this size.
-void cull(const tree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, Mode mode = Mode::exact);
+// For each view the items that find_visible() finds for it alone. Requires at most 32 views. Allocates nothing once
+// `visible` has been used for as many views of a tree of this size.
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
+                  Mode mode = Mode::exact);
 
 }  // namespace crofton::cull

@@ -19,7 +19,7 @@ class MovingBoxes {
     // are not copied: they must stay as they are until the next update. It reads each box once, whatever has changed.
     // Errors leave the list as it was: as many boxes as items are needed; an item that has not been lifted; a box that
     // fails validate(Obb), named by its item. Where it was overwritten in place, put it right before the next query.
-    [[nodiscard]] Result<void> update(const tree::BoxTree& tree, std::span<const ItemId> items,
+    [[nodiscard]] Result<void> update(const boxtree::BoxTree& tree, std::span<const ItemId> items,
                                       std::span<const Obb> boxes, Executor& executor = serial_executor());
 
     [[nodiscard]] std::span<const ItemId> items() const { return items_; }
@@ -34,13 +34,14 @@ class MovingBoxes {
     unsigned now_ = 0;
 };
 
-// As cull() with the tree alone, in every respect: what rests and what moves in one answer. In Order::tree the items
-// that move follow those that rest, inside and straddling apart. Requires the tree that `moving` was updated with.
-void cull(const tree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
-          const Options& options = {}, Executor& executor = serial_executor());
+// As find_visible() with the tree alone, in every respect: what rests and what moves in one answer. In Order::tree the
+// items that move follow those that rest, inside and straddling apart. Requires the tree that `moving` was updated
+// with.
+void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
+                  const Options& options = {}, Executor& executor = serial_executor());
 
 // Up to 32 views in one pass; the items that move come last.
-void cull(const tree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views, ManyVisible& visible,
-          Mode mode = Mode::exact);
+void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
+                  ManyVisible& visible, Mode mode = Mode::exact);
 
 }  // namespace crofton::cull

@@ -1,10 +1,10 @@
 // The answer to a query, in buffers that are kept from frame to frame.
 #pragma once
+#include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/statistics.hpp>
 #include <crofton/cull/verdict_bits.hpp>
-#include <crofton/tree/layout.hpp>
 #include <cstdint>
 #include <span>
 
@@ -14,7 +14,7 @@ class VisibleSet {
   public:
     // The items seen, each once: in Order::ascending by id; in Order::tree in an order that depends on tree and view
     // alone: those inside first, then those straddling, each part by and large along the tree.
-    [[nodiscard]] std::span<const tree::ItemId> ids() const { return std::span(ids_).first(size_); }
+    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_; }
     // In Order::ascending: verdicts()[i], straddling or inside, is that of ids()[i]. In Order::tree inside_count() says
@@ -26,9 +26,9 @@ class VisibleSet {
 
   private:
     friend class Query;
-    Vector<tree::ItemId> ids_;  // as long as its largest use so far
-    Vector<tree::ItemId> straddling_;
-    Vector<tree::ItemId> part_inside_, part_straddling_;
+    Vector<boxtree::ItemId> ids_;  // as long as its largest use so far
+    Vector<boxtree::ItemId> straddling_;
+    Vector<boxtree::ItemId> part_inside_, part_straddling_;
     Vector<std::uint32_t> undecided_;
     Vector<Verdict> verdicts_;
     Vector<std::uint64_t> bits_;

@@ -27,7 +27,7 @@ struct FactorRow {
 // patches.count(), lines ≥ 1.
 [[nodiscard]] FactorRow factors_by_local_lines(const LineTracer& tracer, const Patches& patches, std::uint32_t i,
                                                std::uint64_t lines, LocalDensity density, std::uint64_t seed,
-                                               measure::Sequence sequence = measure::Sequence::pseudo_random);
+                                               sampling::Sequence sequence = sampling::Sequence::pseudo_random);
 
 // All rows at once from global lines. Every crossing of a patch's front with a line starts one ray there, whatever the
 // patch's shape: crossings are counted, not lines, so non-planar patches are right too (the paper's section 6.1).

@@ -2,8 +2,8 @@
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/measure/global_lines.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/sampling/global_lines.hpp>
 #include <cstdint>
 
 namespace crofton::radiosity {
@@ -23,10 +23,10 @@ class LineSource {
 
     // Requires bounds of at least two positive extents.
     LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed,
-               measure::Sequence sequence = measure::Sequence::pseudo_random);
+               sampling::Sequence sequence = sampling::Sequence::pseudo_random);
 
     // Replaces `lines` with block number `block`: the same lines whenever and wherever it is drawn.
-    void draw(std::uint64_t block, Vector<measure::Line>& lines) const;
+    void draw(std::uint64_t block, Vector<sampling::Line>& lines) const;
 
     // Of the body that the lines fill uniformly. N lines cross a surface of area S inside it 2·N·S/surface_area() times
     // on average.
@@ -35,10 +35,10 @@ class LineSource {
 
   private:
     Aabb bounds_;
-    measure::Ball ball_;
+    sampling::Ball ball_;
     LineMethod method_;
     std::uint64_t seed_;
-    measure::UnitPoints points_;
+    sampling::UnitPoints points_;
 };
 
 // What uniform lines see of a scene. The mean number of crossings is 2·S/F for a surface S in a convex body of surface

@@ -4,7 +4,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/aabb.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
-#include <crofton/measure/global_lines.hpp>
+#include <crofton/sampling/global_lines.hpp>
 #include <cstdint>
 #include <span>
 
@@ -29,7 +29,7 @@ struct LineHits {
 };
 
 struct Ray {
-    measure::Line line;                  // followed forward from its point
+    sampling::Line line;                 // followed forward from its point
     std::uint32_t skip = Hit::kNothing;  // the triangle it starts on
 };
 
@@ -47,7 +47,7 @@ class LineTracer {
     LineTracer& operator=(LineTracer&&) noexcept;
 
     // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe.
-    void all_hits(std::span<const measure::Line> lines, LineHits& result) const;
+    void all_hits(std::span<const sampling::Line> lines, LineHits& result) const;
     // The first crossing of each ray beyond that distance, triangle = kNothing where there is none. Same sizes.
     void first_hits(std::span<const Ray> rays, std::span<Hit> result) const;
 

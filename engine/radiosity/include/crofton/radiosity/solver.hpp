@@ -29,7 +29,7 @@ struct SolverOptions {
     std::uint64_t first_shot = 0;      // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
     std::optional<LineMethod> method;  // absent: bundles
     Transport transport = Transport::global;
-    measure::Sequence sequence = measure::Sequence::quasi_random;
+    sampling::Sequence sequence = sampling::Sequence::quasi_random;
     std::uint64_t seed = 1;
     double cutoff = 1e-3;  // a run ends when what still travels is below this share of all light
     std::uint32_t most_bounces = 200;

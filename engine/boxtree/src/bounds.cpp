@@ -1,0 +1,233 @@
+#include "bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crofton::boxtree {
+namespace {
+
+constexpr double kMost = 32767.0;
+constexpr int kLeastExponent = -100;  // units stay normal numbers, and so do their products
+
+// The nearest integer for |value| < 2^51: adding 1.5 · 2^52 leaves no fraction.
+double nearest(double value) {
+    return (value + 0x1.8p52) - 0x1.8p52;
+}
+
+// The least power of two that is at least value / 2^bits, in float.
+float unit_for(double value, int bits) {
+    int exponent = 0;
+    std::frexp(value, &exponent);  // value < 2^exponent
+    return std::ldexp(1.0f, std::max(exponent - bits, kLeastExponent));
+}
+
+bool is_unit(float unit) {
+    int exponent = 0;
+    return std::frexp(unit, &exponent) == 0.5f && exponent - 1 >= kLeastExponent && exponent < 120;
+}
+
+// A position_unit in edge_units, as a power of two.
+int edge_shift_of(const Leaf& leaf) {
+    return std::min(31, std::ilogb(leaf.position_unit) - std::ilogb(leaf.edge_unit));
+}
+
+}  // namespace
+
+void clear(Node& node) {
+    node = {};
+    node.parent = kNone;
+    for (unsigned lane = 0; lane < kWidth; ++lane) clear_lane(node, lane);
+}
+
+void clear(Leaf& leaf) {
+    leaf = {};
+    leaf.parent = kNone;
+    for (unsigned lane = 0; lane < kWidth; ++lane) clear_lane(leaf, lane);
+}
+
+void clear_lane(Leaf& leaf, unsigned lane) {
+    leaf.xy[lane] = leaf.z_edge2_z[lane] = leaf.edge01_z[lane] = 0;
+    for (auto& row : leaf.edge_xy) row[lane] = 0;
+    leaf.layers[lane] = 0;
+}
+
+void clear_lane(Node& node, unsigned lane) {
+    (void)write_lane(node, lane, Aabb{});
+    node.child[lane] = kNone;
+    node.layers_any[lane] = node.layers_all[lane] = 0;
+}
+
+double longest_edge(const Obb& box) {
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, double{box.half_extents[k]});
+    return longest * (1.0 + kMaxAxisDeviation);
+}
+
+void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
+    double farthest = 0.0;
+    for (int j = 0; j < 3; ++j) {
+        leaf.origin[j] = centers.is_empty() ? 0.0 : centers.center()[j];
+        if (!centers.is_empty()) farthest = std::max(farthest, centers.half_extents()[j]);
+    }
+    leaf.edge_unit = unit_for(longest * (32768.0 / 32766.0), 15);
+    leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may stray as far again
+    leaf.per_quantum = 0x1p14f / leaf.position_unit;
+    leaf.edge_shift = edge_shift_of(leaf);
+    leaf.reach = 0.0f;
+    leaf.rounding = rounding_of(leaf);
+}
+
+bool is_frame(const Leaf& leaf) {
+    return is_unit(leaf.position_unit) && is_unit(leaf.edge_unit) && leaf.edge_unit <= leaf.position_unit &&
+           leaf.per_quantum == 0x1p14f / leaf.position_unit && leaf.edge_shift == edge_shift_of(leaf) &&
+           leaf.rounding == rounding_of(leaf);
+}
+
+bool write_lane(Leaf& leaf, unsigned lane, const Obb& box) {
+    // Scaling by a power of two is exact, and so is a product of two floats in double.
+    const double per_position = 1.0 / double{leaf.position_unit}, per_edge = 1.0 / double{leaf.edge_unit};
+    double position[3], edge[9], reach = 0.0;
+    bool fits = true;
+    for (int j = 0; j < 3; ++j) {
+        position[j] = nearest((box.center[j] - leaf.origin[j]) * per_position);
+        fits = fits && std::fabs(position[j]) <= kMost;
+        reach += std::fabs(position[j]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double half = double{box.half_extents[k]} * per_edge;
+        for (int j = 0; j < 3; ++j) {
+            edge[3 * k + j] = nearest(double{box.axes[k][j]} * half);
+            fits = fits && std::fabs(edge[3 * k + j]) <= kMost;
+        }
+    }
+    if (!fits) return false;
+    const auto pair = [](double lower, double upper) {
+        return pair_of(static_cast<int>(lower), static_cast<int>(upper));
+    };
+    leaf.xy[lane] = pair(position[0], position[1]);
+    leaf.z_edge2_z[lane] = pair(position[2], edge[8]);
+    leaf.edge01_z[lane] = pair(edge[2], edge[5]);
+    for (int k = 0; k < 3; ++k) leaf.edge_xy[k][lane] = pair(edge[3 * k], edge[3 * k + 1]);
+    leaf.reach = std::max(leaf.reach, static_cast<float>(reach) * leaf.position_unit);  // exact: reach < 2^17
+    leaf.rounding = rounding_of(leaf);
+    return true;
+}
+
+void write_layers(Leaf& leaf, unsigned lane, std::uint32_t layers) {
+    leaf.layers[lane] = layers;
+    leaf.layers_every = ~std::uint32_t{0};
+    for (unsigned i = 0; i < leaf.count; ++i) leaf.layers_every &= leaf.layers[i];
+}
+
+void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count) {
+    std::uint32_t some = 0, every = ~std::uint32_t{0};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        some |= any[i];
+        every &= all[i];
+    }
+    node.layers_any[lane] = some;
+    node.layers_all[lane] = every;
+}
+
+void fit_frame(Node& node, const Aabb& whole) {
+    double farthest = 0.0;
+    for (int j = 0; j < 3; ++j) {
+        node.origin[j] = whole.is_empty() ? 0.0 : whole.center()[j];
+        if (!whole.is_empty()) farthest = std::max(farthest, whole.half_extents()[j]);
+    }
+    node.unit = unit_for(farthest * (1.0 + 0x1p-10), 14);
+    node.per_quantum = 0x1p14f / node.unit;
+    node.reach = 0.0f;
+    node.rounding = rounding_of(node);
+}
+
+bool is_frame(const Node& node) {
+    return is_unit(node.unit) && node.per_quantum == 0x1p14f / node.unit && node.rounding == rounding_of(node);
+}
+
+bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
+    int middle[3] = {}, half[3] = {-32767, -32767, -32767}, reach = 0;
+    if (!bounds.is_empty()) {
+        const double per_unit = 1.0 / double{node.unit};
+        for (int j = 0; j < 3; ++j) {
+            const double from = (bounds.min[j] - node.origin[j]) * per_unit,
+                         to = (bounds.max[j] - node.origin[j]) * per_unit;
+            // Half a unit outward, then to the nearest; the 0.01 is for the roundings, 2^-38 units at most.
+            const double low = nearest(from - 0.51), high = nearest(to + 0.51);
+            if (!(std::fabs(low) < kMost && std::fabs(high) < kMost)) return false;
+            const int first = static_cast<int>(low), last = static_cast<int>(high);
+            middle[j] = (first + last) / 2;
+            half[j] = std::max(last - middle[j], middle[j] - first);
+            reach += std::abs(middle[j]) + half[j];
+        }
+    }
+    node.middle_xy[lane] = pair_of(middle[0], middle[1]);
+    node.middle_half_z[lane] = pair_of(middle[2], half[2]);
+    node.half_xy[lane] = pair_of(half[0], half[1]);
+    node.reach = std::max(node.reach, static_cast<float>(reach) * node.unit);  // exact: reach < 2^17
+    node.rounding = rounding_of(node);
+    return true;
+}
+
+namespace {
+
+// Relative to the origin, exact numbers; grown by the rounding of the sums.
+Aabb around(const double* origin, const double (&low)[3], const double (&high)[3]) {
+    Aabb result;
+    for (int j = 0; j < 3; ++j) {
+        const double slack = (std::fabs(origin[j]) + std::fabs(low[j]) + std::fabs(high[j])) * 0x1p-52;
+        result.min[j] = origin[j] + low[j] - slack;
+        result.max[j] = origin[j] + high[j] + slack;
+    }
+    return result;
+}
+
+}  // namespace
+
+Aabb bounds_of_lane(const Node& node, unsigned lane) {
+    if (half_of(node, lane, 0) < 0) return {};
+    double low[3], high[3];
+    for (unsigned j = 0; j < 3; ++j) {
+        low[j] = double{node.unit} * low_of(node, lane, j);
+        high[j] = double{node.unit} * high_of(node, lane, j);
+    }
+    return around(node.origin, low, high);
+}
+
+Aabb bounds_of(const Node& node) {
+    double low[3], high[3];
+    for (unsigned j = 0; j < 3; ++j) {
+        // Empty lanes do not count: theirs are the largest low and the least high.
+        int least = 32767, most = -32767;
+        for (unsigned lane = 0; lane < kWidth; ++lane) {
+            least = std::min(least, low_of(node, lane, j));
+            most = std::max(most, high_of(node, lane, j));
+        }
+        if (least > most) return {};
+        low[j] = double{node.unit} * least;
+        high[j] = double{node.unit} * most;
+    }
+    return around(node.origin, low, high);
+}
+
+Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent) {
+    if (leaf.count == 0) return {};
+    // Positions are within half a unit of the truth (and the difference's rounding, 2^-38 units), and so is each of the
+    // three edges' components.
+    const double slack = 0.51 * double{leaf.position_unit} + 1.51 * double{leaf.edge_unit};
+    double low[3], high[3];
+    for (int j = 0; j < 3; ++j) {
+        low[j] = double{extent.low[j]} - std::fabs(double{extent.low[j]}) * 0x1p-23 - slack;
+        high[j] = double{extent.high[j]} + std::fabs(double{extent.high[j]}) * 0x1p-23 + slack;
+    }
+    return around(leaf.origin, low, high);
+}
+
+Aabb bounds_of(const Leaf& leaf) {
+    const LeafId first = 0;
+    LeafExtent extent;
+    leaf_extents(&leaf, std::span(&first, 1), &extent);
+    return bounds_of(leaf, extent);
+}
+
+}  // namespace crofton::boxtree

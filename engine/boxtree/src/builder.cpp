@@ -1,0 +1,312 @@
+#include "builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
+
+namespace crofton::boxtree {
+namespace {
+
+constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
+// Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
+constexpr std::size_t kSmallCrowd = 32768;
+// A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis
+// follow.
+constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
+constexpr double kCells = 1u << 20;
+constexpr std::size_t kCrowd = 256;  // more in one cell are sorted by smaller ones
+
+constexpr ItemId item_of(std::uint64_t key) {
+    return static_cast<ItemId>(key & ((1u << kItemBits) - 1));
+}
+
+// Spreads 10 bits to every third.
+std::uint32_t spread(std::uint32_t v) {
+    v = (v | v << 16) & 0x030000ffu;
+    v = (v | v << 8) & 0x0300f00fu;
+    v = (v | v << 4) & 0x030c30c3u;
+    return (v | v << 2) & 0x09249249u;
+}
+
+std::uint64_t z_order(const std::array<std::uint32_t, 3>& cell, unsigned shift) {
+    std::uint32_t code = 0;
+    for (unsigned j = 0; j < 3; ++j) code |= spread(cell[j] >> shift & ((1u << kFineBits) - 1)) << j;
+    return code;
+}
+
+}  // namespace
+
+Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion)
+    : cost_(criterion), middle_(scene.is_empty() ? glm::dvec3(0.0) : scene.center()) {
+    if (!scene.is_empty())
+        for (int j = 0; j < 3; ++j) half_size_ = std::max(half_size_, scene.half_extents()[j]);
+    // One scale for all axes, so that cells are cubes.
+    if (half_size_ > 1e-30) cells_per_unit_ = kCells / (2.0 * half_size_);
+    cell_ = static_cast<float>(2.0 * half_size_ / cube_root(static_cast<double>(std::max<std::size_t>(items, 1))));
+    keys_.reserve(items);
+    keys_next_.reserve(items);
+}
+
+std::array<std::uint32_t, 3> Builder::cell_of(const glm::dvec3& center) const {
+    std::array<std::uint32_t, 3> cell;
+    for (int j = 0; j < 3; ++j) {
+        const double position = (center[j] - middle_[j] + half_size_) * cells_per_unit_;
+        cell[static_cast<std::size_t>(j)] = static_cast<std::uint32_t>(std::clamp(position, 0.0, kCells - 1.0));
+    }
+    return cell;
+}
+
+// Large boxes first, by powers of two of their size in cells of the mean spacing: beside small ones they would blow up
+// bounds. Then a Z-order curve through the centres.
+void Builder::add(ItemId id, const Obb& box) {
+    float reach = 0.0f;
+    for (int j = 0; j < 3; ++j) {
+        float sum = 0.0f;
+        for (int k = 0; k < 3; ++k) sum += std::fabs(box.axes[k][j]) * box.half_extents[k];
+        reach = std::max(reach, sum);
+    }
+    std::uint64_t size_class = 0;
+    for (float limit = 4.0f * cell_; reach > limit && size_class < 15; limit *= 2.0f) ++size_class;
+    const std::uint64_t key =
+        ((15 - size_class) << 3 * kFineBits | z_order(cell_of(box.center), kFineBits)) << kItemBits | id;
+    for (unsigned pass = 0; pass < kPasses; ++pass)
+        ++histograms_[pass][key >> (kItemBits + pass * kDigitBits) & (histograms_[pass].size() - 1)];
+    keys_.push_back(key);
+    keys_next_.push_back(0);
+}
+
+bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
+    if (!prepare(budget, boxes, movers)) return false;
+    while (next_ < subtrees_.size()) {
+        if (subtrees_[next_].is_leaf()) {
+            build(next_++, subtree_builder_, boxes);
+            continue;
+        }
+        if (!std::exchange(building_, true)) subtree_builder_.start(subtrees_[next_], boxes, middle_, result_);
+        if (!subtree_builder_.step(budget, cost_, result_)) return false;
+        building_ = false;
+        ++next_;
+    }
+    return true;
+}
+
+void Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes) {
+    with.start(subtrees_[subtree], boxes, middle_, result_);
+    std::size_t budget = ~std::size_t{0};
+    (void)with.step(budget, cost_, result_);
+}
+
+bool Builder::prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
+    if (phase_ == Phase::sort && pass_ == 0 && next_ == 0 && keys_.size() <= kSmallCrowd) place_all();
+    while (phase_ != Phase::ready && budget > 0) budget -= std::min(budget, prepare_on(budget, boxes, movers));
+    return phase_ == Phase::ready;
+}
+
+std::size_t Builder::prepare_on(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
+    switch (phase_) {
+        case Phase::sort:
+            return sort_pass(budget);
+        case Phase::crowding:
+            return find_crowding(budget, boxes);
+        case Phase::gather:
+            return gather_items(budget, boxes, movers);
+        case Phase::append:
+            return append_moving(budget);
+        case Phase::label:
+            return label_items(budget);
+        default:
+            return bound_clusters(budget, boxes);
+    }
+}
+
+// A radix sort, the least significant digit first.
+std::size_t Builder::sort_pass(std::size_t budget) {
+    auto& places = histograms_[pass_];
+    if (next_ == 0) {
+        std::uint32_t sum = 0;
+        for (std::uint32_t& count : places) sum += std::exchange(count, sum);
+    }
+    const unsigned shift = kItemBits + pass_ * kDigitBits;
+    const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
+    for (; next_ < end; ++next_) keys_next_[places[keys_[next_] >> shift & (places.size() - 1)]++] = keys_[next_];
+    if (next_ < keys_.size()) return spent;
+    next_ = 0;
+    keys_.swap(keys_next_);
+    if (++pass_ == kPasses) phase_ = Phase::crowding;
+    return spent;
+}
+
+// Cells that hold many items are sorted by smaller cells. Where those do not help either (a far outlier stretches
+// them), all is split from the top after all.
+std::size_t Builder::find_crowding(std::size_t budget, std::span<const Obb> boxes) {
+    const std::size_t first = next_;
+    while (next_ < keys_.size() && (next_ - first) / 4 < budget) {
+        const std::size_t begin = next_++;
+        while (next_ < keys_.size() && keys_[next_] >> kItemBits == keys_[begin] >> kItemBits) ++next_;
+        if (next_ - begin > kCrowd) sort_crowd(std::span(keys_).subspan(begin, next_ - begin), boxes);
+    }
+    const std::size_t spent = (next_ - first + 3) / 4;
+    if (next_ < keys_.size()) return spent;
+    next_ = 0;
+    if (crowded_ > keys_.size() / 4) {
+        place_all();
+    } else {
+        result_.order.reserve(keys_.size());
+        cluster_of_.reserve(boxes.size());
+        phase_ = Phase::gather;
+    }
+    return spent;
+}
+
+void Builder::sort_crowd(std::span<std::uint64_t> keys, std::span<const Obb> boxes) {
+    const std::uint64_t cell = keys[0] >> kItemBits << kItemBits;
+    for (std::uint64_t& key : keys) key = z_order(cell_of(boxes[item_of(key)].center), 0) << kItemBits | item_of(key);
+    std::sort(keys.begin(), keys.end());
+    for (std::size_t i = 1; i < keys.size(); ++i) crowded_ += keys[i] >> kItemBits == keys[i - 1] >> kItemBits;
+    for (std::uint64_t& key : keys) key = cell | item_of(key);
+}
+
+// Along the curve: those at rest, then those that move.
+std::size_t Builder::gather_items(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
+    const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
+    for (; next_ < end; ++next_) {
+        const ItemId item = item_of(keys_[next_]);
+        (movers.contain(movers.context, item) ? moving_ : result_.order).push_back(item);
+    }
+    cluster_of_.resize(std::max(cluster_of_.size(), boxes.size() * next_ / keys_.size()), kNone);
+    if (next_ < keys_.size()) return spent;
+    next_ = 0;
+    resting_count_ = result_.order.size();
+    phase_ = Phase::append;
+    return spent;
+}
+
+std::size_t Builder::append_moving(std::size_t budget) {
+    const std::size_t end = std::min(moving_.size(), next_ + 4 * budget), spent = (end - next_ + 3) / 4;
+    for (; next_ < end; ++next_) result_.order.push_back(moving_[next_]);
+    if (next_ < moving_.size()) return spent;
+    start_clusters();
+    return spent;
+}
+
+void Builder::start_clusters() {
+    const auto end = static_cast<std::uint32_t>(result_.order.size());
+    const auto resting = static_cast<std::uint32_t>(resting_count_);
+    for (std::uint32_t begin = 0; begin < resting; begin += kClusterItems)
+        cluster_ranges_.push_back({begin, std::min(begin + kClusterItems, resting)});
+    for (std::uint32_t begin = resting; begin < end; begin += kClusterItems)
+        cluster_ranges_.push_back({begin, std::min(begin + kClusterItems, end)});
+    clusters_.assign(cluster_ranges_.size(), kNothing);
+    for (std::uint32_t c = 0; c < clusters_.size(); ++c) clusters_[c].set_id(c);
+    next_ = 0;
+    phase_ = Phase::label;
+}
+
+// Which cluster each item is in, so that boxes can be read in the order in which they lie.
+std::size_t Builder::label_items(std::size_t budget) {
+    const std::size_t first = next_, last = std::min(clusters_.size(), first + budget * 2 / kClusterItems + 1);
+    for (; next_ < last; ++next_) {
+        const Range range = cluster_ranges_[next_];
+        for (std::uint32_t i = range.begin; i < range.end; ++i)
+            cluster_of_[result_.order[i]] = static_cast<std::uint32_t>(next_);
+    }
+    if (next_ == clusters_.size()) {
+        next_ = 0;
+        phase_ = Phase::bound;
+    }
+    return (last - first) * kClusterItems / 2;
+}
+
+std::size_t Builder::bound_clusters(std::size_t budget, std::span<const Obb> boxes) {
+    const std::size_t end = std::min(cluster_of_.size(), next_ + budget), spent = end - next_;
+    for (; next_ < end; ++next_)
+        if (cluster_of_[next_] != kNone) {
+            BuildItem& cluster = clusters_[cluster_of_[next_]];
+            const std::uint32_t id = cluster.id();
+            cluster.include(build_item(0, boxes[next_], middle_));
+            cluster.set_id(id);
+        }
+    if (next_ == cluster_of_.size()) place_clusters();
+    return spent;
+}
+
+// The nodes above the clusters, split from the top; then the places of the clusters, in the order of a walk.
+void Builder::place_clusters() {
+    struct Task {
+        Range range;  // of clusters
+        NodeId parent;
+        std::uint32_t lane;
+        unsigned depth;
+    };
+    Splitter splitter;
+    splitter.start(clusters_);
+    Vector<Task> tasks;
+    tasks.push_back({{0, static_cast<std::uint32_t>(clusters_.size())}, kNone, 0, 0});
+    while (!tasks.empty()) {
+        const Task task = tasks.back();
+        tasks.pop_back();
+        if (task.range.size() == 1) {
+            Subtree subtree(cluster_ranges_[splitter.order()[task.range.begin]]);
+            subtree.parent = task.parent;
+            subtree.lane_in_parent = task.lane;
+            result_.height = std::max(result_.height, task.depth + (subtree.is_leaf() ? 0 : subtree.height));
+            subtrees_.push_back(subtree);
+            continue;
+        }
+        const auto node = static_cast<NodeId>(result_.nodes.size());
+        Topology::NodeRecord& record = result_.nodes.emplace_back();
+        record.parent = task.parent;
+        record.lane_in_parent = task.lane;
+        if (task.parent != kNone) result_.nodes[task.parent].child[task.lane] = node;
+        const Children children = splitter.divide(task.range, 1, cost_);
+        record.count = children.count;
+        for (std::uint32_t lane = record.count; lane-- > 0;)
+            tasks.push_back({children.ranges[lane], node, lane, task.depth + 1});
+    }
+    place_subtrees();
+}
+
+// All items below the root, without clusters.
+void Builder::place_all() {
+    result_.order.clear();
+    result_.order.reserve(keys_.size());
+    for (const std::uint64_t key : keys_) result_.order.push_back(item_of(key));
+    subtrees_.emplace_back(Range{0, static_cast<std::uint32_t>(keys_.size())});
+    result_.height = subtrees_[0].height;
+    place_subtrees();
+}
+
+void Builder::place_subtrees() {
+    const std::size_t above = result_.nodes.size();
+    auto node = static_cast<NodeId>(above);
+    LeafId leaf = 0;
+    for (Subtree& subtree : subtrees_) {
+        subtree.first_node = node;
+        subtree.first_leaf = leaf;
+        if (subtree.is_leaf()) subtree.nodes = 0;
+        if (subtree.parent != kNone)
+            result_.nodes[subtree.parent].child[subtree.lane_in_parent] = subtree.is_leaf() ? leaf | kLeafBit : node;
+        node += subtree.nodes;
+        leaf += subtree.leaves;
+    }
+    result_.nodes.resize(node);
+    result_.leaves.resize(leaf);
+    for (const Subtree& subtree : subtrees_)
+        if (!subtree.is_leaf()) result_.nodes[subtree.first_node].leaves = {subtree.first_leaf, subtree.leaves};
+    for (auto n = static_cast<NodeId>(above); n-- > 0;) {
+        Topology::NodeRecord& record = result_.nodes[n];
+        const auto leaves_of = [&](std::uint32_t child) {
+            return child & kLeafBit ? LeafRange{child & ~kLeafBit, 1} : result_.nodes[child].leaves;
+        };
+        const LeafRange last = leaves_of(record.child[record.count - 1]);
+        record.leaves.first = leaves_of(record.child[0]).first;
+        record.leaves.count = last.first + last.count - record.leaves.first;
+    }
+    keys_ = {};
+    keys_next_ = {};
+    cluster_of_ = {};
+    next_ = 0;
+    phase_ = Phase::ready;
+}
+
+}  // namespace crofton::boxtree

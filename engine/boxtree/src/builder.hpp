@@ -1,0 +1,84 @@
+// From boxes to the topology of a tree: which items share a leaf, which leaves a node; in steps, if need be.
+#pragma once
+#include <array>
+#include <crofton/boxtree/layout.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <span>
+
+#include "partition.hpp"
+#include "subtree.hpp"
+
+namespace crofton::boxtree {
+
+// Which items move so often that they are to share leaves with each other rather than with those at rest.
+struct Movers {
+    bool (*contain)(const void* context, ItemId item) = [](const void*, ItemId) { return false; };
+    const void* context = nullptr;
+};
+
+// Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
+// clusters of 4096, of items that move or of items at rest; the clusters are split from the top, and each cluster
+// within itself, a subtree for each: the same work per item whatever their number.
+class Builder {
+  public:
+    // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
+    Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion);
+
+    // Notes where the item is.
+    void add(ItemId id, const Obb& box);
+
+    // After the last add, a step of about `budget` items' worth; true when result() is ready. Same result for any
+    // budgets, if the boxes of the items that were added stay as they are; they may change, to the result's
+    // disadvantage.
+    bool step(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
+
+    // The same in two parts, for threads: prepare() until it is true, then build() each of subtrees() once, in any
+    // order.
+    bool prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
+    [[nodiscard]] std::span<const Subtree> subtrees() const { return subtrees_; }
+    void build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes);
+
+    // The nodes before the subtrees' first have no subtree.
+    [[nodiscard]] const Topology& result() const { return result_; }
+
+  private:
+    enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, ready };
+
+    std::size_t prepare_on(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
+    [[nodiscard]] std::array<std::uint32_t, 3> cell_of(const glm::dvec3& center) const;
+    std::size_t sort_pass(std::size_t budget);
+    std::size_t find_crowding(std::size_t budget, std::span<const Obb> boxes);
+    void sort_crowd(std::span<std::uint64_t> keys, std::span<const Obb> boxes);
+    std::size_t gather_items(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
+    std::size_t append_moving(std::size_t budget);
+    void start_clusters();
+    std::size_t label_items(std::size_t budget);
+    std::size_t bound_clusters(std::size_t budget, std::span<const Obb> boxes);
+    void place_clusters();
+    void place_all();
+    void place_subtrees();
+
+    Cost cost_;
+    glm::dvec3 middle_;
+    double half_size_ = 0.0, cells_per_unit_ = 0.0;
+    float cell_ = 0.0f;
+    Vector<std::uint64_t> keys_, keys_next_;
+    std::array<std::array<std::uint32_t, 4096>, 3> histograms_{};
+    unsigned pass_ = 0;
+    std::size_t crowded_ = 0;  // items that share a cell with others, and no smaller cells help
+    Vector<ItemId> moving_;
+    std::size_t resting_count_ = 0;  // the items that move follow these
+    Vector<Range> cluster_ranges_;
+    Vector<std::uint32_t> cluster_of_;  // by item; kNone where there is none
+    Vector<BuildItem> clusters_;
+    Vector<Subtree> subtrees_;
+    std::size_t next_ = 0;
+    SubtreeBuilder subtree_builder_;
+    bool building_ = false;
+    Phase phase_ = Phase::sort;
+    Topology result_;
+};
+
+}  // namespace crofton::boxtree

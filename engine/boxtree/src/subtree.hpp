@@ -1,0 +1,74 @@
+// The nodes and leaves below one node, from its items.
+#pragma once
+#include <crofton/boxtree/layout.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <span>
+
+#include "partition.hpp"
+
+namespace crofton::boxtree {
+
+struct Topology {
+    struct NodeRecord {
+        std::uint32_t child[kWidth];
+        std::uint32_t count = 0;
+        NodeId parent = kNone;
+        std::uint32_t lane_in_parent = 0;
+        LeafRange leaves;
+    };
+    struct LeafRecord {
+        std::uint32_t first = 0, count = 0;  // into `order`
+        NodeId parent = kNone;
+        std::uint32_t lane_in_parent = 0;
+    };
+    Vector<NodeRecord> nodes;   // parents before children, [0] the root
+    Vector<LeafRecord> leaves;  // in the order of a walk from the root
+    Vector<ItemId> order;       // the items; a leaf's lie next to each other
+    unsigned height = 1;
+};
+
+// What a box is to the builder, around `middle`.
+[[nodiscard]] BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle);
+
+// A node and what is below it. How many nodes and leaves that takes depends on the number of items alone, so that
+// places can be given away before anything is built.
+struct Subtree {
+    Range items;  // of Topology::order
+    NodeId first_node = 0, parent = kNone;
+    LeafId first_leaf = 0;
+    std::uint32_t lane_in_parent = 0;
+    std::uint32_t nodes = 0, leaves = 0;
+    unsigned height = 1;
+
+    explicit Subtree(Range range);  // sizes; the places are still to be set
+
+    // A child of another node with so few items that it is a leaf itself.
+    [[nodiscard]] bool is_leaf() const { return parent != kNone && items.size() <= kWidth; }
+};
+
+class SubtreeBuilder {
+  public:
+    // Items that order[items] names; their places in `order` change among them.
+    void start(const Subtree& subtree, std::span<const Obb> boxes, const glm::dvec3& middle, const Topology& topology);
+
+    // Works on, about `budget` items' worth, which is lessened by what was spent; true when the subtree is complete.
+    bool step(std::size_t& budget, const Cost& cost, Topology& topology);
+
+  private:
+    struct Task {
+        Range range;  // of the items
+        NodeId parent;
+        std::uint32_t lane;
+    };
+    void add_leaf(const Task& task, Topology& topology);
+
+    std::uint32_t first_item_ = 0;
+    NodeId next_node_ = 0;
+    LeafId next_leaf_ = 0;
+    Vector<BuildItem> items_;
+    Splitter splitter_;
+    Vector<Task> tasks_;
+};
+
+}  // namespace crofton::boxtree

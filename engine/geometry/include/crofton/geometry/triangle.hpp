@@ -1,0 +1,10 @@
+// A triangle in space, by its vertices.
+#pragma once
+#include <array>
+#include <glm/vec3.hpp>
+
+namespace crofton {
+
+using Triangle = std::array<glm::dvec3, 3>;
+
+}  // namespace crofton

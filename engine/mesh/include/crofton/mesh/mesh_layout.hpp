@@ -1,0 +1,32 @@
+// How a mesh tree lies in memory: plain arrays, which kernel files may read without any other header.
+#pragma once
+#include <cstdint>
+
+namespace crofton::mesh {
+
+inline constexpr std::uint32_t kMeshNodeWidth = 16;      // boxes to a node: a vector of floats
+inline constexpr std::uint32_t kMeshLeafWidth = 8;       // triangles to a leaf: a vector of doubles
+inline constexpr std::uint32_t kMeshLeaf = 0x80000000u;  // set in a child that is a leaf: the rest is its index
+
+// Boxes of up to sixteen children side by side, as one vector load wants them. Lane l's box holds every triangle below
+// it.
+struct alignas(64) MeshNode {
+    float center[3][kMeshNodeWidth];
+    float axes[3][3][kMeshNodeWidth];  // [k][i]: component i of axis k; orthonormal to 1e-6
+    float half[3][kMeshNodeWidth];
+    std::uint32_t child[kMeshNodeWidth];
+    std::uint32_t count;  // lanes in use: the first ones
+};
+
+// Up to eight triangles, vertices side by side. Unused lanes repeat the last triangle.
+struct alignas(64) MeshLeaf {
+    float vertex[3][3][kMeshLeafWidth];  // [v][i]: component i of vertex v, exactly the mesh's own
+    std::uint32_t triangle[kMeshLeafWidth];
+    std::uint32_t count;
+};
+
+struct MeshBox {
+    float center[3], axes[3][3], half[3];
+};
+
+}  // namespace crofton::mesh

@@ -1,0 +1,109 @@
+#include <cmath>
+#include <crofton/mesh/mesh_mesh.hpp>
+#include <glm/geometric.hpp>
+
+#include "exact_signs.hpp"
+#include "posed_mesh.hpp"
+
+namespace crofton::mesh {
+namespace {
+
+// Whether edge ab, seen along z, runs to the right of p. Half-open in y, so that of two edges that share a vertex at
+// p's height exactly one counts; the answer depends on the edge alone, so both its triangles agree.
+bool is_right_of(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+    if ((a.y > p.y) == (b.y > p.y)) return false;
+    const bool upward = a.y < b.y;
+    return orientation_2d(upward ? a : b, upward ? b : a, p, 0, 1) > 0;
+}
+
+enum class Crossing : std::uint8_t { none, crosses, touches };
+
+// Does the ray from p along +z cross the triangle?
+Crossing crossing(const glm::dvec3& p, const Triangle& t) {
+    const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
+    const bool within = low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z;
+    if (within && segment_meets_triangle(p, p, t)) return Crossing::touches;
+    const bool covers = is_right_of(p, t[0], t[1]) ^ is_right_of(p, t[1], t[2]) ^ is_right_of(p, t[2], t[0]);
+    if (!covers) return Crossing::none;
+    const int turn = orientation_2d(t[0], t[1], t[2], 0, 1);
+    const int side = orientation_sign(t[0], t[1], t[2], p) * turn;
+    return side < 0 ? Crossing::crosses : Crossing::none;
+}
+
+struct Ray {
+    glm::dvec3 origin, direction;  // in the mesh's frame
+    double slop;
+};
+
+// Separating axes of a ray and a box: the cross products of the ray with the box's axes, and the ray itself.
+bool may_meet(const Ray& ray, const mesh::MeshNode& node, std::uint32_t lane) {
+    double o[3], d[3], h[3];
+    glm::dvec3 offset;
+    for (int i = 0; i < 3; ++i) offset[i] = ray.origin[i] - static_cast<double>(node.center[i][lane]);
+    double behind = glm::dot(offset, ray.direction);
+    for (int k = 0; k < 3; ++k) {
+        glm::dvec3 axis;
+        for (int i = 0; i < 3; ++i) axis[i] = static_cast<double>(node.axes[k][i][lane]);
+        o[k] = glm::dot(axis, offset);
+        d[k] = glm::dot(axis, ray.direction);
+        h[k] = static_cast<double>(node.half[k][lane]) + ray.slop;
+        behind -= h[k] * std::abs(d[k]);
+    }
+    if (behind > ray.slop) return false;
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        if (std::abs(o[i] * d[j] - o[j] * d[i]) > h[i] * std::abs(d[j]) + h[j] * std::abs(d[i]) + ray.slop)
+            return false;
+    }
+    return true;
+}
+
+// Parity of the crossings of p's ray with the posed mesh; on the surface counts as inside.
+bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm::dvec3& p) {
+    const RigidTransform back = inverse(pose);
+    const Ray ray{transform(back, p), back.rotation * glm::dvec3(0.0, 0.0, 1.0),
+                  2e-6 * (static_cast<double>(mesh.extent()) + glm::length(p) + glm::length(pose.translation))};
+    std::uint32_t stack[256];
+    std::uint32_t height = 0;
+    stack[height++] = 0;
+    bool inside = false;
+    while (height > 0) {
+        const mesh::MeshNode& node = mesh.nodes()[stack[--height]];
+        for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+            if (!may_meet(ray, node, lane)) continue;
+            if (!(node.child[lane] & mesh::kMeshLeaf)) {
+                stack[height++] = node.child[lane];
+                continue;
+            }
+            const mesh::MeshLeaf& leaf = mesh.leaves()[node.child[lane] & ~mesh::kMeshLeaf];
+            for (std::uint32_t i = 0; i < leaf.count; ++i) {
+                const Crossing found = crossing(p, triangle_of(leaf, i, pose));
+                if (found == Crossing::touches) return true;
+                inside ^= found == Crossing::crosses;
+            }
+        }
+    }
+    return inside;
+}
+
+}  // namespace
+
+bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
+    return is_inside(mesh, RigidTransform{}, point);
+}
+
+Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a) {
+    std::size_t of_a = 0, of_b = 0;
+    for (const glm::vec3& p : b.pieces()) of_b += is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(p)));
+    if (of_b == b.pieces().size()) return Containment::b_inside_a;
+    for (const glm::vec3& p : a.pieces()) of_a += is_inside(b, b_to_a, glm::dvec3(p));
+    if (of_a == a.pieces().size()) return Containment::a_inside_b;
+    return of_a + of_b > 0 ? Containment::partly : Containment::none;
+}
+
+Containment containment(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
+                        MeshStatistics* statistics) {
+    return intersects(a, b, b_to_a, statistics) ? Containment::none : containment_of_disjoint(a, b, b_to_a);
+}
+
+}  // namespace crofton::mesh

@@ -1,0 +1,126 @@
+#include "mesh_box.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/fit/fit.hpp>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "least_rectangle.hpp"
+#include "symmetric_eigen.hpp"
+
+namespace crofton::mesh {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+float float_above(double value) {
+    const float rounded = static_cast<float>(value);
+    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                                : rounded;
+}
+
+// The box with this frame. Coordinates along axes that are orthonormal only to 3e-7 differ from those in the exact
+// parallelepiped by that share of their size; a margin of 1e-6 of all half extents covers it and the float rounding.
+MeshBox box_with(std::span<const glm::vec3> points, const glm::dmat3& frame) {
+    MeshBox box{};
+    glm::dvec3 axis[3], low(kInfinity), high(-kInfinity);
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3 rounded(frame[k]);
+        axis[k] = glm::dvec3(rounded);
+        for (int i = 0; i < 3; ++i) box.axes[k][i] = rounded[i];
+    }
+    const glm::dmat3 rows(axis[0].x, axis[1].x, axis[2].x, axis[0].y, axis[1].y, axis[2].y, axis[0].z, axis[1].z,
+                          axis[2].z);
+    for (const glm::vec3& p : points) {
+        const glm::dvec3 along = rows * glm::dvec3(p);
+        low = glm::min(low, along);
+        high = glm::max(high, along);
+    }
+    const glm::dvec3 middle = 0.5 * (low + high);
+    const glm::vec3 center(axis[0] * middle.x + axis[1] * middle.y + axis[2] * middle.z);
+    const glm::dvec3 along = rows * glm::dvec3(center);
+    const glm::dvec3 half = glm::max(high - along, along - low);
+    const double margin = 1e-6 * (half.x + half.y + half.z) + 1e-37;
+    for (int k = 0; k < 3; ++k) {
+        box.center[k] = center[k];
+        box.half[k] = float_above(half[k] + margin);
+    }
+    return box;
+}
+
+// Principal axes, that of the least spread first.
+glm::dmat3 principal_axes(std::span<const glm::vec3> points) {
+    const glm::dmat3 covariance = covariance_of(points.size(), [&](std::size_t i) { return points[i]; });
+    glm::dmat3 frame = eigenvectors(covariance);
+    std::array<double, 3> spread;
+    for (int k = 0; k < 3; ++k) spread[static_cast<std::size_t>(k)] = glm::dot(frame[k], covariance * frame[k]);
+    const auto put_in_order = [&](int i, int j) {
+        double &a = spread[static_cast<std::size_t>(i)], &b = spread[static_cast<std::size_t>(j)];
+        if (b < a) std::swap(a, b), std::swap(frame[i], frame[j]);
+    };
+    put_in_order(0, 1);
+    put_in_order(1, 2);
+    put_in_order(0, 1);
+    return frame;
+}
+
+// A turn by an angle; `half` is the tangent of its half. Nothing is left to a library's sine: the same bits everywhere.
+struct Turn {
+    double c = 1.0, s = 0.0;
+    static Turn by(double half) {
+        return {(1.0 - half * half) / (1.0 + half * half), 2.0 * half / (1.0 + half * half)};
+    }
+};
+
+Turn operator*(const Turn& a, const Turn& b) {
+    return {a.c * b.c - a.s * b.s, a.c * b.s + a.s * b.c};
+}
+
+// The best of sixteen angles, the first and the step between them given, for the rectangle around the points.
+Turn best_turn(std::span<const float> u, std::span<const float> v, const Turn& first, const Turn& step) {
+    Turn turns[kAngles];
+    Angles angles;
+    Turn turn = first;
+    for (std::size_t i = 0; i < kAngles; ++i) {
+        turns[i] = turn;
+        angles.cosine[i] = static_cast<float>(turn.c);
+        angles.sine[i] = static_cast<float>(turn.s);
+        turn = turn * step;
+    }
+    return turns[least_rectangle(u.data(), v.data(), u.size(), angles)];
+}
+
+}  // namespace
+
+// Among sixteen angles of a quarter turn, then among sixteen around the best of these.
+void MeshBoxFitter::turn(std::span<const glm::vec3> points, int axis, glm::dmat3& frame) {
+    constexpr double kCoarse = 0.049126849769467254, kFine = 0.006136000157623402;  // tan of half 90°/16, 90°/128
+    const glm::dvec3 x = frame[(axis + 1) % 3], y = frame[(axis + 2) % 3];
+    const glm::vec3 along(x), across(y), origin = points.front();
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const glm::vec3 from = points[p] - origin;
+        u_[p] = from.x * along.x + from.y * along.y + from.z * along.z;
+        v_[p] = from.x * across.x + from.y * across.y + from.z * across.z;
+    }
+    const Turn coarse = best_turn(u_, v_, Turn(), Turn::by(kCoarse));
+    const Turn best = best_turn(u_, v_, coarse * Turn::by(-kCoarse), Turn::by(kFine));
+    frame[(axis + 1) % 3] = best.c * x + best.s * y;
+    frame[(axis + 2) % 3] = best.c * y - best.s * x;
+}
+
+MeshBox MeshBoxFitter::fit(std::span<const glm::vec3> points, MeshBoxes boxes) {
+    if (boxes == MeshBoxes::least_perimeter)
+        if (const auto box = fit::fit_obb(points)) return box_with(points, glm::dmat3(box->axes));
+    glm::dmat3 frame = principal_axes(points);
+    if (boxes == MeshBoxes::small_perimeter) {
+        u_.resize(points.size());
+        v_.resize(points.size());
+        for (int axis = 0; axis < 3; ++axis) turn(points, axis, frame);
+    }
+    return box_with(points, frame);
+}
+
+}  // namespace crofton::mesh

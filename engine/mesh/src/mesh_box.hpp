@@ -1,0 +1,22 @@
+// The boxes of a mesh tree.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+
+namespace crofton::mesh {
+
+class MeshBoxFitter {
+  public:
+    // Holds all the points, of which there is one at least, none beyond 1e12. The same bits on every machine.
+    [[nodiscard]] MeshBox fit(std::span<const glm::vec3> points, MeshBoxes boxes);
+
+  private:
+    void turn(std::span<const glm::vec3> points, int axis, glm::dmat3& frame);
+
+    Vector<float> u_, v_;  // coordinates across the axis of a turn
+};
+
+}  // namespace crofton::mesh

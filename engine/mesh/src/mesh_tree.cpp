@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "mesh_box.hpp"
+#include "mesh_pieces.hpp"
+#include "symmetric_eigen.hpp"
+
+namespace crofton::mesh {
+namespace {
+
+constexpr float kMaxMeshCoordinate = 1e12f;  // cubes of differences stay within float
+
+struct Reference {
+    glm::vec3 centroid;
+    std::uint32_t triangle;
+    float key;
+};
+
+struct Range {
+    std::size_t begin, end;
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+    [[nodiscard]] std::size_t leaves() const { return (size() + kMeshLeafWidth - 1) / kMeshLeafWidth; }
+};
+
+// A range that is to become `count` children.
+struct Part {
+    Range range;
+    std::uint32_t count;
+};
+
+// The fewest children whose subtrees, one level lower, can all be full: empty lanes gather near the root, where few
+// nodes are, and not in the many above the leaves.
+std::uint32_t child_count(std::size_t leaves) {
+    std::size_t below = 1;
+    while (below * kMeshNodeWidth < leaves) below *= kMeshNodeWidth;
+    return static_cast<std::uint32_t>((leaves + below - 1) / below);
+}
+
+struct Task {
+    Range range;
+    std::uint32_t node;
+};
+
+bool is_usable(const glm::vec3& p) {
+    return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
+           std::abs(p.z) <= kMaxMeshCoordinate;
+}
+
+}  // namespace
+
+class MeshTreeBuilder {
+  public:
+    MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
+        : mesh_(mesh), options_(options), last_range_(mesh.positions.size(), 0) {}
+
+    Result<MeshTree> build();
+
+  private:
+    void collect();
+    void split_node(const Task& task);
+    Part split(Part& part);
+    MeshBox fit(const Range& range);
+    std::uint32_t add_leaf(const Range& range);
+    [[nodiscard]] const glm::vec3& vertex(std::uint32_t triangle, std::size_t v) const {
+        return mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + v]];
+    }
+
+    const TriangleMesh& mesh_;
+    MeshTreeOptions options_;
+    MeshTree tree_;
+    Vector<Reference> references_;
+    Vector<Task> tasks_;
+    MeshBoxFitter fitter_;
+    Vector<glm::vec3> points_;
+    Vector<std::uint32_t> last_range_;  // by vertex: the last range whose points it was put among
+    std::uint32_t range_number_ = 0;
+};
+
+void MeshTreeBuilder::collect() {
+    const std::size_t count = mesh_.triangle_count();
+    references_.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) {
+        bool usable = true;
+        for (std::size_t v = 0; v < 3; ++v) {
+            const std::uint32_t index = mesh_.indices[3 * t + v];
+            usable = usable && index < mesh_.positions.size() && is_usable(mesh_.positions[index]);
+        }
+        const auto triangle = static_cast<std::uint32_t>(t);
+        if (!usable) {
+            tree_.rejected_.push_back(triangle);
+            continue;
+        }
+        const glm::vec3 &a = vertex(triangle, 0), &b = vertex(triangle, 1), &c = vertex(triangle, 2);
+        references_.push_back({(a + b + c) * (1.0f / 3.0f), triangle, 0.0f});
+        for (const glm::vec3* p : {&a, &b, &c})
+            tree_.extent_ = std::max({tree_.extent_, std::abs(p->x), std::abs(p->y), std::abs(p->z)});
+    }
+}
+
+// Halves a part, in shares of its children, along the direction in which its centroids spread most; returns the upper
+// half.
+Part MeshTreeBuilder::split(Part& part) {
+    const Range range = part.range;
+    const auto begin = references_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto end = references_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    const glm::dmat3 covariance =
+        covariance_of(range.size(), [&](std::size_t i) { return begin[static_cast<std::ptrdiff_t>(i)].centroid; });
+    const glm::dmat3 frame = eigenvectors(covariance);
+    int longest = 0;
+    double spread = -1.0;
+    for (int k = 0; k < 3; ++k) {
+        const double along = glm::dot(frame[k], covariance * frame[k]);
+        if (along > spread) spread = along, longest = k;
+    }
+    const glm::vec3 direction(frame[longest]);
+    for (auto r = begin; r != end; ++r) r->key = glm::dot(r->centroid, direction);
+    // Whole leaves below: the cut is a multiple of the leaf's size, so that no lanes stay empty but in the last leaf.
+    const std::uint32_t below = part.count / 2;
+    const std::size_t cut = (range.leaves() * below + part.count / 2) / part.count * kMeshLeafWidth;
+    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(cut), end, [](const Reference& a, const Reference& b) {
+        return a.key < b.key || (a.key == b.key && a.triangle < b.triangle);
+    });
+    const Part upper{{range.begin + cut, range.end}, part.count - below};
+    part = {{range.begin, range.begin + cut}, below};
+    return upper;
+}
+
+MeshBox MeshTreeBuilder::fit(const Range& range) {
+    ++range_number_;
+    points_.clear();
+    for (std::size_t r = range.begin; r < range.end; ++r)
+        for (std::size_t v = 0; v < 3; ++v) {
+            const std::uint32_t index = mesh_.indices[3 * std::size_t{references_[r].triangle} + v];
+            if (std::exchange(last_range_[index], range_number_) != range_number_)
+                points_.push_back(mesh_.positions[index]);
+        }
+    return fitter_.fit(points_, options_.boxes);
+}
+
+std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
+    MeshLeaf leaf{};
+    leaf.count = static_cast<std::uint32_t>(range.size());
+    for (std::size_t lane = 0; lane < kMeshLeafWidth; ++lane) {
+        const std::uint32_t triangle = references_[range.begin + std::min(lane, range.size() - 1)].triangle;
+        leaf.triangle[lane] = triangle;
+        for (std::size_t v = 0; v < 3; ++v)
+            for (int i = 0; i < 3; ++i) leaf.vertex[v][i][lane] = vertex(triangle, v)[i];
+    }
+    tree_.leaves_.push_back(leaf);
+    return static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
+}
+
+void MeshTreeBuilder::split_node(const Task& task) {
+    Part parts[kMeshNodeWidth] = {{task.range, child_count(task.range.leaves())}};
+    std::uint32_t count = 1;
+    for (std::uint32_t i = 0; i < count; ++i)
+        while (parts[i].count > 1) parts[count++] = split(parts[i]);
+    MeshNode node{};
+    node.count = count;
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        const Range& range = parts[lane].range;
+        const MeshBox box = fit(range);
+        for (int k = 0; k < 3; ++k) {
+            node.center[k][lane] = box.center[k];
+            node.half[k][lane] = box.half[k];
+            for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
+        }
+        if (range.size() <= kMeshLeafWidth) {
+            node.child[lane] = kMeshLeaf | add_leaf(range);
+        } else {
+            node.child[lane] = static_cast<std::uint32_t>(tree_.nodes_.size());
+            tree_.nodes_.emplace_back();
+            tasks_.push_back({range, node.child[lane]});
+        }
+    }
+    tree_.nodes_[task.node] = node;
+}
+
+Result<MeshTree> MeshTreeBuilder::build() {
+    if (mesh_.indices.size() % 3 != 0)
+        return fail(ErrorCode::invalid_argument, mesh_.indices.size(),
+                    "mesh: the index count is not a multiple of three");
+    if (mesh_.triangle_count() >= (std::size_t{1} << 28))
+        return fail(ErrorCode::out_of_range, mesh_.triangle_count(), "mesh: 2^28 triangles or more");
+    collect();
+    if (references_.empty()) return fail(ErrorCode::empty, kNoItem, "mesh: no valid triangle");
+    tree_.triangle_count_ = references_.size();
+    Vector<std::uint32_t> valid;
+    valid.reserve(references_.size());
+    for (const Reference& reference : references_) valid.push_back(reference.triangle);
+    tree_.pieces_ = piece_points(mesh_, valid);
+    const std::size_t leaf_estimate = references_.size() / kMeshLeafWidth + 1;
+    tree_.leaves_.reserve(leaf_estimate);
+    tree_.nodes_.reserve(leaf_estimate / 4 + 1);
+    const Range all{0, references_.size()};
+    tree_.root_box_ = fit(all);
+    tree_.nodes_.emplace_back();
+    tasks_.push_back({all, 0});
+    while (!tasks_.empty()) {
+        const Task task = tasks_.back();
+        tasks_.pop_back();
+        split_node(task);
+    }
+    return std::move(tree_);
+}
+
+Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {
+    return MeshTreeBuilder(mesh, options).build();
+}
+
+}  // namespace crofton::mesh

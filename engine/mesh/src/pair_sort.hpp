@@ -1,0 +1,11 @@
+// Puts a few hundred pairs of triangles in order.
+#pragma once
+#include <crofton/geometry/id_pair.hpp>
+#include <span>
+
+namespace crofton::mesh {
+
+// Sorts by first, then second. Allocates nothing.
+void sort_pairs(std::span<IdPair> pairs);
+
+}  // namespace crofton::mesh

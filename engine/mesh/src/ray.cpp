@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/expansion.hpp>
+#include <crofton/mesh/ray.hpp>
+#include <glm/geometric.hpp>
+
+#include <crofton/mesh/ray_box.hpp>
+#include "posed_mesh.hpp"
+#include "ray_mesh.hpp"
+#include "sign_filter.hpp"
+
+namespace crofton::mesh {
+namespace {
+
+// Sign of det(direction, a − origin, b − origin), exactly.
+int side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
+    std::array<Expansion<2>, 3> u, v;
+    for (int i = 0; i < 3; ++i) {
+        u[static_cast<std::size_t>(i)] = exact_difference(a[i], ray.origin[i]);
+        v[static_cast<std::size_t>(i)] = exact_difference(b[i], ray.origin[i]);
+    }
+    const auto term = [&](std::size_t i, std::size_t j, double d) { return (u[i] * v[j] - u[j] * v[i]) * d; };
+    return (term(1, 2, ray.direction.x) + term(2, 0, ray.direction.y) + term(0, 1, ray.direction.z)).sign();
+}
+
+// The same through a filter first: the differences and products are those of PlaneFilter, one difference fewer.
+int filtered_side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
+    const PlaneFilter plane(ray.origin, a, b);
+    const double determinant = glm::dot(plane.normal, ray.direction);
+    const double error = kOrientationError * glm::dot(plane.magnitude, glm::abs(ray.direction)) + 1e-280;
+    if (std::abs(determinant) > error) return determinant > 0.0 ? 1 : -1;
+    return side_of_edge(ray, a, b);
+}
+
+bool line_meets(const Ray& ray, const Triangle& t) {
+    int low = 1, high = -1;
+    for (std::size_t k = 0; k < 3 && !(low < 0 && high > 0); ++k) {
+        const int side = filtered_side_of_edge(ray, t[k], t[(k + 1) % 3]);
+        low = std::min(low, side);
+        high = std::max(high, side);
+    }
+    return (low >= 0 && high > 0) || (high <= 0 && low < 0);  // all zero: in the plane
+}
+
+// Where the line meets the plane, kept between the nearest and the farthest vertex along it, as the traversal does.
+double parameter(const Ray& ray, const Triangle& t) {
+    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double by_plane = glm::dot(n, t[0] - ray.origin) / glm::dot(n, ray.direction);
+    const double squared = glm::dot(ray.direction, ray.direction);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const glm::dvec3& vertex : t) {
+        const double at = glm::dot(vertex - ray.origin, ray.direction) / squared;
+        low = std::min(low, at);
+        high = std::max(high, at);
+    }
+    const double margin = 1e-12 * std::max(std::abs(low), std::abs(high));
+    return by_plane >= low - margin ? std::min(by_plane, high + margin) : low - margin;
+}
+
+RayAnswer trace(const Ray& ray, const mesh::MeshTree& mesh, bool any) {
+    RayQuery query{};
+    const double length = glm::length(ray.direction);
+    double far = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        query.origin[i] = ray.origin[i];
+        query.direction[i] = ray.direction[i];
+        query.start[i] = static_cast<float>(ray.origin[i]);
+        query.unit[i] = static_cast<float>(ray.direction[i] / length);
+        far = std::max(far, std::abs(ray.origin[i]));
+    }
+    query.max_t = ray.max_t;
+    query.length = static_cast<float>(length);
+    // Rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any point the mesh can
+    // reach.
+    query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
+    query.nodes = mesh.nodes().data();
+    query.leaves = mesh.leaves().data();
+    query.any = any;
+    return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) {
+        return line_meets(ray, triangle_of(mesh.leaves()[leaf], lane));
+    });
+}
+
+}  // namespace
+
+std::optional<double> entry_of(const Ray& ray, const Obb& box) {
+    const glm::dvec3 offset = ray.origin - box.center;
+    double first = 0.0, last = ray.max_t;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 n = glm::cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
+        const double reach = static_cast<double>(box.half_extents[k]) * std::abs(glm::dot(n, glm::dvec3(box.axes[k])));
+        const double at = glm::dot(n, offset), speed = glm::dot(n, ray.direction);
+        if (speed == 0.0) {
+            if (std::abs(at) > reach) return std::nullopt;
+            continue;
+        }
+        const double t0 = (-reach - at) / speed, t1 = (reach - at) / speed;
+        first = std::max(first, std::min(t0, t1));
+        last = std::min(last, std::max(t0, t1));
+    }
+    if (!(first <= last)) return std::nullopt;
+    return first;
+}
+
+std::optional<double> raycast(const Ray& ray, const Obb& box) {
+    if (!validate(ray) || !validate(box)) return std::nullopt;
+    return entry_of(ray, box);
+}
+
+std::optional<double> raycast(const Ray& ray, const Triangle& triangle) {
+    if (!validate(ray)) return std::nullopt;
+    for (const glm::dvec3& vertex : triangle)
+        if (!std::isfinite(vertex.x + vertex.y + vertex.z)) return std::nullopt;
+    if (!line_meets(ray, triangle)) return std::nullopt;
+    const double t = parameter(ray, triangle);
+    if (!(t >= 0.0 && t <= ray.max_t)) return std::nullopt;
+    return t;
+}
+
+std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh) {
+    if (!validate(ray)) return std::nullopt;
+    const RayAnswer answer = trace(ray, mesh, false);
+    if (!answer.hit) return std::nullopt;
+    return RayHit{answer.t, answer.triangle};
+}
+
+bool hits_any(const Ray& ray, const mesh::MeshTree& mesh) {
+    return validate(ray).has_value() && trace(ray, mesh, true).hit;
+}
+
+}  // namespace crofton::mesh

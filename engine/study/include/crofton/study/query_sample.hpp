@@ -1,0 +1,66 @@
+// A fixed sample of uniform queries, to count instead of to calculate: the chance that all of several boxes are hit,
+// for any frustum, nested or not (theory.md section 4).
+#pragma once
+#include <array>
+#include <crofton/core/error.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/sampling/global_lines.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::study {
+
+class QuerySample {
+  public:
+    QuerySample() = default;  // no queries
+
+    // Quasi-random, by seed: planes and lines that hit the ball, frusta of this camera whose own box, grown by the
+    // ball's radius, holds the ball's centre; all motions that can hit anything inside the ball are among them. At most
+    // 2^24. Errors: a radius that is not positive and finite; count 0 or too large; as measure::of_frustum for the
+    // camera.
+    [[nodiscard]] static Result<QuerySample> planes(const sampling::Ball& region, std::uint32_t count,
+                                                    std::uint64_t seed);
+    [[nodiscard]] static Result<QuerySample> lines(const sampling::Ball& region, std::uint32_t count,
+                                                   std::uint64_t seed);
+    [[nodiscard]] static Result<QuerySample> frusta(const Camera& camera, const sampling::Ball& region,
+                                                    std::uint32_t count, std::uint64_t seed);
+
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(queries_.size()); }
+    // Of all motions sampled from, normalised as (4), (5) and (1): a share of the queries times this is a measure.
+    [[nodiscard]] double measure() const { return measure_; }
+
+    // Does query i meet the box? In double; touching up to rounding is left to rounding.
+    [[nodiscard]] bool hits(std::uint32_t i, const Obb& box) const;
+
+    // Does it meet the box without containing it? Then what is below the box must be looked at: a frustum takes a box
+    // that it contains as a whole. Planes and lines contain nothing.
+    [[nodiscard]] bool straddles(std::uint32_t i, const Obb& box) const;
+
+    // The queries among `candidates` that hit the box, in order.
+    [[nodiscard]] Vector<std::uint32_t> hitting(std::span<const std::uint32_t> candidates, const Obb& box) const;
+    [[nodiscard]] Vector<std::uint32_t> all() const;
+
+  private:
+    enum class Kind : std::uint8_t { plane, line, frustum };
+    // A plane: direction and offset. A line: point and direction. A frustum: its placement.
+    struct Query {
+        glm::dvec3 point{0.0};
+        glm::dvec3 direction{0.0};
+        glm::dmat3 rotation{1.0};
+    };
+    static Result<QuerySample> make(Kind kind, const sampling::Ball& region, std::uint32_t count);
+    [[nodiscard]] bool frustum_hits(const Query& query, const Obb& box, bool* contained) const;
+
+    Kind kind_ = Kind::plane;
+    double measure_ = 0.0;
+    Vector<Query> queries_;
+    // The frustum before it is placed.
+    std::array<glm::dvec3, 8> corners_{};
+    std::array<glm::dvec3, 5> normals_{};
+    std::array<glm::dvec3, 6> edges_{};
+    std::array<std::array<double, 2>, 5> extents_{};  // of the corners along the normals
+};
+
+}  // namespace crofton::study

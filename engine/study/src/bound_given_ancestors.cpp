@@ -1,0 +1,93 @@
+#include <cmath>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/trigonometry.hpp>
+#include <crofton/study/bound_given_ancestors.hpp>
+#include <glm/geometric.hpp>
+
+namespace crofton::study {
+namespace {
+
+glm::mat3 turned(const glm::mat3& axes, int around, double angle) {
+    const glm::dvec2 turn = cosine_sine(angle);
+    const double c = turn.x, s = turn.y;
+    const int i = (around + 1) % 3, j = (around + 2) % 3;
+    glm::dmat3 result(axes);
+    result[i] = c * glm::dvec3(axes[i]) + s * glm::dvec3(axes[j]);
+    result[j] = -s * glm::dvec3(axes[i]) + c * glm::dvec3(axes[j]);
+    // Orthonormal again: small turns add up.
+    result[0] = glm::normalize(result[0]);
+    result[1] = glm::normalize(result[1] - glm::dot(result[1], result[0]) * result[0]);
+    result[2] = glm::cross(result[0], result[1]);
+    return glm::mat3(result);
+}
+
+class Search {
+  public:
+    Search(std::span<const glm::dvec3> points, const study::QuerySample& queries, const measure::Criterion& criterion,
+           Vector<std::uint32_t> reaching)
+        : points_(points), queries_(queries), criterion_(criterion), reaching_(std::move(reaching)) {}
+
+    // True where the box is the best so far: fewer hits, or as many and less by the criterion.
+    bool consider(const Obb& box) {
+        std::uint32_t hits = 0;
+        for (const std::uint32_t q : reaching_) hits += queries_.hits(q, box);
+        const double value = criterion_(measure::of_box(box));
+        if (has_best_ && (hits > hits_ || (hits == hits_ && value >= value_))) return false;
+        has_best_ = true;
+        best_ = box, hits_ = hits, value_ = value;
+        return true;
+    }
+    bool consider(const glm::mat3& axes) {
+        const auto box = fit::fit_oriented(points_, axes);
+        return box && consider(*box);
+    }
+    void descend() {
+        for (double angle = 0.4; angle > 1e-3; angle *= 0.5)
+            for (bool better = true; better;) {
+                better = false;
+                for (int around = 0; around < 3; ++around)
+                    for (const double sign : {1.0, -1.0})
+                        better = consider(turned(best_.axes, around, sign * angle)) || better;
+            }
+    }
+
+    [[nodiscard]] const Obb& best() const { return best_; }
+    [[nodiscard]] std::uint32_t hits() const { return hits_; }
+
+  private:
+    std::span<const glm::dvec3> points_;
+    const study::QuerySample& queries_;
+    const measure::Criterion& criterion_;
+    Vector<std::uint32_t> reaching_;
+    Obb best_;
+    std::uint32_t hits_ = 0;
+    double value_ = 0.0;
+    bool has_best_ = false;
+};
+
+}  // namespace
+
+Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> points, std::span<const Obb> ancestors,
+                                                  const study::QuerySample& queries,
+                                                  const measure::Criterion& criterion) {
+    if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+    const auto plain = fit::fit_obb(points, {.criterion = criterion});
+    if (!plain) return tl::unexpected(plain.error());
+    Vector<std::uint32_t> reaching = queries.all();
+    for (const Obb& ancestor : ancestors) reaching = queries.hitting(reaching, ancestor);
+    BoundGivenAncestors result;
+    result.reaching = static_cast<std::uint32_t>(reaching.size());
+    Search search(points, queries, criterion, std::move(reaching));
+    search.consider(*plain);
+    result.plain_hits = search.hits();
+    for (const measure::Criterion& other : {measure::minimal_area(), measure::minimal_perimeter()})
+        if (const auto box = fit::fit_obb(points, {.criterion = other})) search.consider(*box);
+    for (const Obb& ancestor : ancestors) search.consider(ancestor.axes);
+    search.consider(glm::mat3(1.0f));
+    search.descend();
+    result.bound = search.best();
+    result.hits = search.hits();
+    return result;
+}
+
+}  // namespace crofton::study

@@ -1,0 +1,283 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
+#include <crofton/measure/planar.hpp>
+#include <crofton/study/planar_bounds.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "farthest_voronoi.hpp"
+#include "sinusoid.hpp"
+
+namespace crofton::study {
+namespace {
+
+using std::numbers::pi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Problem {
+    Vector<glm::dvec2> hull;
+    double scale = 0.0;      // the measure of the ancestors alone
+    double own = 0.0;        // of the object itself: no bound can do better
+    double tolerance = 0.0;  // absolute
+};
+
+Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
+                        const BoundOptions& options) {
+    auto hull = measure::convex_hull(object);
+    if (!hull) return tl::unexpected(hull.error());
+    Problem problem;
+    problem.hull = std::move(*hull);
+    problem.scale = ancestors.integral();
+    const PlanarSupport own = PlanarSupport::of_convex_polygon(problem.hull);
+    problem.own = own.integral();
+    problem.tolerance = std::max(options.tolerance, 1e-12) * problem.scale;
+    // ∫ max(0, h_object − h_ancestors); bounds that touch the object leave rounding here.
+    const double outside = problem.own - integral_of_min(ancestors, own);
+    if (!(outside <= 1e-9 * problem.scale + 1e-300))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "optimal bound: the object is not inside its ancestors' bounds");
+    return problem;
+}
+
+// --- circles ---
+
+Disc disc_at(const VoronoiEdge& edge, double t) {
+    return {edge.middle + t * edge.normal, std::sqrt(edge.half * edge.half + t * t)};
+}
+
+// An interval of one edge, with the measures at its ends.
+struct Stretch {
+    std::uint32_t edge;
+    double begin, end;
+    double at_begin, at_end;
+};
+
+class DiscSearch {
+  public:
+    DiscSearch(const Problem& problem, const PlanarSupport& ancestors)
+        : problem_(problem), ancestors_(ancestors), edges_(farthest_voronoi(problem.hull)) {}
+
+    OptimalBound<Disc> run() {
+        // The smallest enclosing circle first: usually close, and it makes the bounds bite.
+        for (std::uint32_t e = 0; e < edges_.size(); ++e) add_edge(e);
+        for (std::size_t i = 0; i < open_.size(); ++i) examine(Stretch(open_[i]));
+        result_.lower_bound = std::max(std::min(dropped_, result_.measure), std::min(problem_.own, result_.measure));
+        return result_;
+    }
+
+  private:
+    double measured(std::uint32_t e, double t) {
+        const Disc disc = disc_at(edges_[e], t);
+        const double value = integral_of_min(ancestors_, disc);
+        ++result_.evaluations;
+        if (value < result_.measure) result_.measure = value, result_.bound = disc;
+        return value;
+    }
+
+    // Finite parts as they are; infinite ends from where the circle is as large as the object onward, by doubling.
+    void add_edge(std::uint32_t e) {
+        const VoronoiEdge& edge = edges_[e];
+        const double reach = edge.half;
+        double begin = edge.begin, end = edge.end;
+        if (begin == -kInfinity && end == kInfinity) begin = -reach, end = reach;
+        if (begin == -kInfinity) begin = std::min(-reach, end - reach);
+        if (end == kInfinity) end = std::max(reach, begin + reach);
+        const double at_begin = measured(e, begin), at_end = measured(e, end);
+        open_.push_back({e, begin, end, at_begin, at_end});
+        if (edge.begin == -kInfinity) open_.push_back({e, -kInfinity, begin, kInfinity, at_begin});
+        if (edge.end == kInfinity) open_.push_back({e, end, kInfinity, at_end, kInfinity});
+    }
+
+    // max r″ on an interval, r = √(half² + t²), r″ = half²/r³.
+    double bend(const Stretch& s) const {
+        const double half = edges_[s.edge].half;
+        const double nearest = s.begin <= 0.0 && s.end >= 0.0 ? 0.0 : std::min(std::abs(s.begin), std::abs(s.end));
+        const double r = std::sqrt(half * half + nearest * nearest);
+        return half * half / (r * r * r);
+    }
+
+    void examine(const Stretch& s) {
+        const double half = edges_[s.edge].half;
+        if (s.begin == -kInfinity || s.end == kInfinity) {
+            // Beyond t the circle contains the one at t whose radius is |t| instead of r(t): 2π·(r − |t|) off at most.
+            const bool forward = s.end == kInfinity;
+            const double t = std::abs(forward ? s.begin : s.end), value = forward ? s.at_begin : s.at_end;
+            const double bound = value - 2.0 * pi * half * half / (std::sqrt(half * half + t * t) + t);
+            // Circles a million times the object are half-planes; their measure is that of the ancestors but for
+            // rounding.
+            if (bound >= target() || t > 1e6 * half) return drop(bound);
+            const double further = forward ? 2.0 * s.begin : 2.0 * s.end, at_further = measured(s.edge, further);
+            open_.push_back(forward ? Stretch{s.edge, s.begin, further, value, at_further}
+                                    : Stretch{s.edge, further, s.end, at_further, value});
+            open_.push_back(forward ? Stretch{s.edge, further, kInfinity, at_further, kInfinity}
+                                    : Stretch{s.edge, -kInfinity, further, kInfinity, at_further});
+            return;
+        }
+        const double length = s.end - s.begin;
+        const double bound = std::min(s.at_begin, s.at_end) - 0.25 * pi * bend(s) * length * length;
+        const double middle = 0.5 * (s.begin + s.end);
+        if (bound >= target() || !(s.begin < middle && middle < s.end)) return drop(bound);
+        const double value = measured(s.edge, middle);
+        open_.push_back({s.edge, s.begin, middle, s.at_begin, value});
+        open_.push_back({s.edge, middle, s.end, value, s.at_end});
+    }
+
+    double target() const { return result_.measure - problem_.tolerance; }
+    void drop(double bound) { dropped_ = std::min(dropped_, bound); }
+
+    const Problem& problem_;
+    const PlanarSupport& ancestors_;
+    Vector<VoronoiEdge> edges_;
+    Vector<Stretch> open_;
+    double dropped_ = kInfinity;
+    OptimalBound<Disc> result_{{}, kInfinity, 0.0, 0};
+};
+
+// --- rectangles ---
+
+Rectangle rectangle_at(std::span<const glm::dvec2> hull, double theta, const std::array<std::size_t, 4>& support) {
+    const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
+    const double right = glm::dot(hull[support[0]], axis), top = glm::dot(hull[support[1]], across);
+    const double left = glm::dot(hull[support[2]], axis), bottom = glm::dot(hull[support[3]], across);
+    return {0.5 * (right + left) * axis + 0.5 * (top + bottom) * across, axis,
+            0.5 * glm::dvec2(right - left, top - bottom)};
+}
+
+// Corners that support directions θ, θ + 90°, …; found afresh, so that the result does not depend on the path to it.
+std::array<std::size_t, 4> support_corners(std::span<const glm::dvec2> hull, double theta) {
+    const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
+    const glm::dvec2 directions[4] = {axis, across, -axis, -across};
+    std::array<std::size_t, 4> support{};
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t i = 1; i < hull.size(); ++i)
+            if (glm::dot(hull[i] - hull[support[k]], directions[k]) > 0.0) support[k] = i;
+    return support;
+}
+
+struct Turn {
+    double begin, end;
+    double at_begin, at_end;
+    std::array<std::size_t, 4> support;
+};
+
+class RectangleSearch {
+  public:
+    RectangleSearch(const Problem& problem, const PlanarSupport& ancestors) : problem_(problem), ancestors_(ancestors) {
+        for (const glm::dvec2& p : problem.hull)
+            diameter_ = std::max(diameter_, 2.0 * glm::length(p - problem.hull[0]));
+    }
+
+    OptimalBound<Rectangle> run() {
+        const std::span<const glm::dvec2> hull = problem_.hull;
+        // Where a side's normal, turned into the first quarter, changes one of the four support corners.
+        struct Event {
+            double angle;
+            std::size_t side, direction;
+        };
+        Vector<Event> events;
+        for (std::size_t i = 0; i < hull.size(); ++i) {
+            const glm::dvec2 side = hull[(i + 1) % hull.size()] - hull[i];
+            const double angle = arc_tangent(-side.x, side.y);
+            const double quarter = std::floor(angle / (0.5 * pi));
+            events.push_back({angle - 0.5 * pi * quarter, i, static_cast<std::size_t>(static_cast<int>(quarter) & 3)});
+        }
+        std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.angle < b.angle; });
+        auto support = support_corners(hull, 0.0);
+        double begin = 0.0;
+        for (std::size_t e = 0; e <= events.size(); ++e) {
+            const double end = e < events.size() ? std::min(events[e].angle, 0.5 * pi) : 0.5 * pi;
+            if (begin < end) open_.push_back({begin, end, measured(begin, support), measured(end, support), support});
+            if (e == events.size()) break;
+            begin = std::max(begin, end);
+            support[events[e].direction] = (events[e].side + 1) % hull.size();
+        }
+        for (std::size_t i = 0; i < open_.size(); ++i) examine(Turn(open_[i]));
+        result_.lower_bound = std::max(std::min(dropped_, result_.measure), std::min(problem_.own, result_.measure));
+        return result_;
+    }
+
+  private:
+    double measured(double theta, const std::array<std::size_t, 4>& support) {
+        const Rectangle rectangle = rectangle_at(problem_.hull, theta, support);
+        const double value = integral_of_min(ancestors_, PlanarSupport(rectangle));
+        ++result_.evaluations;
+        if (value < result_.measure) result_.measure = value, result_.bound = rectangle;
+        return value;
+    }
+
+    void examine(const Turn& s) {
+        const double length = s.end - s.begin, middle = 0.5 * (s.begin + s.end);
+        const double bound = std::min(s.at_begin, s.at_end) - 8.0 * diameter_ * length * length;
+        if (bound >= result_.measure - problem_.tolerance || !(s.begin < middle && middle < s.end)) {
+            dropped_ = std::min(dropped_, bound);
+            return;
+        }
+        const double value = measured(middle, s.support);
+        open_.push_back({s.begin, middle, s.at_begin, value, s.support});
+        open_.push_back({middle, s.end, value, s.at_end, s.support});
+    }
+
+    const Problem& problem_;
+    const PlanarSupport& ancestors_;
+    double diameter_ = 0.0;  // an upper bound: twice the farthest corner from the first
+    Vector<Turn> open_;
+    double dropped_ = kInfinity;
+    OptimalBound<Rectangle> result_{{}, kInfinity, 0.0, 0};
+};
+
+// Grown by the rounding of its own numbers, so that every corner is inside beyond doubt.
+void enclose(std::span<const glm::dvec2> hull, Disc& disc) {
+    for (const glm::dvec2& p : hull) disc.radius = std::max(disc.radius, glm::length(p - disc.center));
+    const double size = std::abs(disc.center.x) + std::abs(disc.center.y) + disc.radius;
+    disc.radius += 4.0 * std::numeric_limits<double>::epsilon() * size;
+}
+void enclose(std::span<const glm::dvec2> hull, Rectangle& rectangle) {
+    const glm::dvec2 across(-rectangle.axis.y, rectangle.axis.x);
+    double size = std::abs(rectangle.center.x) + std::abs(rectangle.center.y);
+    for (const glm::dvec2& p : hull) {
+        const glm::dvec2 d = p - rectangle.center;
+        rectangle.half_extents.x = std::max(rectangle.half_extents.x, std::abs(glm::dot(d, rectangle.axis)));
+        rectangle.half_extents.y = std::max(rectangle.half_extents.y, std::abs(glm::dot(d, across)));
+    }
+    size += rectangle.half_extents.x + rectangle.half_extents.y;
+    rectangle.half_extents += 4.0 * std::numeric_limits<double>::epsilon() * size;
+}
+
+}  // namespace
+
+Result<OptimalBound<Disc>> optimal_disc(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
+                                        const BoundOptions& options) {
+    const auto problem = prepare(object, ancestors, options);
+    if (!problem) return tl::unexpected(problem.error());
+    OptimalBound<Disc> result;
+    if (problem->hull.size() == 1)
+        result = {{problem->hull[0], 0.0}, 0.0, 0.0, 0};
+    else
+        result = DiscSearch(*problem, ancestors).run();
+    enclose(problem->hull, result.bound);
+    return result;
+}
+
+Result<OptimalBound<Rectangle>> optimal_box(std::span<const glm::dvec2> object, const PlanarSupport& ancestors) {
+    const auto problem = prepare(object, ancestors, {});
+    if (!problem) return tl::unexpected(problem.error());
+    OptimalBound<Rectangle> result;
+    result.bound = rectangle_at(problem->hull, 0.0, support_corners(problem->hull, 0.0));
+    result.measure = result.lower_bound = integral_of_min(ancestors, PlanarSupport(result.bound));
+    result.evaluations = 1;
+    enclose(problem->hull, result.bound);
+    return result;
+}
+
+Result<OptimalBound<Rectangle>> optimal_rectangle(std::span<const glm::dvec2> object, const PlanarSupport& ancestors,
+                                                  const BoundOptions& options) {
+    const auto problem = prepare(object, ancestors, options);
+    if (!problem) return tl::unexpected(problem.error());
+    auto result = RectangleSearch(*problem, ancestors).run();
+    enclose(problem->hull, result.bound);
+    return result;
+}
+
+}  // namespace crofton::study

@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/query_sample.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace crofton::study {
+namespace {
+
+using std::numbers::pi;
+constexpr std::uint32_t kMaxQueries = 1u << 24;
+
+struct HalfEdges {
+    std::array<glm::dvec3, 3> axis;
+    explicit HalfEdges(const Obb& box) {
+        for (int k = 0; k < 3; ++k)
+            axis[static_cast<std::size_t>(k)] = glm::dvec3(box.axes[k]) * double{box.half_extents[k]};
+    }
+    [[nodiscard]] double reach(const glm::dvec3& n) const {
+        return std::abs(glm::dot(axis[0], n)) + std::abs(glm::dot(axis[1], n)) + std::abs(glm::dot(axis[2], n));
+    }
+};
+
+}  // namespace
+
+Result<QuerySample> QuerySample::make(Kind kind, const sampling::Ball& region, std::uint32_t count) {
+    if (!(region.radius > 0.0) || !std::isfinite(region.radius) ||
+        !std::isfinite(region.center.x + region.center.y + region.center.z))
+        return fail(ErrorCode::invalid_argument, kNoItem, "query sample: the region has no positive, finite radius");
+    if (count == 0 || count > kMaxQueries)
+        return fail(ErrorCode::out_of_range, kNoItem, "query sample: between 1 and 2^24 queries are possible");
+    QuerySample sample;
+    sample.kind_ = kind;
+    sample.queries_.resize(count);
+    return sample;
+}
+
+Result<QuerySample> QuerySample::planes(const sampling::Ball& region, std::uint32_t count, std::uint64_t seed) {
+    auto sample = make(Kind::plane, region, count);
+    if (!sample) return sample;
+    const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto u = points.at<3>(i);
+        const glm::dvec3 n = sampling::direction({u[0], u[1]});
+        sample->queries_[i].direction = n;
+        sample->queries_[i].point = region.center + region.radius * (2.0 * u[2] - 1.0) * n;
+    }
+    sample->measure_ = 4.0 * pi * region.radius;
+    return sample;
+}
+
+Result<QuerySample> QuerySample::lines(const sampling::Ball& region, std::uint32_t count, std::uint64_t seed) {
+    auto sample = make(Kind::line, region, count);
+    if (!sample) return sample;
+    const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const sampling::Line line = sampling::line_through_disc(region, points.at<4>(i));
+        sample->queries_[i].point = line.point;
+        sample->queries_[i].direction = line.direction;
+    }
+    sample->measure_ = sampling::measure_of_lines(4.0 * pi * region.radius * region.radius);
+    return sample;
+}
+
+Result<QuerySample> QuerySample::frusta(const Camera& camera, const sampling::Ball& region, std::uint32_t count,
+                                        std::uint64_t seed) {
+    auto sample = make(Kind::frustum, region, count);
+    if (!sample) return sample;
+    if (auto finite = measure::of_frustum(camera); !finite) return tl::unexpected(finite.error());
+    const Frustum frustum = *frustum_of(camera);
+    sample->corners_ = *frustum_corners(frustum);
+    const auto& c = sample->corners_;
+    for (std::size_t k = 0; k < 5; ++k) {  // far is parallel to near
+        const glm::dvec3 n = frustum.planes[k].normal;
+        sample->normals_[k] = n;
+        auto& extent = sample->extents_[k];
+        extent = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+        for (const glm::dvec3& corner : c)
+            extent = {std::min(extent[0], glm::dot(n, corner)), std::max(extent[1], glm::dot(n, corner))};
+    }
+    sample->edges_ = {c[1] - c[0], c[2] - c[0], c[4] - c[0], c[5] - c[1], c[6] - c[2], c[7] - c[3]};
+    Aabb range;
+    for (const glm::dvec3& corner : c) range.include(corner);
+    range.min -= glm::dvec3(region.radius);
+    range.max += glm::dvec3(region.radius);
+    const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const sampling::Motion uniform = sampling::motion(range, points.at<6>(i));
+        sample->queries_[i].rotation = uniform.rotation;
+        sample->queries_[i].point = region.center - uniform.rotation * uniform.translation;
+    }
+    const glm::dvec3 size = range.max - range.min;
+    sample->measure_ = size.x * size.y * size.z;
+    return sample;
+}
+
+bool QuerySample::hits(std::uint32_t i, const Obb& box) const {
+    const Query& q = queries_[i];
+    const glm::dvec3 d = box.center - q.point;
+    if (kind_ == Kind::plane) return std::abs(glm::dot(d, q.direction)) <= HalfEdges(box).reach(q.direction);
+    if (kind_ == Kind::frustum) return frustum_hits(q, box, nullptr);
+    // Separating axes of a line and a box: the box's axes crossed with the line.
+    const HalfEdges half(box);
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 n = glm::cross(glm::dvec3(box.axes[k]), q.direction);
+        if (std::abs(glm::dot(d, n)) > half.reach(n)) return false;
+    }
+    return true;
+}
+
+bool QuerySample::straddles(std::uint32_t i, const Obb& box) const {
+    if (kind_ != Kind::frustum) return hits(i, box);
+    bool contained = false;
+    return frustum_hits(queries_[i], box, &contained) && !contained;
+}
+
+bool QuerySample::frustum_hits(const Query& q, const Obb& box, bool* contained) const {
+    // In the frustum's own frame.
+    const glm::dmat3 back = glm::transpose(q.rotation);
+    const glm::dvec3 center = back * (box.center - q.point);
+    HalfEdges half(box);
+    for (glm::dvec3& a : half.axis) a = back * a;
+    bool inside = true;
+    for (std::size_t k = 0; k < normals_.size(); ++k) {
+        const double at = glm::dot(normals_[k], center), reach = half.reach(normals_[k]);
+        if (at + reach < extents_[k][0] || at - reach > extents_[k][1]) return false;
+        // Inward normals: the lower extent is the plane itself; the far plane is the upper one along near's normal.
+        inside = inside && at - reach >= extents_[k][0] && (k != 4 || at + reach <= extents_[k][1]);
+    }
+    if (contained != nullptr) *contained = inside;
+    if (inside) return true;
+    const auto apart = [&](const glm::dvec3& n) {
+        const double at = glm::dot(n, center), reach = half.reach(n);
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const glm::dvec3& corner : corners_)
+            low = std::min(low, glm::dot(n, corner)), high = std::max(high, glm::dot(n, corner));
+        return at + reach < low || at - reach > high;
+    };
+    std::array<glm::dvec3, 3> axes;
+    for (int k = 0; k < 3; ++k) {
+        axes[static_cast<std::size_t>(k)] = back * glm::dvec3(box.axes[k]);
+        if (apart(axes[static_cast<std::size_t>(k)])) return false;
+    }
+    for (const glm::dvec3& a : axes)
+        for (const glm::dvec3& e : edges_)
+            if (apart(glm::cross(a, e))) return false;
+    return true;
+}
+
+Vector<std::uint32_t> QuerySample::hitting(std::span<const std::uint32_t> candidates, const Obb& box) const {
+    Vector<std::uint32_t> result;
+    for (const std::uint32_t i : candidates)
+        if (hits(i, box)) result.push_back(i);
+    return result;
+}
+
+Vector<std::uint32_t> QuerySample::all() const {
+    Vector<std::uint32_t> result(size());
+    std::iota(result.begin(), result.end(), 0u);
+    return result;
+}
+
+}  // namespace crofton::study

@@ -1,0 +1,193 @@
+#include <doctest/doctest.h>
+#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/ray.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <vector>
+
+#include "mesh/meshes.hpp"
+#include "oracle/exact_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::mesh;
+using namespace crofton::testing;
+
+namespace {
+
+// The first crossing of the line with any triangle, in rational arithmetic.
+std::optional<double> oracle_hit(const Ray& ray, const TriangleMesh& mesh) {
+    using namespace oracle;
+    std::optional<Rational> best;
+    const Vec3q o = rational(ray.origin), d = rational(ray.direction);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+        const Vec3q a = minus(rational(vertex(mesh, t, 0)), o), b = minus(rational(vertex(mesh, t, 1)), o),
+                    c = minus(rational(vertex(mesh, t, 2)), o);
+        const Rational u = dot(d, cross(a, b)), v = dot(d, cross(b, c)), w = dot(d, cross(c, a));
+        if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) continue;
+        const Vec3q n = cross(minus(b, a), minus(c, a));
+        const Rational speed = dot(n, d);
+        if (speed == 0) continue;
+        const Rational at = dot(n, a) / speed;
+        if (at >= 0 && (!best || at < *best)) best = at;
+    }
+    if (!best) return std::nullopt;
+    return best->get_d();
+}
+
+}  // namespace
+
+TEST_SUITE("mesh/ray") {
+    TEST_CASE("rays that are not finite or have no direction hit nothing") {
+        const auto mesh = mesh::MeshTree::build(wavy_torus(1.0, 0.4, 0.0));
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        CHECK_FALSE(raycast(Ray{{nan, 0.0, 0.0}}, *mesh).has_value());
+        CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 0.0}}, *mesh).has_value());
+        CHECK_FALSE(raycast(Ray{{1.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, -1.0}, *mesh).has_value());
+        CHECK(raycast(Ray{{1.0, 0.0, -5.0}}, *mesh).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, nan, 1.0}}, Obb{}).has_value());
+        const Triangle triangle{glm::dvec3(-1, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 1, 0)};
+        CHECK(raycast(Ray{{0.0, 0.0, -5.0}}, triangle) == 5.0);
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, nan, 1.0}}, triangle).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}}, Triangle{glm::dvec3(nan), triangle[1], triangle[2]}).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, -5.0}, {0.0, 0.0, 1.0}, 4.5}, triangle).has_value());
+        CHECK_FALSE(raycast(Ray{{-5.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, triangle).has_value());  // in its plane
+    }
+
+    TEST_CASE("a box is entered where it should be") {
+        const Obb box{{10.0, 0.0, 0.0}, glm::mat3(1.0f), glm::vec3(1.0f, 2.0f, 0.0f)};
+        CHECK(raycast(Ray{{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}, box) == 4.5);
+        CHECK(raycast(Ray{{10.0, 0.0, 0.0}, {1.0, 1.0, 0.0}}, box) == 0.0);
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.1}, {1.0, 0.0, 0.0}}, box).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 8.9}, box).has_value());
+        CHECK_FALSE(raycast(Ray{{0.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}}, box).has_value());
+    }
+
+    TEST_CASE("segments end where they end, and the nearest of equal hits has the lowest index") {
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 1}, {4, 0, 1}, {0, 4, 1}};
+        mesh.indices = {0, 1, 2, 0, 1, 2, 0, 2, 1};
+        const auto tree = mesh::MeshTree::build(mesh);
+        const auto hit = raycast(Ray{{1, 1, 0}, {0, 0, 1}, 1.0}, *tree);
+        REQUIRE(hit.has_value());
+        CHECK(hit->t == 1.0);
+        CHECK(hit->triangle == 0);
+        CHECK_FALSE(raycast(Ray{{1, 1, 0}, {0, 0, 1}, std::nextafter(1.0, 0.0)}, *tree).has_value());
+        CHECK(hits_any(Ray{{1, 1, 0}, {0, 0, 1}, 1.0}, *tree));
+        CHECK(raycast(Ray{{0, 0, 0}}, *tree).has_value());  // through a corner
+        CHECK(raycast(Ray{{2, 0, 0}}, *tree).has_value());  // through an edge
+        CHECK_FALSE(raycast(Ray{{std::nextafter(0.0, -1.0), 1, 0}}, *tree).has_value());
+    }
+
+    TEST_CASE("random rays, rays at vertices and at edges: as rational arithmetic says") {
+        std::mt19937_64 random(3);
+        const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 12, 8);
+        const auto tree = mesh::MeshTree::build(mesh);
+        int hits = 0;
+        for (int trial = 0; trial < 600; ++trial) {
+            Ray ray{3.0 * random_vector(random), random_vector(random)};
+            const std::size_t t = random() % mesh.triangle_count();
+            if (trial % 3 == 1) ray.direction = vertex(mesh, t, 0) - ray.origin;
+            if (trial % 3 == 2) ray.direction = 0.5 * (vertex(mesh, t, 0) + vertex(mesh, t, 1)) - ray.origin;
+            if (trial % 5 == 0) ray.origin = glm::dvec3(glm::ivec3(ray.origin));
+            const auto truth = oracle_hit(ray, mesh);
+            const auto hit = raycast(ray, *tree);
+            CHECK(hit.has_value() == truth.has_value());
+            CHECK(hits_any(ray, *tree) == truth.has_value());
+            std::optional<double> nearest;
+            for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+                if (const auto at = raycast(ray, Triangle{vertex(mesh, i, 0), vertex(mesh, i, 1), vertex(mesh, i, 2)}))
+                    nearest = nearest ? std::min(*nearest, *at) : at;
+            CHECK(nearest.has_value() == truth.has_value());
+            if (nearest && truth) CHECK(*nearest == doctest::Approx(*truth).epsilon(1e-9));
+            if (hit && truth) CHECK(hit->t == doctest::Approx(*truth).epsilon(1e-9));
+            hits += truth.has_value();
+        }
+        CHECK(hits > 200);
+    }
+
+    TEST_CASE("a closed mesh has no leaks: rays from inside always hit") {
+        std::mt19937_64 random(4);
+        const auto tree = mesh::MeshTree::build(wavy_torus(0.6, 0.59, 0.0, 16, 16));
+        for (int trial = 0; trial < 20000; ++trial) CHECK(hits_any(Ray{{0.6, 0.0, 0.0}, random_vector(random)}, *tree));
+    }
+
+    TriangleMesh cube_mesh() {
+        TriangleMesh mesh;
+        for (int i = 0; i < 8; ++i) mesh.positions.push_back(glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+        mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+        return mesh;
+    }
+
+    TEST_CASE("rays within a triangle's plane do not hit it, but what bounds it in a closed mesh is hit") {
+        TriangleMesh sheet;
+        sheet.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+        sheet.indices = {0, 1, 2};
+        const auto flat = mesh::MeshTree::build(sheet);
+        CHECK_FALSE(raycast(Ray{{-1, 1, 0}, {1, 0, 0}}, *flat).has_value());
+        CHECK_FALSE(raycast(Ray{{-1, 0, 0}, {1, 0, 0}}, *flat).has_value());  // along an edge
+        CHECK_FALSE(raycast(Ray{{1, 1, 0}, {0.3, 0.7, 0}}, *flat).has_value());
+        CHECK(raycast(Ray{{-1, 1, 0}, {1, 0, 1e-300}}, *flat).has_value() == false);
+        CHECK(raycast(Ray{{-1, 1, -1e-60}, {1, 0, 1e-60}}, *flat).has_value());  // meets x = 0, if ever so flatly
+        const auto cube = mesh::MeshTree::build(cube_mesh());
+        for (const double y : {-1.0, -0.5, 0.0, 0.25, 1.0}) {
+            const auto hit = raycast(Ray{{-5, y, 1}, {1, 0, 0}}, *cube);  // within the plane of a face
+            REQUIRE(hit.has_value());
+            CHECK(hit->t == 4.0);
+        }
+        CHECK(raycast(Ray{{-5, 1, 1}, {2, 0, 0}}, *cube)->t == 2.0);    // along an edge
+        CHECK(raycast(Ray{{-5, -5, -5}, {1, 1, 1}}, *cube)->t == 4.0);  // along a diagonal, through two corners
+        CHECK_FALSE(raycast(Ray{{-5, 0, std::nextafter(1.0, 2.0)}, {1, 0, 0}}, *cube).has_value());
+    }
+
+    TEST_CASE("watertight: no ray from inside a closed mesh is lost at an edge or a vertex") {
+        const TriangleMesh meshes[] = {cube_mesh(), wavy_torus(1.0, 0.6, 0.2, 24, 12)};
+        for (const TriangleMesh& mesh : meshes) {
+            const auto tree = mesh::MeshTree::build(mesh);
+            std::mt19937_64 random(8);
+            std::vector<glm::dvec3> origins;
+            while (origins.size() < 4) {
+                const glm::dvec3 p = glm::dvec3(0.8, 0.0, 0.0) + 0.3 * random_vector(random);
+                if (contains(*tree, p)) origins.push_back(p);
+            }
+            int lost = 0;
+            const auto shoot = [&](const glm::dvec3& from, const glm::dvec3& target) {
+                lost += !raycast(Ray{from, target - from}, *tree).has_value();
+                lost += !hits_any(Ray{from, 1e-7 * (target - from)}, *tree);
+            };
+            for (const glm::dvec3& from : origins)
+                for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const glm::dvec3 a = vertex(mesh, t, k), b = vertex(mesh, t, (k + 1) % 3);
+                        shoot(from, a);
+                        for (const double s : {0.5, 0.25, 1.0 / 3.0, 0.1, 1e-9}) shoot(from, a + s * (b - a));
+                    }
+            CHECK(lost == 0);
+        }
+    }
+
+    TEST_CASE("grazing rays: needles of triangles seen edge-on are hit where rational arithmetic hits them") {
+        std::mt19937_64 random(9);
+        int hits = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            const glm::dvec3 direction = glm::normalize(random_vector(random)), origin = 2.0 * random_vector(random);
+            const double off = std::pow(10.0, -double(trial % 18));
+            TriangleMesh mesh;
+            for (int k = 0; k < 3; ++k)
+                mesh.positions.push_back(
+                    glm::vec3(origin + (3.0 + random_vector(random).x) * direction + off * random_vector(random)));
+            mesh.indices = {0, 1, 2};
+            const auto tree = mesh::MeshTree::build(mesh);
+            const Ray ray{origin, direction};
+            const auto truth = oracle_hit(ray, mesh);
+            const auto hit = raycast(ray, *tree);
+            CHECK(hit.has_value() == truth.has_value());
+            if (hit && truth) {
+                CHECK(hit->t > 1.9);
+                CHECK(hit->t < 6.0);
+            }
+            hits += truth.has_value();
+        }
+        CHECK(hits > 100);
+    }
+}

@@ -1,0 +1,158 @@
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/sampling/global_lines.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/wrong_lines.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+using namespace crofton;
+using namespace crofton::sampling;
+using std::numbers::pi;
+
+namespace {
+
+const Ball kBall{glm::dvec3(1.0, -2.0, 0.5), 2.0};
+constexpr int kLines = 100'000;
+
+bool meets(const Line& line, const glm::dvec3& center, double radius) {
+    const glm::dvec3 d = center - line.point;
+    const double along = glm::dot(d, line.direction);
+    return glm::dot(d, d) - along * along <= radius * radius;
+}
+
+// Of n lines with known chance p each, is `hits` within 4.5 standard errors?
+bool plausible(double hits, double n, double p) {
+    return std::abs(hits - n * p) <= 4.5 * std::sqrt(n * p * (1.0 - p));
+}
+
+// Uniform lines through kBall hit a ball of radius r anywhere inside with chance r²/R².
+template <class Sample>
+bool sees_every_place_alike(Sample sample) {
+    const glm::dvec3 places[] = {{0.0, 0.0, 0.0}, {1.2, 0.0, 0.0}, {0.0, -1.2, 0.0}, {0.6, 0.6, 0.85}, {0.0, 0.0, 1.6}};
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        Random random(seed, 77);
+        const double r = 0.4;
+        int hits = 0;
+        for (int i = 0; i < kLines; ++i) hits += meets(sample(random), kBall.center + places[seed], r);
+        if (!plausible(hits, kLines, r * r / 4.0)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_SUITE("sampling/global_lines") {
+    TEST_CASE("a hull without area or with bad indices is refused") {
+        TriangleMesh mesh;
+        CHECK(LinesFromHull::make(mesh).error().code == ErrorCode::empty);
+        mesh.positions = {glm::vec3(0.0f), glm::vec3(1.0f), glm::vec3(2.0f)};
+        mesh.indices = {0, 1, 2};
+        CHECK(LinesFromHull::make(mesh).error().code == ErrorCode::empty);
+        mesh.indices = {0, 1, 3};
+        CHECK(LinesFromHull::make(mesh).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE("lines through the ball by two sphere points see every place alike") {
+        CHECK(sees_every_place_alike([](Random& r) { return line_through_two_sphere_points(kBall, r.point<4>()); }));
+    }
+    TEST_CASE("lines through the ball by a disc point see every place alike") {
+        CHECK(sees_every_place_alike([](Random& r) { return line_through_disc(kBall, r.point<4>()); }));
+    }
+    TEST_CASE("cosine-weighted lines from a box's surface see every place alike, in proportion to the areas") {
+        const Aabb box{glm::dvec3(-1.0, -2.0, -0.5), glm::dvec3(3.0, 1.0, 0.5)};
+        const double r = 0.3, chance = 4.0 * pi * r * r / (2.0 * (4.0 * 3.0 + 3.0 * 1.0 + 1.0 * 4.0));
+        for (const glm::dvec3 place :
+             {glm::dvec3(1.0, -0.5, 0.0), glm::dvec3(-0.6, 0.6, 0.1), glm::dvec3(2.6, -1.6, 0.2)}) {
+            Random random(1);
+            int hits = 0;
+            for (int i = 0; i < kLines; ++i) hits += meets(line_from_box(box, random.point<5>()), place, r);
+            CHECK(plausible(hits, kLines, chance));
+        }
+    }
+    TEST_CASE("a turned box and a hull of triangles are sampled like the box") {
+        Random random(4);
+        Obb box;
+        box.center = glm::dvec3(5.0, 6.0, 7.0);
+        box.axes = glm::mat3(rotation({0.3, 0.6, 0.9}));
+        box.half_extents = glm::vec3(2.0f, 1.0f, 0.25f);
+        TriangleMesh hull;
+        for (const glm::dvec3& c : corners(box)) hull.positions.emplace_back(c);
+        hull.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+        const auto from_hull = LinesFromHull::make(hull);
+        REQUIRE(from_hull.has_value());
+        CHECK(from_hull->area() == doctest::Approx(surface_area(box)));
+        const double r = 0.2, chance = 4.0 * pi * r * r / surface_area(box);
+        const glm::dvec3 place = box.center + 1.5 * glm::dvec3(box.axes[0]) - 0.5 * glm::dvec3(box.axes[1]);
+        int box_hits = 0, hull_hits = 0;
+        for (int i = 0; i < kLines; ++i) {
+            const Line line = line_from_box(box, random.point<5>());
+            box_hits += meets(line, place, r);
+            CHECK(contains(box, box.center + 0.999 * (line.point - box.center)));
+            hull_hits += meets((*from_hull)(random.point<5>()), place, r);
+        }
+        CHECK(plausible(box_hits, kLines, chance));
+        CHECK(plausible(hull_hits, kLines, chance));
+    }
+    TEST_CASE("a box without thickness still gives lines from both its sides") {
+        const Aabb flat{glm::dvec3(-1.0, -1.0, 0.0), glm::dvec3(1.0, 1.0, 0.0)};
+        Random random(8);
+        int up = 0;
+        for (int i = 0; i < 10'000; ++i) {
+            const Line line = line_from_box(flat, random.point<5>());
+            CHECK(line.point.z == 0.0);
+            up += line.direction.z > 0.0;
+        }
+        CHECK(plausible(up, 10'000, 0.5));
+    }
+
+    TEST_CASE("bundles hold πR²/Δ lines and see every place alike") {
+        Random random(5);
+        Vector<Line> lines;
+        const double cell = 0.05;
+        const int bundles = 2'000;
+        for (int i = 0; i < bundles; ++i) append_line_bundle(kBall, cell, random, lines);
+        const double expected = pi * 4.0 / cell;
+        CHECK(static_cast<double>(lines.size()) / bundles == doctest::Approx(expected).epsilon(0.003));
+        const double r = 0.4;
+        double hits = 0.0;
+        for (const Line& line : lines) hits += meets(line, kBall.center + glm::dvec3(0.0, 1.2, 0.9), r);
+        CHECK(hits / bundles == doctest::Approx(pi * r * r / cell).epsilon(0.02));
+    }
+
+    TEST_CASE("a patch of area A expects N·A/(2πR²) crossings") {
+        Random random(6);
+        const glm::dvec3 corner = kBall.center + glm::dvec3(-0.9, 0.3, 0.2), normal = glm::dvec3(0.0, 0.6, 0.8);
+        const glm::dvec3 u(1.0, 0.0, 0.0), v(0.0, 0.8, -0.6);  // a 1.5 × 1 rectangle
+        int hits = 0;
+        for (int i = 0; i < kLines; ++i) {
+            const Line line = line_through_disc(kBall, random.point<4>());
+            const glm::dvec3 p = line.point + line.direction * (glm::dot(corner - line.point, normal) /
+                                                                glm::dot(line.direction, normal));
+            const double s = glm::dot(p - corner, u), t = glm::dot(p - corner, v);
+            hits += s >= 0.0 && s <= 1.5 && t >= 0.0 && t <= 1.0;
+        }
+        CHECK(plausible(hits, kLines, 1.5 / (2.0 * pi * 4.0)));
+    }
+
+    TEST_CASE("the wrong densities are told from the right ones") {
+        CHECK_FALSE(sees_every_place_alike(
+            [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kBall, r.point<4>()); }));
+        const Aabb box{glm::dvec3(-1.0), glm::dvec3(1.0)};
+        Random random(7);
+        int hits = 0;
+        for (int i = 0; i < kLines; ++i)
+            hits += meets(study::wrong::line_through_two_box_points(box, random.point<6>()), glm::dvec3(0.0), 0.3);
+        CHECK_FALSE(plausible(hits, kLines, 4.0 * pi * 0.09 / 24.0));
+        // In the plane the distance to the centre should be uniform: half the lines within R/2. Bertrand's chords: a
+        // third.
+        int near = 0;
+        for (int i = 0; i < kLines; ++i) {
+            const auto line = study::wrong::line_through_two_circle_points(1.0, random.point<2>());
+            near += std::abs(line.point.x * line.direction.y - line.point.y * line.direction.x) < 0.5;
+        }
+        CHECK_FALSE(plausible(near, kLines, 0.5));
+        CHECK(plausible(near, kLines, 1.0 / 3.0));
+    }
+}

@@ -1,0 +1,204 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/measure/planar.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/planar_bounds.hpp>
+#include <crofton/study/planar_lines.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
+
+using namespace crofton;
+using namespace crofton::measure;
+using namespace crofton::sampling;
+using namespace crofton::study;
+using std::numbers::pi;
+
+namespace {
+
+std::vector<glm::dvec2> cloud(Random& random, int n) {
+    std::vector<glm::dvec2> points;
+    const glm::dvec2 shape(1.0, random.uniform(0.05, 1.0));
+    for (int i = 0; i < n; ++i) points.push_back(shape * disc_point(random.point<2>()));
+    return points;
+}
+
+// Ancestors of several kinds around the points, each loose in its own way.
+std::vector<PlanarSupport> ancestors_of(Random& random, const std::vector<glm::dvec2>& points, int n) {
+    std::vector<PlanarSupport> result;
+    for (int k = 0; k < n; ++k) {
+        const glm::dvec2 center = 0.7 * disc_point(random.point<2>());
+        if (k % 2 == 0) {
+            double r = 0.0;
+            for (const glm::dvec2& p : points) r = std::max(r, glm::length(p - center));
+            result.emplace_back(Disc{center, r});
+        } else {
+            const glm::dvec2 axis = circle_point(random.uniform()), across(-axis.y, axis.x);
+            glm::dvec2 half(0.0);
+            for (const glm::dvec2& p : points)
+                half = glm::max(half, glm::abs(glm::dvec2(glm::dot(p - center, axis), glm::dot(p - center, across))));
+            result.emplace_back(Rectangle{center, axis, half});
+        }
+    }
+    return result;
+}
+
+bool holds(const Disc& disc, const std::vector<glm::dvec2>& points) {
+    return std::all_of(points.begin(), points.end(),
+                       [&](const glm::dvec2& p) { return glm::length(p - disc.center) <= disc.radius; });
+}
+
+}  // namespace
+
+TEST_SUITE("study/planar_bounds") {
+    TEST_CASE("no points, NaN and ancestors that do not contain the object are refused") {
+        const PlanarSupport ancestor(Disc{{0.0, 0.0}, 1.0});
+        CHECK(optimal_disc({}, ancestor).error().code == ErrorCode::empty);
+        const std::vector<glm::dvec2> nan = {{0.0, 0.0}, {std::nan(""), 0.0}}, outside = {{0.0, 0.0}, {1.5, 0.0}};
+        CHECK(optimal_rectangle(nan, ancestor).error().item == 1);
+        CHECK(optimal_disc(outside, ancestor).error().code == ErrorCode::invalid_argument);
+        CHECK(optimal_box(outside, ancestor).error().code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a point is its own best bound, a segment its own best rectangle") {
+        const PlanarSupport ancestor(Disc{{0.0, 0.0}, 5.0});
+        const std::vector<glm::dvec2> point(3, {1.0, 2.0}), segment = {{0.0, 0.0}, {3.0, 3.0}, {1.0, 1.0}};
+        CHECK(optimal_disc(point, ancestor)->bound.center == glm::dvec2(1.0, 2.0));
+        CHECK(optimal_disc(point, ancestor)->measure == 0.0);
+        CHECK(optimal_rectangle(point, ancestor)->measure == doctest::Approx(0.0));
+        CHECK(optimal_rectangle(segment, ancestor)->measure == doctest::Approx(6.0 * std::sqrt(2.0)).epsilon(1e-9));
+    }
+
+    TEST_CASE("an object that its ancestor fits exactly leaves nothing to gain") {
+        const std::vector<glm::dvec2> square = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+        const PlanarSupport tight = *PlanarSupport::of_hull(square);
+        const auto disc = optimal_disc(square, tight);
+        REQUIRE(disc.has_value());
+        CHECK(disc->measure == doctest::Approx(4.0));
+        CHECK(disc->lower_bound == doctest::Approx(4.0));
+        CHECK(optimal_rectangle(square, tight)->measure == doctest::Approx(4.0));
+    }
+
+    TEST_CASE("the paper's triangle: the best second circle has radius 1.871 l and saves 40.3 percent") {
+        // The degenerate triangle is a segment of length 2l, its first circle has radius l (section 4 of the paper,
+        // with formula (8) completed by its missing -4l). Closed form by d = sqrt(R^2 - 1): L1 + L2 - L_hull - 4.
+        const auto closed_form = [](double big) {
+            const double d = std::sqrt(big * big - 1.0), angle = std::acos((big - 1.0) / d);
+            const double hull =
+                2.0 * std::sqrt(d * d - (big - 1.0) * (big - 1.0)) + 2.0 * big * (pi - angle) + 2.0 * angle;
+            return 2.0 * pi * (1.0 + big) - hull - 4.0;
+        };
+        CHECK(closed_form(1.0 + 1e-9) == doctest::Approx(2.0 * pi - 4.0).epsilon(1e-4));
+        double low = 1.2, high = 3.0;  // golden section on the closed form
+        for (int i = 0; i < 200; ++i) {
+            const double a = low + 0.381966 * (high - low), b = low + 0.618034 * (high - low);
+            (closed_form(a) < closed_form(b) ? high : low) = closed_form(a) < closed_form(b) ? b : a;
+        }
+        const std::vector<glm::dvec2> triangle = {{-1.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}};
+        const auto best = optimal_disc(triangle, PlanarSupport(Disc{{0.0, 0.0}, 1.0}));
+        REQUIRE(best.has_value());
+        CHECK(best->measure - 4.0 == doctest::Approx(closed_form(0.5 * (low + high))).epsilon(1e-8));
+        CHECK(best->measure - 4.0 == doctest::Approx(1.3637).epsilon(1e-4));
+        CHECK(best->bound.radius == doctest::Approx(1.871).epsilon(1e-3));
+        CHECK(1.0 - (best->measure - 4.0) / (2.0 * pi - 4.0) == doctest::Approx(0.403).epsilon(1e-3));
+        CHECK(best->measure - best->lower_bound <= 1e-9 * 2.0 * pi);
+    }
+
+    TEST_CASE("regular polygons, whose corners are all concyclic, are bounded to the promised tolerance") {
+        for (const int n : {3, 4, 5, 12, 100, 1000}) {
+            std::vector<glm::dvec2> points;
+            for (int i = 0; i < n; ++i) points.push_back(circle_point(static_cast<double>(i) / n));
+            const PlanarSupport ancestor(Rectangle{{0.1, 0.0}, {1.0, 0.0}, {1.3, 1.1}});
+            const auto disc = optimal_disc(points, ancestor);
+            REQUIRE(disc.has_value());
+            CHECK(disc->measure - disc->lower_bound <= 1e-9 * ancestor.integral());
+            CHECK(disc->measure <= integral_of_min(ancestor, Disc{{0.0, 0.0}, 1.0}) + 1e-12);
+            CHECK(holds(disc->bound, points));
+        }
+    }
+
+    TEST_CASE("no enclosing circle that a fine search finds is better") {
+        Random random(11);
+        for (int trial = 0; trial < 60; ++trial) {
+            const auto points = cloud(random, 2 + trial % 20);
+            const PlanarSupport ancestors = lower_envelope(ancestors_of(random, points, 1 + trial % 4));
+            const auto best = optimal_disc(points, ancestors);
+            REQUIRE(best.has_value());
+            CHECK(holds(best->bound, points));
+            CHECK(best->measure - best->lower_bound <= 1e-9 * ancestors.integral());
+            CHECK(integral_of_min(ancestors, best->bound) == doctest::Approx(best->measure).epsilon(1e-10));
+            // Centres everywhere at every scale, then downhill from the best.
+            const auto measured = [&](const glm::dvec2& c) {
+                double r = 0.0;
+                for (const glm::dvec2& p : points) r = std::max(r, glm::length(p - c));
+                return integral_of_min(ancestors, Disc{c, r});
+            };
+            glm::dvec2 at(0.0);
+            double least = measured(at);
+            for (int i = 0; i < 400; ++i) {
+                const glm::dvec2 c = std::exp(random.uniform(-3.0, 3.0)) * circle_point(random.uniform());
+                if (const double m = measured(c); m < least) least = m, at = c;
+            }
+            for (double step = 0.3; step > 1e-7; step *= 0.9) {
+                const glm::dvec2 c = at + step * circle_point(random.uniform());
+                if (const double m = measured(c); m < least) least = m, at = c;
+            }
+            CHECK(best->lower_bound <= least + 1e-12);
+        }
+    }
+
+    TEST_CASE("no enclosing rectangle that a fine search finds is better, nor is the tight box") {
+        Random random(12);
+        for (int trial = 0; trial < 60; ++trial) {
+            const auto points = cloud(random, 2 + trial % 20);
+            const PlanarSupport ancestors = lower_envelope(ancestors_of(random, points, 1 + trial % 4));
+            const auto best = optimal_rectangle(points, ancestors);
+            const auto box = optimal_box(points, ancestors);
+            REQUIRE(best.has_value());
+            CHECK(best->measure <= box->measure + 1e-12);
+            CHECK(best->measure - best->lower_bound <= 1e-9 * ancestors.integral());
+            double least = 1e300;
+            for (int i = 0; i < 3000; ++i) {
+                const glm::dvec2 axis = circle_point(i / 12000.0), across(-axis.y, axis.x);
+                glm::dvec2 low(1e300), high(-1e300);
+                for (const glm::dvec2& p : points) {
+                    const glm::dvec2 q(glm::dot(p, axis), glm::dot(p, across));
+                    low = glm::min(low, q), high = glm::max(high, q);
+                }
+                const glm::dvec2 c = 0.5 * (low + high);
+                least = std::min(least, integral_of_min(ancestors, PlanarSupport(Rectangle{c.x * axis + c.y * across,
+                                                                                           axis, 0.5 * (high - low)})));
+            }
+            CHECK(best->lower_bound <= least + 1e-12);
+            CHECK(least - best->measure < 2e-3);  // the fine search comes this near
+            for (const glm::dvec2& p : points) {
+                const glm::dvec2 d = p - best->bound.center, across(-best->bound.axis.y, best->bound.axis.x);
+                CHECK(std::abs(glm::dot(d, best->bound.axis)) <= best->bound.half_extents.x);
+                CHECK(std::abs(glm::dot(d, across)) <= best->bound.half_extents.y);
+            }
+        }
+    }
+
+    TEST_CASE("with ancestors far away the best rectangle has minimal perimeter, the best circle the least radius") {
+        Random random(13);
+        for (int trial = 0; trial < 20; ++trial) {
+            const auto points = cloud(random, 15);
+            const PlanarSupport far(Disc{{0.0, 0.0}, 1e3});
+            const auto rectangle = optimal_rectangle(points, far);
+            const auto hull = *convex_hull(points);
+            double least = 1e300;  // rotating calipers: one side is flush
+            for (std::size_t i = 0; i < hull.size(); ++i) {
+                const glm::dvec2 axis = glm::normalize(hull[(i + 1) % hull.size()] - hull[i]), across(-axis.y, axis.x);
+                glm::dvec2 low(1e300), high(-1e300);
+                for (const glm::dvec2& p : hull) {
+                    const glm::dvec2 q(glm::dot(p, axis), glm::dot(p, across));
+                    low = glm::min(low, q), high = glm::max(high, q);
+                }
+                least = std::min(least, 2.0 * (high.x - low.x + high.y - low.y));
+            }
+            CHECK(rectangle->measure == doctest::Approx(least).epsilon(2e-6));
+        }
+    }
+}

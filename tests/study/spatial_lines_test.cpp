@@ -1,0 +1,121 @@
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/spatial_lines.hpp>
+#include <numbers>
+#include <vector>
+
+using namespace crofton;
+using namespace crofton::measure;
+using namespace crofton::sampling;
+using namespace crofton::study;
+using std::numbers::pi;
+
+namespace {
+
+ConvexBody box(const glm::dvec3& low, const glm::dvec3& high) {
+    ConvexBody result;
+    for (int i = 0; i < 8; ++i)
+        result.points.emplace_back((i & 1 ? high : low).x, (i & 2 ? high : low).y, (i & 4 ? high : low).z);
+    return result;
+}
+
+void check(const Result<Enclosure>& measured, double expected) {
+    REQUIRE(measured.has_value());
+    CHECK(std::abs(measured->value - expected) <= measured->error + 1e-12 * expected);
+}
+
+}  // namespace
+
+TEST_SUITE("study/spatial_lines") {
+    TEST_CASE("no body, a body without points, NaN and negative radii are named") {
+        CHECK(measure_of_planes_hitting_all({}).error().code == ErrorCode::empty);
+        std::vector<ConvexBody> bodies = {ConvexBody::ball(glm::dvec3(0.0), 1.0), {}};
+        CHECK(measure_of_lines_hitting_all(bodies).error().item == 1);
+        bodies[1] = ConvexBody::ball(glm::dvec3(0.0, std::nan(""), 0.0), 1.0);
+        CHECK(measure_of_lines_hitting_all(bodies).error().code == ErrorCode::non_finite);
+        bodies[1] = ConvexBody::ball(glm::dvec3(0.0), -1.0);
+        CHECK(measure_of_planes_hitting_all(bodies).error().item == 1);
+    }
+
+    TEST_CASE("points and parallel segments: nothing hits them but what hits all") {
+        const std::vector<ConvexBody> point = {ConvexBody::ball(glm::dvec3(1.0, 2.0, 3.0), 0.0)};
+        CHECK(std::abs(measure_of_planes_hitting_all(point)->value) < 1e-12);
+        CHECK(measure_of_lines_hitting_all(point)->value == 0.0);
+        const std::vector<ConvexBody> segment = {{{glm::dvec3(0.0), glm::dvec3(0.0, 3.0, 4.0)}, 0.0}};
+        check(measure_of_planes_hitting_all(segment), of_segment(5.0).mean_curvature);
+        CHECK(measure_of_lines_hitting_all(segment, {.tolerance = 1e-2, .max_cells = 2000})->value == 0.0);
+    }
+
+    TEST_CASE("planes that hit one body have measure M, to the error promised") {
+        check(cauchy_mean_curvature(ConvexBody::ball(glm::dvec3(3.0, -1.0, 2.0), 1.5)), of_ball(1.5).mean_curvature);
+        const auto m = cauchy_mean_curvature(box(glm::dvec3(0.0), glm::dvec3(1.0, 2.0, 3.0)));
+        check(m, 6.0 * pi);
+        CHECK(m->error <= 1e-4 * 6.0 * pi);
+        Camera camera;
+        camera.near = 1.0, camera.far = 20.0;
+        camera.forward = glm::dvec3(1.0, 0.3, -0.2);
+        check(cauchy_mean_curvature(*ConvexBody::frustum(camera)), of_frustum(camera)->mean_curvature);
+    }
+
+    TEST_CASE("Cauchy: the mean shadow gives the surface area") {
+        check(cauchy_area(box(glm::dvec3(0.0), glm::dvec3(1.0, 2.0, 3.0))), 22.0);
+        CHECK(cauchy_area(box(glm::dvec3(0.0), glm::dvec3(1.0, 2.0, 3.0)))->value ==
+              doctest::Approx(22.0).epsilon(2e-3));
+        CHECK(cauchy_area(box(glm::dvec3(-0.5), glm::dvec3(0.5, 0.5, -0.5)))->value ==
+              doctest::Approx(2.0).epsilon(5e-3));
+        check(cauchy_area(ConvexBody::ball(glm::dvec3(9.0), 2.0), {.tolerance = 3e-2}), 16.0 * pi);
+        Camera camera;
+        camera.near = 1.0, camera.far = 5.0;
+        const auto f = cauchy_area(*ConvexBody::frustum(camera));
+        check(f, of_frustum(camera)->area);
+        CHECK(f->value == doctest::Approx(of_frustum(camera)->area).epsilon(2e-3));
+    }
+
+    TEST_CASE("planes that hit two bodies that meet have measure M1 + M2 - M_hull") {
+        // Two boxes side by side that overlap: their hull is a box again.
+        const std::vector<ConvexBody> two = {box(glm::dvec3(0.0), glm::dvec3(3.0, 1.0, 2.0)),
+                                             box(glm::dvec3(2.0, 0.0, 0.0), glm::dvec3(5.0, 1.0, 2.0))};
+        check(measure_of_planes_hitting_all(two), pi * (6.0 + 6.0 - 8.0));
+        const std::vector<ConvexBody> nested = {box(glm::dvec3(0.0), glm::dvec3(1.0)),
+                                                ConvexBody::ball(glm::dvec3(0.5), 3.0)};
+        check(measure_of_planes_hitting_all(nested), 3.0 * pi);
+    }
+
+    TEST_CASE("lines that hit two squares have the measure of their form factor times pi") {
+        // Published values for unit squares, facing at distance 1 and perpendicular with a common edge.
+        const auto square = [](const glm::dvec3& o, const glm::dvec3& u, const glm::dvec3& v) {
+            return ConvexBody{{o, o + u, o + v, o + u + v}, 0.0};
+        };
+        const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), z(0.0, 0.0, 1.0), o(0.0);
+        const std::vector<ConvexBody> facing = {square(o, x, y), square(z, x, y)},
+                                      corner = {square(o, x, y), square(o, x, z)};
+        const QuadratureOptions fine{.tolerance = 2e-2, .max_cells = 40000};
+        const auto a = measure_of_lines_hitting_all(facing, fine), b = measure_of_lines_hitting_all(corner, fine);
+        check(a, pi * 0.199825);
+        CHECK(a->value == doctest::Approx(pi * 0.199825).epsilon(2e-3));
+        check(b, pi * 0.200044);
+        CHECK(b->value == doctest::Approx(pi * 0.200044).epsilon(2e-3));
+    }
+
+    TEST_CASE("the true value is never outside the error, even when cells run out at once") {
+        Random random(3);
+        for (int trial = 0; trial < 40; ++trial) {
+            const glm::dvec3 size(random.uniform(), random.uniform(), 0.1 * random.uniform());
+            Obb turned;
+            turned.axes = glm::mat3(rotation(random.point<3>()));
+            turned.half_extents = glm::vec3(size);
+            turned.center = glm::dvec3(random.uniform(-1.0, 1.0), 0.3, 0.0);
+            const IntrinsicVolumes k = of_box(turned);
+            const std::vector<ConvexBody> bodies = {ConvexBody::box(turned),
+                                                    ConvexBody::ball(glm::dvec3(turned.center), 2.0)};
+            for (const std::uint64_t cells : {4u, 16u, 100u, 1000u}) {
+                const QuadratureOptions options{.tolerance = 0.0, .max_cells = cells};
+                check(measure_of_planes_hitting_all(bodies, options), k.mean_curvature);
+                check(measure_of_lines_hitting_all(bodies, options), 0.5 * pi * k.area);
+            }
+        }
+    }
+}
