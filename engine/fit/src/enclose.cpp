@@ -1,6 +1,8 @@
 #include "enclose.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -24,16 +26,23 @@ struct Slabs {
     }
 };
 
-// True if the filter proves |dot(normal, d)| ≤ half · determinant. d = p − c and every factor and product below is
-// rounded once, sums twice: |error| ≤ 6 units of Σ|normal_i d_i|.
-bool surely_inside(const glm::dvec3& normal, const glm::dvec3& d, double half, double determinant) {
-    const double x = normal.x * d.x, y = normal.y * d.y, z = normal.z * d.z;
-    const double magnitude = std::abs(x) + std::abs(y) + std::abs(z);
-    return std::abs(x + y + z) + 6.5 * kUnit * magnitude <= half * (determinant * (1.0 - 20.0 * kUnit));
-}
+// dot(normal, d) for d = p − c, with a bound of its rounding error. d and every factor and product is rounded once,
+// sums twice: |error| ≤ 6 units of Σ|normal_i d_i|.
+struct Distance {
+    double value, error_bound;
+
+    Distance(const glm::dvec3& normal, const glm::dvec3& d) {
+        const double x = normal.x * d.x, y = normal.y * d.y, z = normal.z * d.z;
+        value = std::abs(x + y + z);
+        error_bound = 6.5 * kUnit * (std::abs(x) + std::abs(y) + std::abs(z));
+    }
+};
+
+// Relative error bound of a half extent times the determinant, and of a distance divided by it.
+constexpr double kScaleError = 24.0 * kUnit;
 
 float float_below(double value) {
-    const float nearest = static_cast<float>(value);
+    const float nearest = static_cast<float>(std::max(0.0, value));
     return static_cast<double>(nearest) > value ? std::nextafter(nearest, 0.0f) : nearest;
 }
 
@@ -43,22 +52,38 @@ float float_at_least(double value) {
                                                 : nearest;
 }
 
-// Grows the half extent along axis k until the point is inside, by exact tests.
+// Raises the half extent along axis k to the least float that holds the point too. That float depends on the point
+// alone, so the largest over all points is the same in any order.
 void grow(Obb& box, const Slabs& slabs, int k, const glm::dvec3& p) {
-    float& reach = box.half_extents[k];
-    const glm::dvec3 normal = slabs.normals[k], d = p - box.center;
-    if (surely_inside(normal, d, static_cast<double>(reach), slabs.determinant)) return;
-    if (contains_along(box, p, k)) return;
-    // The centre's own rounding may ask for more than a few steps.
-    const double needed = std::abs(glm::dot(normal, d)) / slabs.determinant;
-    reach = std::max(reach, float_below(needed * (1.0 - 1e-12)));
-    if (contains_along(box, p, k)) return;
-    // Around flat points `needed` may be nothing but rounding, and single steps from zero would take for ever: the
-    // bound of surely_inside says how much is enough.
-    const glm::dvec3 parts = glm::abs(normal * d);
-    const double rounding = 16.0 * kUnit * (parts.x + parts.y + parts.z) / slabs.determinant;
-    reach = std::max(reach, float_below(needed + rounding));
-    while (!contains_along(box, p, k)) reach = std::nextafter(reach, std::numeric_limits<float>::infinity());
+    float& half = box.half_extents[k];
+    const Distance distance(slabs.normals[k], p - box.center);
+    if (distance.value + distance.error_bound <= static_cast<double>(half) * (slabs.determinant * (1.0 - kScaleError)))
+        return;
+    const auto holds = [&](float candidate) {
+        half = candidate;
+        return contains_along(box, p, k);
+    };
+    float least = half;  // does not hold the point
+    if (holds(least)) return;
+    const float certain =
+        float_below((distance.value - distance.error_bound) / slabs.determinant * (1.0 - kScaleError));
+    float enough = float_at_least((distance.value + distance.error_bound) / slabs.determinant * (1.0 + kScaleError));
+    if (certain > least) {
+        if (holds(certain)) return;  // nothing less can
+        least = certain;
+    }
+    // The error bound leaves out underflow, which costs a step or two.
+    while (!holds(enough)) {
+        least = enough;
+        enough = std::nextafter(enough, std::numeric_limits<float>::infinity());
+    }
+    // Floats that are not negative have the order of their bits.
+    std::uint32_t low = std::bit_cast<std::uint32_t>(least), high = std::bit_cast<std::uint32_t>(enough);
+    while (high - low > 1) {
+        const std::uint32_t middle = low + (high - low) / 2;
+        (holds(std::bit_cast<float>(middle)) ? high : low) = middle;
+    }
+    half = std::bit_cast<float>(high);
 }
 
 glm::dvec3 center_of(const PointCloud& cloud, const glm::mat3& axes, const Slabs& slabs, const glm::dvec3& low,
@@ -84,11 +109,14 @@ Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
         low[k] = glm::dot(slabs.normals[k], supports[static_cast<std::size_t>(2 * k + 1)]) * cloud.unit();
     }
     box.center = center_of(cloud, axes, slabs, low, high);
-    // From just below the least float that can do, grow by single steps as exact tests demand.
+    // From a float that is not too large, grow as exact tests demand. High and low come from normalised coordinates, at
+    // most 1 in magnitude: each is off by less than 6 units of |normal|_1, and half their difference likewise.
     glm::dvec3 limit;
     for (int k = 0; k < 3; ++k) {
-        const double half = std::max(0.0, (high[k] - low[k]) * 0.5) / slabs.determinant;
-        box.half_extents[k] = float_below(half * (1.0 - 1e-12));
+        const glm::dvec3 normal = glm::abs(slabs.normals[k]);
+        const double error_bound = 8.0 * kUnit * (normal.x + normal.y + normal.z) * cloud.unit();
+        const double half = ((high[k] - low[k]) * 0.5 - error_bound) / slabs.determinant;
+        box.half_extents[k] = float_below(half * (1.0 - kScaleError));
         limit[k] = static_cast<double>(box.half_extents[k]) * slabs.determinant / length[k];
     }
     cloud.visit_beyond(directions, box.center, limit, [&](int k, const glm::dvec3& p) { grow(box, slabs, k, p); });
@@ -103,16 +131,15 @@ Obb enclose_few(const PointCloud& cloud, const glm::mat3& axes) {
     cloud.slab_extents(slabs.normals, cloud.origin(), low, high);
     box.center = center_of(cloud, axes, slabs, low, high);
     cloud.slab_extents(slabs.normals, box.center, low, high);
-    // Between which bounds the farthest point lies, by the error that surely_inside derives, with the largest of each
-    // difference for all.
+    // The error bound of Distance, with the largest of each difference for all points.
     const glm::dvec3 size =
         glm::max(glm::abs(cloud.bounds().max - box.center), glm::abs(cloud.bounds().min - box.center));
     for (int k = 0; k < 3; ++k) {
-        float& reach = box.half_extents[k];
+        float& half = box.half_extents[k];
         const double farthest = std::max(std::abs(low[k]), std::abs(high[k]));
-        const double error = 7.0 * kUnit * glm::dot(glm::abs(slabs.normals[k]), size);
-        reach = float_at_least((farthest - error) / slabs.determinant * (1.0 - 24.0 * kUnit));
-        if (farthest + error <= static_cast<double>(reach) * (slabs.determinant * (1.0 - 24.0 * kUnit))) continue;
+        const double error_bound = 7.0 * kUnit * glm::dot(glm::abs(slabs.normals[k]), size);
+        half = float_at_least((farthest - error_bound) / slabs.determinant * (1.0 - kScaleError));
+        if (farthest + error_bound <= static_cast<double>(half) * (slabs.determinant * (1.0 - kScaleError))) continue;
         for (std::size_t i = 0; i < cloud.size(); ++i) grow(box, slabs, k, cloud.point(i));
     }
     return box;

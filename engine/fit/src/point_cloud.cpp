@@ -79,7 +79,8 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
             bounds_.min[k] = std::min(bounds_.min[k], static_cast<double>(chunk.low[k][i]));
             bounds_.max[k] = std::max(bounds_.max[k], static_cast<double>(chunk.high[k][i]));
         }
-    origin_ = bounds_.center();
+    origin_ = bounds_.center() + 0.0;  // turns −0 into 0
+    shift_ = 0.0 - origin_;
     const glm::dvec3 half = bounds_.half_extents();
     int exponent = 0;
     std::frexp(std::max({half.x, half.y, half.z}), &exponent);

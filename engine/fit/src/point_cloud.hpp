@@ -71,7 +71,8 @@ class PointCloud {
         return floats_ ? glm::dvec3(glm::vec3(floats_[3 * i], floats_[3 * i + 1], floats_[3 * i + 2]))
                        : glm::dvec3(doubles_[3 * i], doubles_[3 * i + 1], doubles_[3 * i + 2]);
     }
-    [[nodiscard]] glm::dvec3 normalised(std::size_t i) const { return (world(i) - origin_) * scale_; }
+    // Zeros come out positive, since shift_ has no negative one: −0 and 0 are one number.
+    [[nodiscard]] glm::dvec3 normalised(std::size_t i) const { return (world(i) + shift_) * scale_; }
 
     const float* floats_ = nullptr;
     const double* doubles_ = nullptr;
@@ -81,7 +82,7 @@ class PointCloud {
     Vector<std::uint32_t> order_;
     Vector<double> double_bounds_, boxes_, middle_, reach_;
     Aabb bounds_;
-    glm::dvec3 origin_{0.0};
+    glm::dvec3 origin_{0.0}, shift_{0.0};  // shift_ = −origin_
     glm::vec3 float_origin_{0.0f};
     double unit_ = 1.0, scale_ = 1.0, scan_slack_ = 0.0;
 };
