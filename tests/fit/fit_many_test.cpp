@@ -67,7 +67,7 @@ TEST_SUITE("fit/fit_many") {
         const Input input = patches(300, 24);
         ThreadPool pool(4);
         for (const auto quality : {fit::Quality::fast, fit::Quality::tight}) {
-            const fit::Options options{measure::minimal_area(), quality};
+            const fit::FitOptions options{measure::minimal_area(), quality};
             std::vector<Obb> alone(300), together(300);
             REQUIRE(fit::fit_many(input.clusters(), options, serial_executor(), alone));
             REQUIRE(fit::fit_many(input.clusters(), options, pool, together));

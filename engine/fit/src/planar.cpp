@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "calipers.hpp"
+#include "search/calipers.hpp"
 
 namespace crofton::fit {
 namespace {
@@ -25,8 +25,8 @@ Result<void> check(std::span<const glm::dvec2> points) {
     return {};
 }
 
-// The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: off by
-// less than 4 units of Σ|axis_i d_i|, which is added; nothing is where the terms are zero.
+// The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: the
+// error is less than 4 units of Σ|axis_i d_i|, and 5 are added.
 Rectangle around(std::span<const glm::dvec2> points, const glm::dvec2& axis) {
     const glm::dvec2 axes[2] = {axis, {-axis.y, axis.x}};
     const glm::dvec2 first = points[0];
@@ -47,8 +47,8 @@ Rectangle around(std::span<const glm::dvec2> points, const glm::dvec2& axis) {
         for (const glm::dvec2& p : points) {
             const glm::dvec2 d = p - rectangle.center;
             const double x = axes[k].x * d.x, y = axes[k].y * d.y;
-            const double reach = std::abs(x + y) + 5.0 * kUnit * (std::abs(x) + std::abs(y));
-            rectangle.half_extents[k] = std::max(rectangle.half_extents[k], reach);
+            const double half = std::abs(x + y) + 5.0 * kUnit * (std::abs(x) + std::abs(y));
+            rectangle.half_extents[k] = std::max(rectangle.half_extents[k], half);
         }
     return rectangle;
 }
@@ -93,7 +93,7 @@ Result<Circle> minimal_circle(std::span<const glm::dvec2> points) {
     auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     Vector<glm::dvec2>& corners = *hull;
-    // A fixed shuffle: what it must avoid is the order around the hull, not an adversary.
+    // A fixed shuffle suffices: the order around the hull is the bad case.
     std::uint64_t state = 0x9e3779b97f4a7c15u;
     for (std::size_t i = corners.size(); i > 1; --i) {
         state = state * 6364136223846793005u + 1442695040888963407u;

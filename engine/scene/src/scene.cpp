@@ -26,7 +26,7 @@ Result<MeshRecord> make_record(TriangleMesh mesh, std::string name, const measur
     if (mesh.indices.empty() || mesh.positions.empty())
         return fail(ErrorCode::empty, kNoItem, "mesh: it has no triangles" + (name.empty() ? "" : " (" + name + ")"));
     if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    auto box = fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::Options{.criterion = criterion});
+    auto box = fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::FitOptions{.criterion = criterion});
     if (!box) return tl::unexpected(box.error());
     MeshRecord record;
     record.mesh = std::move(mesh);

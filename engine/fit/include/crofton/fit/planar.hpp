@@ -24,21 +24,23 @@ struct Circle {
 };
 
 enum class PlanarCriterion : std::uint8_t {
-    perimeter,  // random lines, frusta in the plane: the paper's criterion
-    area,       // random points
+    perimeter,  // the measure of the lines that meet the rectangle
+    area,       // the measure of the points in it
 };
 
 // The best of all rectangles, by rotating calipers: one side holds an edge of the hull (theory.md section 3). O(n log
-// n). Contains every point; grown by rounding only. Errors: no points; NaN, infinite or |coordinate| > 1e30, by index.
+// n). Contains every point, and is larger than the best by rounding only. Errors: no points; a coordinate that is NaN,
+// infinite or beyond 1e30 in magnitude, by index.
 [[nodiscard]] Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion);
 
-// The same in O(n) around a convex polygon: corners in counter-clockwise order, none twice; one or two corners are a
-// point and a segment. Convexity is the caller's promise; without it the rectangle still contains every point.
+// The same in O(n) around a convex polygon given by its corners in counter-clockwise order, none twice. One or two
+// corners are a point or a segment. If the polygon is not convex, the rectangle contains every point but may not be
+// best.
 [[nodiscard]] Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon,
                                                             PlanarCriterion criterion);
 
-// The smallest circle. Contains every point; grown by rounding only. Errors as above. O(n log n) for the hull, then
-// expected linear in its corners (Welzl 1991, without recursion and with a fixed shuffle).
+// The smallest circle. Contains every point, and is larger than the smallest by rounding only. Errors as above.
+// O(n log n) for the hull, then expected linear in its corners (Welzl 1991).
 [[nodiscard]] Result<Circle> minimal_circle(std::span<const glm::dvec2> points);
 
 }  // namespace crofton::fit

@@ -4,7 +4,7 @@
 
 namespace crofton::fit::kernels {
 
-inline constexpr std::size_t kChunk = 128;  // points summarised by one box
+inline constexpr std::size_t kChunk = 128;  // points in one box
 
 // Per chunk of kChunk points (x, y, z interleaved): minima and maxima of each coordinate, in arrays of one entry a
 // chunk.
@@ -14,7 +14,7 @@ struct ChunkBounds {
     T* high[3];
 };
 
-// Returns false if some coordinate is NaN or larger than `limit` in magnitude; the bounds are then of no use.
+// Returns false if some coordinate is NaN or larger than `limit` in magnitude; the bounds are then undefined.
 [[nodiscard]] bool chunk_bounds(const float* points, std::size_t count, float limit, const ChunkBounds<float>& out);
 [[nodiscard]] bool chunk_bounds(const double* points, std::size_t count, double limit, const ChunkBounds<double>& out);
 
@@ -24,9 +24,9 @@ struct Boxes {
     const double* half[3];
 };
 
-// middle[i] = dot(direction, center_i), reach[i] = dot(|direction|, half_i): box i spans middle ± reach along the
-// direction.
-void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach);
+// middle[i] = dot(direction, center_i), radius[i] = dot(|direction|, half_i): along the direction box i covers
+// middle ± radius.
+void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* radius);
 
 // Where wanted[i] ≠ 0: the least and greatest dot(direction, p − origin) over chunk i, for three directions (nine
 // numbers, one direction after the other), in rounded arithmetic of T: each value is off by less than 4.1 unit

@@ -1,19 +1,19 @@
-// The global optimum over all orientations, with a proof.
+// The globally best frame around a cloud, by branch and bound over all orientations.
 #pragma once
 #include <crofton/core/function_ref.hpp>
 #include <cstdint>
 #include <limits>
 
-#include "local_search.hpp"
-#include "point_cloud.hpp"
+#include "cloud/point_cloud.hpp"
+#include "search/local_search.hpp"
 
 namespace crofton::fit {
 
 struct SearchLimits {
     double gap = 2e-7;  // stop when the value is proved within this of the optimum, relatively
     std::uint64_t cells = std::numeric_limits<std::uint64_t>::max();
-    // Asked now and then with the best value and the proved bound so far; false stops the search. May be null.
-    const FunctionRef<bool(double value, double lower_bound, std::uint64_t cells)>* go_on = nullptr;
+    // Called every 64 splits with the best value and the proved bound so far; false stops the search. May be null.
+    const FunctionRef<bool(double value, double lower_bound, std::uint64_t cells)>* keep_going = nullptr;
 };
 
 struct SearchResult {
@@ -24,9 +24,9 @@ struct SearchResult {
     bool complete = false;     // the gap was reached
 };
 
-// Branch and bound over the orientations, from the frame `start` (a good one saves work). Bounds come from a subset of
-// the points, which holds for all of them since every criterion is monotone; the subset begins with `subset`
-// (canonical) and grows where it makes an orientation look better than the whole cloud does. docs/fit.md derives the
+// Searches from the frame `start`; a good one saves work. Lower bounds are computed for a subset of the points. They
+// hold for all points, since every criterion is monotone. The subset begins with `subset` (in canonical order). Where
+// it makes an orientation look better than the best, the cloud's support points join it. docs/notes/fit.md derives the
 // bounds.
 [[nodiscard]] SearchResult branch_and_bound(PointCloud& cloud, const Weights& weights,
                                             std::span<const glm::dvec3> subset, const glm::dmat3& start,

@@ -1,10 +1,10 @@
-#include "cloud_kernels.hpp"
+#include "cloud/cloud_kernels.hpp"
 
 #include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "cloud_kernels.cpp"
+#define HWY_TARGET_INCLUDE "cloud/cloud_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -13,9 +13,9 @@ namespace crofton::fit::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Minima and maxima of fewer than a vector's worth of points, or of all where vectors hold one lane.
+// Includes points one by one: the rest that fills no vector, or all points where vectors hold one lane.
 template <class T>
-bool bounds_of_few(const T* points, std::size_t count, T limit, T* low, T* high) {
+bool bounds_of_rest(const T* points, std::size_t count, T limit, T* low, T* high) {
     bool good = true;
     for (std::size_t i = 0; i < count; ++i)
         for (int k = 0; k < 3; ++k) {
@@ -63,7 +63,7 @@ bool bounds(const T* points, std::size_t count, T limit, const ChunkBounds<T>& o
             high[1] = hn::GetLane(hn::MaxOfLanes(d, hy));
             high[2] = hn::GetLane(hn::MaxOfLanes(d, hz));
         }
-        good = bounds_of_few(points + 3 * i, end - i, limit, low, high) && good;
+        good = bounds_of_rest(points + 3 * i, end - i, limit, low, high) && good;
         for (int k = 0; k < 3; ++k) {
             out.low[k][chunk] = low[k];
             out.high[k][chunk] = high[k];
@@ -79,7 +79,7 @@ bool bounds_double(const double* points, std::size_t count, double limit, const 
     return bounds(points, count, limit, out);
 }
 
-void project(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach) {
+void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* radius) {
     const hn::CappedTag<double, 8> d;
     const hn::CappedTag<double, 1> one;
     const auto run = [&](auto tag, std::size_t begin, std::size_t end) {
@@ -93,7 +93,7 @@ void project(const Boxes& boxes, std::size_t count, const double direction[3], d
                 hn::Add(hn::Mul(ax, hn::LoadU(tag, boxes.half[0] + i)), hn::Mul(ay, hn::LoadU(tag, boxes.half[1] + i))),
                 hn::Mul(az, hn::LoadU(tag, boxes.half[2] + i)));
             hn::StoreU(m, tag, middle + i);
-            hn::StoreU(r, tag, reach + i);
+            hn::StoreU(r, tag, radius + i);
         }
     };
     const std::size_t whole = count - count % hn::Lanes(d);
@@ -265,7 +265,7 @@ namespace crofton::fit::kernels {
 
 HWY_EXPORT(bounds_float);
 HWY_EXPORT(bounds_double);
-HWY_EXPORT(project);
+HWY_EXPORT(project_boxes);
 HWY_EXPORT(extents_float);
 HWY_EXPORT(extents_double);
 HWY_EXPORT(slabs_float);
@@ -277,8 +277,8 @@ bool chunk_bounds(const float* points, std::size_t count, float limit, const Chu
 bool chunk_bounds(const double* points, std::size_t count, double limit, const ChunkBounds<double>& out) {
     return HWY_DYNAMIC_DISPATCH(bounds_double)(points, count, limit, out);
 }
-void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* reach) {
-    HWY_DYNAMIC_DISPATCH(project)(boxes, count, direction, middle, reach);
+void project_boxes(const Boxes& boxes, std::size_t count, const double direction[3], double* middle, double* radius) {
+    HWY_DYNAMIC_DISPATCH(project_boxes)(boxes, count, direction, middle, radius);
 }
 
 void chunk_extents(const float* points, std::size_t count, const unsigned char* wanted, const float* directions,

@@ -1,9 +1,9 @@
-// Eight cells of orientations at once: the heart of the exact search, compiled for every instruction set.
+// Kernels of the exact search: lower bounds for eight cells of orientations at once, for every instruction set.
 #pragma once
 #include <cstddef>
 #include <glm/vec3.hpp>
 
-#include "weights.hpp"
+#include "search/weights.hpp"
 
 namespace crofton::fit::kernels {
 
@@ -31,16 +31,16 @@ struct CellBatch {
     alignas(64) double support[6][3][kBatch];
 };
 
-// `target`: cells whose bound reaches it need no better bound.
+// Fills in the results of all cells. A bound that reaches `target` is not improved further.
 void evaluate_cells(const Weights& weights, const SideLists& lists, double target, CellBatch& batch);
 
-// Writes to `out` (room for count + 8 in each array) the points of one list that may be the support point of `side`
-// somewhere in cell `cell` of the batch; returns how many.
 struct ListOut {
     double* x;
     double* y;
     double* z;
 };
+// Writes to `out` the points of one list that may be the support point of `side` for some orientation of cell `cell` of
+// the batch, in their order; returns how many. Requires room for count + 8 in each array.
 std::size_t filter_list(const SideLists& lists, std::size_t side, const CellBatch& batch, std::size_t cell,
                         const ListOut& out);
 

@@ -1,14 +1,14 @@
-// Sixteen numbers, points and ranges at a time, as the kernels of few points count with them.
-#if defined(CROFTON_FIT_FEW_LANES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef CROFTON_FIT_FEW_LANES_INL
-#undef CROFTON_FIT_FEW_LANES_INL
+// Vectors of up to sixteen floats, points and ranges: shared by the kernels of small sets.
+#if defined(CROFTON_FIT_SMALL_SET_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_FIT_SMALL_SET_LANES_INL
+#undef CROFTON_FIT_SMALL_SET_LANES_INL
 #else
-#define CROFTON_FIT_FEW_LANES_INL
+#define CROFTON_FIT_SMALL_SET_LANES_INL
 #endif
 
 #include <hwy/highway.h>
 
-#include "few_kernels.hpp"
+#include "small_set/kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::fit::kernels::HWY_NAMESPACE {
@@ -37,11 +37,11 @@ HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
 HWY_INLINE Vec3 scaled(const Vec3& a, Lane s) {
     return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
 }
-HWY_INLINE Vec3 broadcast(Tag d, const FewPoints& points, std::size_t i) {
+HWY_INLINE Vec3 broadcast(Tag d, const SmallSet& points, std::size_t i) {
     return {hn::Set(d, points.x[i]), hn::Set(d, points.y[i]), hn::Set(d, points.z[i])};
 }
 
-HWY_INLINE Vec3 load(Tag d, const FewPoints& points, std::size_t i) {
+HWY_INLINE Vec3 load(Tag d, const SmallSet& points, std::size_t i) {
     return {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
 }
 
@@ -65,8 +65,8 @@ HWY_INLINE Lane value(Tag d, const FloatWeights& w, Lane a, Lane b, Lane c) {
     return hn::Add(hn::Add(product, pairs), hn::Mul(hn::Set(d, w.sum), hn::Add(a_plus_b, c)));
 }
 
-HWY_INLINE Lane value_in_frame(Tag d, const FewPoints& points, const FloatWeights& weights, const Vec3& a,
-                               const Vec3& b, const Vec3& c) {
+HWY_INLINE Lane value_in_frame(Tag d, const SmallSet& points, const FloatWeights& weights, const Vec3& a, const Vec3& b,
+                               const Vec3& c) {
     Range along_a = nothing(d), along_b = along_a, along_c = along_a;
     for (std::size_t i = 0; i < points.count; ++i) {
         const Vec3 p = broadcast(d, points, i);

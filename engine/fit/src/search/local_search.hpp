@@ -1,4 +1,4 @@
-// From a rough frame to a locally best one, on few points.
+// Local search in double on a small set of points: turns of a frame to its best angles.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <glm/mat3x3.hpp>
@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "weights.hpp"
+#include "search/weights.hpp"
 
 namespace crofton::fit {
 
@@ -31,8 +31,8 @@ struct SearchBuffers {
 [[nodiscard]] glm::dvec3 widths(std::span<const glm::dvec3> points, const glm::dmat3& axes);
 [[nodiscard]] double value_of(const Weights& weights, std::span<const glm::dvec3> points, const glm::dmat3& axes);
 
-// Turns the frame about each of its axes in turn to the best angle (rotating calipers: the global minimum over that
-// angle), until none helps. The value never rises. Requires at least one point.
+// Turns the frame about each of its axes in turn to the globally best angle (by rotating calipers) until no turn lowers
+// the value. The value never rises. Requires at least one point.
 void descend(const Weights& weights, std::span<const glm::dvec3> points, Candidate& candidate, SearchBuffers& buffers);
 
 // Frames built from extreme points, as in the tetrahedra of Larsson and Källberg's DiTO (2011): the widest pair, the

@@ -1,7 +1,7 @@
-#include "cell_kernels.hpp"
+#include "exact/cell_kernels.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "cell_kernels.cpp"
+#define HWY_TARGET_INCLUDE "exact/cell_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -71,12 +71,12 @@ HWY_INLINE V3 to_frame(const Frame& f, const V3& p) {
 template <bool kGreatest>
 HWY_INLINE V3 extreme(const V3& axis, const double* x, const double* y, const double* z, std::size_t count) {
     V3 best = {splat(x[0]), splat(y[0]), splat(z[0])};
-    V reach = dot(axis, best);
+    V height = dot(axis, best);
     for (std::size_t i = 1; i < count; ++i) {
         const V3 p = {splat(x[i]), splat(y[i]), splat(z[i])};
         const V t = dot(axis, p);
-        const auto better = kGreatest ? hn::Gt(t, reach) : hn::Lt(t, reach);
-        reach = kGreatest ? hn::Max(reach, t) : hn::Min(reach, t);
+        const auto better = kGreatest ? hn::Gt(t, height) : hn::Lt(t, height);
+        height = kGreatest ? hn::Max(height, t) : hn::Min(height, t);
         best = {hn::IfThenElse(better, p.x, best.x), hn::IfThenElse(better, p.y, best.y),
                 hn::IfThenElse(better, p.z, best.z)};
     }
@@ -91,7 +91,7 @@ HWY_INLINE void find_supports(const Frame& f, const SideLists& lists, V3* out) {
     }
 }
 
-// What the bound needs to know of a cell; docs/fit.md derives it.
+// The quantities of a cell that its lower bound uses (docs/notes/fit.md derives it).
 struct Geometry {
     V3 center, half;
     V3 tilt;  // bound of |components| of t, the half-angle tangent vector of a turn from the centre, in its frame
@@ -115,8 +115,7 @@ HWY_INLINE Geometry geometry(const V3& c, const V3& r) {
     return g;
 }
 
-// e_k × d: how fast dot(d, axis k) changes under a turn; pulled back to the coordinates δ and scaled by the cell's
-// size.
+// The rate at which dot(d, axis k) changes under a turn, e_k × d, as a linear form in δ, scaled by the cell's size.
 HWY_INLINE V3 torque(const Geometry& g, std::size_t k, const V3& d) {
     const V zero = splat(0.0);
     const V3 t = k == 0   ? V3{zero, hn::Neg(d.z), d.y}
@@ -145,9 +144,8 @@ HWY_INLINE V sum_of(const V3& a) {
     return hn::Add(hn::Add(a.x, a.y), a.z);
 }
 
-// A lower bound of the value over the cell, from the three chords d[k] (differences of points, or of mixtures of
-// points, of opposite sides, in the centre's frame): the width along a turned axis is at least the chord's extent along
-// it.
+// A lower bound of the value over the cell. Chord d[k] is a difference of points (or of mixtures of points) of opposite
+// sides, in the centre's frame; the width along a turned axis is at least the chord's extent along it.
 HWY_INLINE V lower_bound(const Splat& w, const Geometry& g, const V3 d[3]) {
     const V zero = splat(0.0), two = splat(2.0);
     const V tilt[3] = {g.tilt.x, g.tilt.y, g.tilt.z};
@@ -203,10 +201,10 @@ HWY_INLINE void chords(const Frame& f, const V3 points[6], V3 d[3]) {
     for (std::size_t k = 0; k < 3; ++k) d[k] = to_frame(f, points[2 * k] - points[2 * k + 1]);
 }
 
-constexpr int kCuts = 3;  // more rarely pay: see docs/fit.md
+constexpr int kCuts = 3;  // more rarely pay: see docs/notes/fit.md
 
-// Better bounds by cutting planes: look at the turn where the current bound is least, take the support points there,
-// and mix them into the chords by as much as raises the bound.
+// Raises the bound by cutting planes: finds the turn where the current bound is least, takes the support points there,
+// and mixes them into the chords by the amount that raises the bound most.
 HWY_INLINE V improve(const Splat& w, const SideLists& lists, const Geometry& g, const Frame& f, V3 mix[6], V bound,
                      double target) {
     V3 cut[kCuts][6];
@@ -240,8 +238,8 @@ HWY_INLINE V improve(const Splat& w, const SideLists& lists, const Geometry& g, 
     return bound;
 }
 
-// How fast the value may change with each coordinate of δ: what decides where to split. Turns about the other axes also
-// count with a tenth of a width, for the terms of second order.
+// How fast the value may change with each coordinate of δ; decides where to split. A tenth of a width is added for
+// turns about the other axes, for the terms of second order.
 HWY_INLINE V3 variation(const Splat& w, const Geometry& g, const V3 d[3]) {
     const V width[3] = {d[0].x, d[1].y, d[2].z};
     V sum[3] = {splat(0.0), splat(0.0), splat(0.0)};
@@ -258,7 +256,7 @@ HWY_INLINE V3 variation(const Splat& w, const Geometry& g, const V3 d[3]) {
     return {sum[0], sum[1], sum[2]};
 }
 
-void evaluate(const Weights& weights, const SideLists& lists, double target, CellBatch& batch) {
+void evaluate_cells(const Weights& weights, const SideLists& lists, double target, CellBatch& batch) {
     const Tag tag;
     const Splat w = {splat(weights.product), splat(weights.pairs), splat(weights.sum)};
     for (std::size_t i = 0; i < kBatch; i += hn::Lanes(tag)) {
@@ -289,8 +287,8 @@ void evaluate(const Weights& weights, const SideLists& lists, double target, Cel
     }
 }
 
-std::size_t filter(const SideLists& lists, std::size_t side, const CellBatch& batch, std::size_t cell,
-                   const ListOut& out) {
+std::size_t filter_list(const SideLists& lists, std::size_t side, const CellBatch& batch, std::size_t cell,
+                        const ListOut& out) {
     const Tag tag;
     const std::size_t k = side / 2, a = (k + 1) % 3, b = (k + 2) % 3, count = lists.count[side];
     const Frame f =
@@ -302,7 +300,7 @@ std::size_t filter(const SideLists& lists, std::size_t side, const CellBatch& ba
     const V two = splat(2.0), sign = splat(side % 2 == 0 ? 1.0 : -1.0);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; i += hn::Lanes(tag)) {
-        // Lists are followed by at least a vector's worth of readable memory.
+        // Reads past the list's end: lists are followed by at least one vector of readable memory.
         const V3 p = {hn::LoadU(tag, lists.x[side] + i), hn::LoadU(tag, lists.y[side] + i),
                       hn::LoadU(tag, lists.z[side] + i)};
         const V3 step = p - support;
@@ -313,8 +311,8 @@ std::size_t filter(const SideLists& lists, std::size_t side, const CellBatch& ba
         V most = hn::Add(hn::Mul(tb, da), hn::Mul(ta, db));
         most = hn::Add(most, hn::Mul(tk, hn::Add(hn::Mul(ta, da), hn::Mul(tb, db))));
         most = hn::Add(most, hn::Mul(hn::Abs(along), squares));
-        const V reach = hn::Add(hn::Mul(sign, along), hn::Mul(two, most));
-        auto keep = hn::Ge(reach, splat(-1e-15));
+        const V highest = hn::Add(hn::Mul(sign, along), hn::Mul(two, most));
+        auto keep = hn::Ge(highest, splat(-1e-15));
         keep = hn::And(keep, hn::FirstN(tag, count - i));
         hn::CompressStore(p.x, keep, tag, out.x + kept);
         hn::CompressStore(p.y, keep, tag, out.y + kept);
@@ -329,16 +327,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::fit::kernels {
 
-HWY_EXPORT(evaluate);
-HWY_EXPORT(filter);
+HWY_EXPORT(evaluate_cells);
+HWY_EXPORT(filter_list);
 
 void evaluate_cells(const Weights& weights, const SideLists& lists, double target, CellBatch& batch) {
-    HWY_DYNAMIC_DISPATCH(evaluate)(weights, lists, target, batch);
+    HWY_DYNAMIC_DISPATCH(evaluate_cells)(weights, lists, target, batch);
 }
 
 std::size_t filter_list(const SideLists& lists, std::size_t side, const CellBatch& batch, std::size_t cell,
                         const ListOut& out) {
-    return HWY_DYNAMIC_DISPATCH(filter)(lists, side, batch, cell, out);
+    return HWY_DYNAMIC_DISPATCH(filter_list)(lists, side, batch, cell, out);
 }
 
 }  // namespace crofton::fit::kernels

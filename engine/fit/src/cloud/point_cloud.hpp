@@ -1,4 +1,4 @@
-// The input points as the searches see them: checked, normalised, asked only for support points.
+// A point set that answers support queries: the input of every search, checked and normalised.
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -10,17 +10,17 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "cloud_kernels.hpp"
+#include "cloud/cloud_kernels.hpp"
 
 namespace crofton::fit {
 
 // The extreme points along each axis: index 2k the farthest along +axes[k], 2k + 1 along −axes[k].
 using Supports = std::array<glm::dvec3, 6>;
 
-// A view of the caller's points with one small box per 128 of them: neighbours in the input are mostly neighbours in
-// space, so a support query reads few points. Normalised coordinates are (p − origin) / unit with `unit` a power of
-// two: all within [−1, 1]. Every answer depends on the set of points alone, never on their order: ties go to the
-// lexicographically least point. Queries use scratch memory of the object: one thread at a time.
+// A view of the caller's points, with an aligned box around every 128 successive ones (a chunk). Neighbours in the
+// input are mostly neighbours in space, so a support query reads few chunks. Normalised coordinates are (p − origin) /
+// unit with `unit` a power of two: all lie within [−1, 1]. Every answer depends on the set of points alone, never on
+// their order: ties go to the lexicographically least point. One thread at a time: queries write scratch memory.
 class PointCloud {
   public:
     PointCloud() = default;
@@ -46,32 +46,41 @@ class PointCloud {
         else
             kernels::slab_extents(doubles_, count_, &center.x, &normals[0].x, &low.x, &high.x);
     }
-    // The distinct points, normalised, in canonical order. For few points: quadratic up to a hundred or so.
+    // The distinct points, normalised, in canonical order. Meant for small sets: quadratic up to 160 points.
     void sorted(Vector<glm::dvec3>& points);
 
     // The columns are any three directions with |components| ≤ 1.
     [[nodiscard]] Supports supports(const glm::dmat3& directions);
-    // Calls `visit` with k and the input coordinates of every point p with |dot(directions[k], p − center)| ≥ reach[k],
-    // and of some others. `center` and `reach` are in input coordinates.
-    void visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& reach,
+    // Calls `visit` with k and the input coordinates of every point p with |dot(directions[k], p − center)| ≥ limit[k],
+    // and of some others. `center` and `limit` are in input coordinates.
+    void visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& limit,
                       FunctionRef<void(int k, const glm::dvec3& p)> visit);
 
   private:
+    struct Support {
+        glm::dvec3 point;
+        double height;  // along the direction asked for
+    };
+
     template <class T>
     Result<void> assign_points(const T* points, std::size_t count);
-    // The extents of the wanted chunks by rounded arithmetic, in normalised units, into middle_ (low) and reach_
-    // (high): off by no more than scan_slack_. Of the chunks not wanted: nothing.
-    void quick_extents(const glm::dmat3& directions);
+    // Writes each wanted chunk's least and greatest projections on each direction to low_ and high_, in normalised
+    // units, with an error of at most extent_error_bound_. A chunk that is not wanted gets an empty range.
+    void find_extents(const glm::dmat3& directions);
     template <class T>
-    void quick_extents_of(const T* points, Vector<T>& storage, const T* directions, const T* origin,
-                          const glm::dvec3& shift);
-    // The extents of the chunks' boxes as middle_ ± reach_: one array per direction.
-    void project(const glm::dmat3& directions);
+    void find_extents_of(const T* points, Vector<T>& storage, const T* directions, const T* origin,
+                         const glm::dvec3& shift);
+    // The chunk whose box goes farthest to this side.
+    [[nodiscard]] std::size_t most_promising_chunk(std::size_t side) const;
+    // Replaces `best` where a point of the chunk is higher along the direction, or as high and lexicographically less.
+    void scan(std::size_t chunk, const glm::dvec3& direction, Support& best) const;
+    // Writes the interval that each chunk's box covers on each direction to middle_ and projected_radius_.
+    void project_boxes(const glm::dmat3& directions);
     [[nodiscard]] glm::dvec3 world(std::size_t i) const {
         return floats_ ? glm::dvec3(glm::vec3(floats_[3 * i], floats_[3 * i + 1], floats_[3 * i + 2]))
                        : glm::dvec3(doubles_[3 * i], doubles_[3 * i + 1], doubles_[3 * i + 2]);
     }
-    // Zeros come out positive, since shift_ has no negative one: −0 and 0 are one number.
+    // Gives no −0, since shift_ is none: −0 and 0 are one number.
     [[nodiscard]] glm::dvec3 normalised(std::size_t i) const { return (world(i) + shift_) * scale_; }
 
     const float* floats_ = nullptr;
@@ -80,11 +89,12 @@ class PointCloud {
     Vector<unsigned char> wanted_;
     Vector<float> float_bounds_, ranks_;
     Vector<std::uint32_t> order_;
-    Vector<double> double_bounds_, boxes_, middle_, reach_;
+    Vector<double> double_bounds_, boxes_;
+    Vector<double> middle_, projected_radius_, low_, high_;  // one array per direction
     Aabb bounds_;
     glm::dvec3 origin_{0.0}, shift_{0.0};  // shift_ = −origin_
     glm::vec3 float_origin_{0.0f};
-    double unit_ = 1.0, scale_ = 1.0, scan_slack_ = 0.0;
+    double unit_ = 1.0, scale_ = 1.0, extent_error_bound_ = 0.0;
 };
 
 [[nodiscard]] inline bool lexicographic(const glm::dvec3& a, const glm::dvec3& b) {

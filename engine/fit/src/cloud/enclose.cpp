@@ -1,4 +1,4 @@
-#include "enclose.hpp"
+#include "cloud/enclose.hpp"
 
 #include <bit>
 #include <cmath>
@@ -123,7 +123,7 @@ Obb enclose(PointCloud& cloud, const glm::mat3& axes) {
     return box;
 }
 
-Obb enclose_few(const PointCloud& cloud, const glm::mat3& axes) {
+Obb enclose_small_set(const PointCloud& cloud, const glm::mat3& axes) {
     const Slabs slabs(axes);
     Obb box;
     box.axes = axes;

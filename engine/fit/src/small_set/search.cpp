@@ -1,4 +1,4 @@
-#include "few_search.hpp"
+#include "small_set/search.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@ using kernels::kLanes;
 
 constexpr std::size_t kFrames = 256;
 
-// Frames spread evenly over all orientations: by the symmetries of a box, Rodrigues vectors in a truncated cube, filled
-// by the generalised golden ratio's sequence (Roberts 2018). Those of one lane lie near each other.
+// Frames spread evenly over all orientations. By the symmetries of a box these are the Rodrigues vectors of a truncated
+// cube, filled by the generalised golden ratio's sequence (Roberts 2018). Frames of one lane lie near each other.
 struct Frames {
     alignas(64) float axes[9][kFrames];
     std::array<glm::dmat3, kFrames> exact;
@@ -32,7 +32,7 @@ struct Frames {
                 at += 1.0;
             } while (std::abs(c.x) + std::abs(c.y) + std::abs(c.z) > 1.0);
         }
-        // Lanes: the first kLanes of the sequence collect what is nearest and still free, row by row.
+        // Each lane begins with one of the first kLanes vectors and takes, row by row, the nearest that is left.
         for (std::size_t i = kLanes; i < kFrames; ++i) {
             const glm::dvec3 center = rodrigues[i % kLanes];
             std::size_t nearest = i;
@@ -83,9 +83,9 @@ const DirectionTable& directions() {
 }
 
 constexpr double kNoValue = 1e30;
-constexpr float kFlush = 3e-6f;      // depths up to this lie on the face: rounding of float coordinates stays below
-constexpr double kShortEdge = 1e-4;  // the direction of a shorter one is rounding
-constexpr double kGain = 2e-7;       // relative; what is less is rounding
+constexpr float kFlush = 3e-6f;      // points this near a face lie on it: above the rounding of float coordinates
+constexpr double kShortEdge = 1e-4;  // a shorter edge has no direction that could be trusted
+constexpr double kGain = 2e-7;       // relative; a smaller gain may be rounding
 
 // Whether two frames lie within about 15 degrees, up to the symmetries of a box.
 bool alike(const glm::dmat3& a, const glm::dmat3& b) {
@@ -103,7 +103,7 @@ void to_floats(const glm::dvec3& v, float out[3]) {
 
 }  // namespace
 
-void FewSearch::assign(std::span<const glm::dvec3> points) {
+void SmallSetSearch::assign(std::span<const glm::dvec3> points) {
     points_ = points;
     const std::size_t padded = (points.size() + kLanes - 1) / kLanes * kLanes;
     for (Vector<float>* list : {&x_, &y_, &z_, &subset_.x, &subset_.y, &subset_.z}) list->resize(padded);
@@ -117,7 +117,7 @@ void FewSearch::assign(std::span<const glm::dvec3> points) {
     scratch_.resize(2 * kLanes * padded);
 }
 
-void FewSearch::mark(const float* indices, std::size_t count) {
+void SmallSetSearch::mark(const float* indices, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         unsigned char& mark = marked_[static_cast<std::size_t>(static_cast<int>(indices[i]))];
         grown_ = grown_ || mark == 0;
@@ -125,7 +125,7 @@ void FewSearch::mark(const float* indices, std::size_t count) {
     }
 }
 
-void FewSearch::collect() {
+void SmallSetSearch::update_subset() {
     if (!grown_) return;
     grown_ = false;
     subset_.indices.clear();
@@ -140,29 +140,29 @@ void FewSearch::collect() {
     }
 }
 
-void FewSearch::gather() {
+void SmallSetSearch::gather_extremes() {
     float ends[2 * kLanes];
     for (const kernels::Directions& set : directions().sets) {
-        kernels::extremes(all(), set, ends, ends + kLanes);
+        kernels::find_extremes(all_points(), set, ends, ends + kLanes);
         mark(ends, 2 * kLanes);
     }
-    collect();
+    update_subset();
 }
 
-void FewSearch::find_starts() {
+void SmallSetSearch::find_starts() {
     float values[kLanes], rows[kLanes];
-    kernels::best_frames(view(), float_weights_, frames().axes[0], kFrames, values, rows);
+    kernels::best_frames(subset_points(), float_weights_, frames().axes[0], kFrames, values, rows);
     for (std::size_t i = 0; i < kLanes; ++i)
         for (std::size_t j = 0; j < 9; ++j)
             starts_.axes[j][i] = frames().axes[j][static_cast<std::size_t>(rows[i]) * kLanes + i];
-    kernels::settle(view(), float_weights_, scratch_.data(), starts_);
+    kernels::descend_frames(subset_points(), float_weights_, scratch_.data(), starts_);
     float supports[6 * kLanes];
-    kernels::supports_of_frames(all(), float_weights_, starts_, supports);
+    kernels::supports_of_frames(all_points(), float_weights_, starts_, supports);
     mark(supports, 6 * kLanes);
-    collect();
+    update_subset();
 }
 
-void FewSearch::turn_to_rest(Candidate& candidate, int turns) {
+void SmallSetSearch::turn_until_idle(Candidate& candidate, int turns) {
     kernels::Turn turn;
     for (int step = 0, idle = 0; idle < 2 && step < turns; ++step) {
         const int k = step % 3;
@@ -170,7 +170,7 @@ void FewSearch::turn_to_rest(Candidate& candidate, int turns) {
         to_floats(axis, turn.axis);
         to_floats(right, turn.right);
         to_floats(up, turn.up);
-        kernels::turn(view(), float_weights_, scratch_.data(), turn);
+        kernels::turn_frame(subset_points(), float_weights_, scratch_.data(), turn);
         const double value = static_cast<double>(turn.value);
         if (!(value < candidate.value * (1.0 - kGain))) {
             ++idle;
@@ -183,12 +183,12 @@ void FewSearch::turn_to_rest(Candidate& candidate, int turns) {
     }
 }
 
-void FewSearch::find_flush_edges(const glm::dmat3& frame) {
+void SmallSetSearch::find_flush_edges(const glm::dmat3& frame) {
     edges_.clear();
     float axes[9];
     for (int k = 0; k < 3; ++k) to_floats(frame[k], axes + 3 * k);
     kernels::FlushSide sides[6];
-    kernels::flush_points(view(), axes, kFlush, scratch_.data(), sides);
+    kernels::flush_points(subset_points(), axes, kFlush, scratch_.data(), sides);
     for (std::size_t side = 0; side < 6; ++side)
         for (std::size_t i = 0; i < sides[side].count; ++i)
             for (std::size_t j = i + 1; j < sides[side].count; ++j) {
@@ -199,7 +199,8 @@ void FewSearch::find_flush_edges(const glm::dmat3& frame) {
             }
 }
 
-bool FewSearch::slide_along(const glm::dmat3& frame, const FlushEdge& first, const FlushEdge& second, Candidate& best) {
+bool SmallSetSearch::slide_along(const glm::dmat3& frame, const FlushEdge& first, const FlushEdge& second,
+                                 Candidate& best) {
     glm::dvec3 start = frame[first.axis];
     start = glm::normalize(start - glm::dot(start, first.direction) * first.direction);
     const glm::dvec3 across = glm::cross(first.direction, start);
@@ -210,18 +211,18 @@ bool FewSearch::slide_along(const glm::dmat3& frame, const FlushEdge& first, con
     for (std::size_t i = 0; i < kLanes; ++i)
         slides.t[i] = (i % 2 == 0 ? 0.08f : -0.08f) / static_cast<float>(std::size_t{1} << (i / 2));
     std::size_t least = 0;
-    const auto evaluate = [&] {
-        kernels::values_of_slides(view(), float_weights_, slides);
+    const auto evaluate_slides = [&] {
+        kernels::values_of_slides(subset_points(), float_weights_, slides);
         least = 0;
         for (std::size_t i = 1; i < kLanes; ++i) least = slides.values[i] < slides.values[least] ? i : least;
     };
-    evaluate();
+    evaluate_slides();
     if (!(static_cast<double>(slides.values[least]) < best.value * (1.0 - kGain))) return false;
     float from = 0.5f * slides.t[least], to = 2.0f * slides.t[least], t = slides.t[least], value = slides.values[least];
     for (int pass = 0; pass < 3; ++pass) {
         const float step = (to - from) / static_cast<float>(kLanes + 1);
         for (std::size_t i = 0; i < kLanes; ++i) slides.t[i] = from + static_cast<float>(i + 1) * step;
-        evaluate();
+        evaluate_slides();
         if (slides.values[least] < value) {
             value = slides.values[least];
             t = slides.t[least];
@@ -235,7 +236,7 @@ bool FewSearch::slide_along(const glm::dmat3& frame, const FlushEdge& first, con
     return true;
 }
 
-bool FewSearch::slide(Candidate& candidate) {
+bool SmallSetSearch::slide(Candidate& candidate) {
     find_flush_edges(candidate.axes);
     const glm::dmat3 frame = candidate.axes;
     bool better = false;
@@ -245,18 +246,18 @@ bool FewSearch::slide(Candidate& candidate) {
     return better;
 }
 
-FewSearch::Found FewSearch::search(const Weights& weights, const FewEffort& effort) {
+SmallSetSearch::Found SmallSetSearch::search(const Weights& weights, const SmallSetEffort& effort) {
     set(weights);
-    gather();
+    gather_extremes();
     find_starts();
     Found best{glm::dmat3(1.0), glm::dvec3(0.0), kNoValue};
     std::array<glm::dmat3, kLanes> tried;
     std::size_t tries = 0;
-    for (unsigned open = (1u << kLanes) - 1u; open != 0 && tries < effort.finalists;) {
-        std::size_t next = static_cast<std::size_t>(std::countr_zero(open));
+    for (unsigned remaining = (1u << kLanes) - 1u; remaining != 0 && tries < effort.finalists;) {
+        std::size_t next = static_cast<std::size_t>(std::countr_zero(remaining));
         for (std::size_t i = next + 1; i < kLanes; ++i)
-            if ((open >> i & 1u) != 0 && starts_.values[i] < starts_.values[next]) next = i;
-        open &= ~(1u << next);
+            if ((remaining >> i & 1u) != 0 && starts_.values[i] < starts_.values[next]) next = i;
+        remaining &= ~(1u << next);
         glm::dmat3 frame;
         for (std::size_t j = 0; j < 9; ++j)
             frame[static_cast<int>(j / 3)][static_cast<int>(j % 3)] = static_cast<double>(starts_.axes[j][next]);
@@ -269,42 +270,43 @@ FewSearch::Found FewSearch::search(const Weights& weights, const FewEffort& effo
     return best;
 }
 
-FewSearch::Found FewSearch::improve(const Weights& weights, const FewEffort& effort, const glm::dmat3& frame) {
+SmallSetSearch::Found SmallSetSearch::improve(const Weights& weights, const SmallSetEffort& effort,
+                                              const glm::dmat3& frame) {
     set(weights);
-    gather();
-    const Found there = look(frame);
-    collect();
+    gather_extremes();
+    const Found there = evaluate(frame);
+    update_subset();
     const Found found = descend(effort, {frame, there.value});
     return found.value < there.value ? found : there;
 }
 
-void FewSearch::set(const Weights& weights) {
+void SmallSetSearch::set(const Weights& weights) {
     weights_ = weights;
     float_weights_ = {static_cast<float>(weights.product), static_cast<float>(weights.pairs),
                       static_cast<float>(weights.sum)};
 }
 
-// Best on the subset, until all points agree.
-FewSearch::Found FewSearch::descend(const FewEffort& effort, Candidate candidate) {
+// Improves on the subset, then asks all points; again, with the support points that were missing, until none is.
+SmallSetSearch::Found SmallSetSearch::descend(const SmallSetEffort& effort, Candidate candidate) {
     Found best{glm::dmat3(1.0), glm::dvec3(0.0), kNoValue};
     for (int round = 0; round < 3; ++round) {
-        turn_to_rest(candidate, effort.turns);
+        turn_until_idle(candidate, effort.turns);
         for (int slides = 0; slides < effort.rounds && slide(candidate); ++slides) {
         }
-        const Found found = look(candidate.axes);
+        const Found found = evaluate(candidate.axes);
         if (found.value < best.value) best = found;
         if (!grown_) break;
-        collect();
+        update_subset();
         candidate.value = found.value;
     }
     return best;
 }
 
-// What all points say of a frame; its support points join the subset.
-FewSearch::Found FewSearch::look(const glm::dmat3& frame) {
+// The frame's value for all points, whose support points join the subset.
+SmallSetSearch::Found SmallSetSearch::evaluate(const glm::dmat3& frame) {
     float axes[9], supports[6], widths[3];
     for (int k = 0; k < 3; ++k) to_floats(frame[k], axes + 3 * k);
-    kernels::supports_of_frame(all(), axes, supports, widths);
+    kernels::supports_of_frame(all_points(), axes, supports, widths);
     mark(supports, 6);
     const glm::dvec3 extent(glm::vec3(widths[0], widths[1], widths[2]));
     return {frame, extent, weights_(extent.x, extent.y, extent.z)};

@@ -1,4 +1,4 @@
-#include "point_cloud.hpp"
+#include "cloud/point_cloud.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,14 @@
 #include <string>
 #include <type_traits>
 
-#include "few_kernels.hpp"
+#include "small_set/kernels.hpp"
 
 namespace crofton::fit {
 namespace {
 
-// Rounding of normalised coordinates and of their projections stays far below this.
-constexpr double kSlack = 1e-13;
-constexpr std::size_t kFewChunks = 16;  // the rounded extents of so few are quicker than picking among them
+// Error bound of a projection of normalised coordinates computed in double: the true one is below 1e-15.
+constexpr double kErrorBound = 1e-13;
+constexpr std::size_t kScanAllChunks = 16;  // up to this many, picking the promising ones costs more than it saves
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class T>
@@ -30,7 +30,7 @@ tl::unexpected<Error> first_bad(const T* points, std::size_t count) {
         if (!finite) return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
         if (!small) return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
     }
-    return fail(ErrorCode::internal, kNoItem, "fit: a bad point was seen, then lost");
+    return fail(ErrorCode::internal, kNoItem, "fit: the points changed while they were read");
 }
 
 }  // namespace
@@ -86,11 +86,11 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
     std::frexp(std::max({half.x, half.y, half.z}), &exponent);
     unit_ = std::ldexp(1.0, exponent);
     scale_ = std::ldexp(1.0, -exponent);
-    // quick_extents: |direction_i| ≤ 1, |p_i − origin_i| ≤ unit; a direction rounded to float, an origin rounded to
-    // float (what that shifts is added back), 4.1 roundoffs of the kernel: less than 6 · 3 roundoffs, and a few least
-    // floats.
+    // find_extents on floats: |direction_i| ≤ 1 and |p_i − origin_i| ≤ unit. The direction is rounded once, the origin
+    // once (the shift is added back), the kernel adds 4.1 unit roundoffs: less than 6 for each of 3 coordinates, and a
+    // few least floats for underflow.
     float_origin_ = glm::vec3(origin_);
-    scan_slack_ = floats_ ? 18.0 * 0x1p-24 + 1e-44 * scale_ : kSlack;
+    extent_error_bound_ = floats_ ? 18.0 * 0x1p-24 + 1e-44 * scale_ : kErrorBound;
     boxes_.resize(6 * chunks_);
     for (std::size_t k = 0; k < 3; ++k) {
         const double origin = origin_[static_cast<int>(k)];
@@ -101,15 +101,14 @@ Result<void> PointCloud::assign_points(const T* points, std::size_t count) {
             boxes_[(3 + k) * chunks_ + i] = 0.5 * (high - low);
         }
     }
-    middle_.resize(3 * chunks_);
-    reach_.resize(3 * chunks_);
+    for (Vector<double>* list : {&middle_, &projected_radius_, &low_, &high_}) list->resize(3 * chunks_);
     wanted_.resize(chunks_);
     return {};
 }
 
 void PointCloud::sorted(Vector<glm::dvec3>& points) {
     points.clear();
-    constexpr std::size_t kQuadratic = 160;  // from here on sorting is quicker
+    constexpr std::size_t kQuadratic = 160;  // beyond this sorting is quicker than ranking
     if (floats_ == nullptr || count_ > kQuadratic) {
         for (std::size_t i = 0; i < count_; ++i) points.push_back(normalised(i));
         make_canonical(points);
@@ -121,7 +120,7 @@ void PointCloud::sorted(Vector<glm::dvec3>& points) {
         for (std::size_t i = 0; i < padded; ++i) ranks_[k * padded + i] = floats_[3 * (i < count_ ? i : 0) + k];
     float* const x = ranks_.data();
     float* const ranks = x + 3 * padded;
-    kernels::ranks({x, x + padded, x + 2 * padded, count_}, ranks);
+    kernels::find_ranks({x, x + padded, x + 2 * padded, count_}, ranks);
     // Duplicates share a rank; the ranks after it stay empty.
     constexpr std::uint32_t kNone = ~std::uint32_t{0};
     order_.assign(count_, kNone);
@@ -131,7 +130,7 @@ void PointCloud::sorted(Vector<glm::dvec3>& points) {
         if (i != kNone) points.push_back(normalised(i));
 }
 
-void PointCloud::project(const glm::dmat3& directions) {
+void PointCloud::project_boxes(const glm::dmat3& directions) {
     kernels::Boxes boxes;
     for (std::size_t k = 0; k < 3; ++k) {
         boxes.center[k] = boxes_.data() + k * chunks_;
@@ -139,12 +138,12 @@ void PointCloud::project(const glm::dmat3& directions) {
     }
     for (std::size_t k = 0; k < 3; ++k)
         kernels::project_boxes(boxes, chunks_, &directions[static_cast<int>(k)].x, middle_.data() + k * chunks_,
-                               reach_.data() + k * chunks_);
+                               projected_radius_.data() + k * chunks_);
 }
 
 template <class T>
-void PointCloud::quick_extents_of(const T* points, Vector<T>& storage, const T* directions, const T* origin,
-                                  const glm::dvec3& shift) {
+void PointCloud::find_extents_of(const T* points, Vector<T>& storage, const T* directions, const T* origin,
+                                 const glm::dvec3& shift) {
     kernels::ChunkBounds<T> chunk;
     for (std::size_t k = 0; k < 3; ++k) {
         chunk.low[k] = storage.data() + k * chunks_;
@@ -152,8 +151,8 @@ void PointCloud::quick_extents_of(const T* points, Vector<T>& storage, const T* 
     }
     kernels::chunk_extents(points, count_, wanted_.data(), directions, origin, chunk);
     for (std::size_t k = 0; k < 3; ++k) {
-        double* low = middle_.data() + k * chunks_;
-        double* high = reach_.data() + k * chunks_;
+        double* low = low_.data() + k * chunks_;
+        double* high = high_.data() + k * chunks_;
         const double moved = shift[static_cast<int>(k)];
         for (std::size_t i = 0; i < chunks_; ++i) {
             const bool wanted = wanted_[i] != 0;
@@ -163,97 +162,100 @@ void PointCloud::quick_extents_of(const T* points, Vector<T>& storage, const T* 
     }
 }
 
-void PointCloud::quick_extents(const glm::dmat3& directions) {
+void PointCloud::find_extents(const glm::dmat3& directions) {
     if (floats_) {
         const glm::mat3 rounded(directions);
         const glm::dvec3 shift = (glm::dvec3(float_origin_) - origin_) * scale_ * directions;
-        quick_extents_of(floats_, float_bounds_, &rounded[0].x, &float_origin_.x, shift);
+        find_extents_of(floats_, float_bounds_, &rounded[0].x, &float_origin_.x, shift);
     } else {
-        quick_extents_of(doubles_, double_bounds_, &directions[0].x, &origin_.x, glm::dvec3(0.0));
+        find_extents_of(doubles_, double_bounds_, &directions[0].x, &origin_.x, glm::dvec3(0.0));
+    }
+}
+
+std::size_t PointCloud::most_promising_chunk(std::size_t side) const {
+    const double* middle = middle_.data() + side / 2 * chunks_;
+    const double* radius = projected_radius_.data() + side / 2 * chunks_;
+    const double sign = side % 2 == 0 ? 1.0 : -1.0;
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < chunks_; ++i)
+        if (sign * middle[i] + radius[i] > sign * middle[best] + radius[best]) best = i;
+    return best;
+}
+
+void PointCloud::scan(std::size_t chunk, const glm::dvec3& direction, Support& best) const {
+    const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
+    for (std::size_t i = chunk * kernels::kChunk; i < end; ++i) {
+        const glm::dvec3 p = normalised(i);
+        const double t = glm::dot(p, direction);
+        if (t >= best.height && (t > best.height || lexicographic(p, best.point))) best = {p, t};
     }
 }
 
 Supports PointCloud::supports(const glm::dmat3& directions) {
-    project(directions);
-    Supports best{};
-    std::array<double, 6> farthest;
-    farthest.fill(-kInfinity);
-    const auto scan = [&](std::size_t chunk, std::size_t side) {
+    project_boxes(directions);
+    std::array<Support, 6> best;
+    best.fill({glm::dvec3(0.0), -kInfinity});
+    const auto scan_for = [&](std::size_t side, std::size_t chunk) {
         const int k = static_cast<int>(side / 2);
-        const double sign = side % 2 == 0 ? 1.0 : -1.0;
-        const glm::dvec3 direction = sign * directions[k];
-        glm::dvec3& found = best[side];
-        double height = farthest[side];
-        const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
-        for (std::size_t i = chunk * kernels::kChunk; i < end; ++i) {
-            const glm::dvec3 p = normalised(i);
-            const double t = glm::dot(p, direction);
-            if (t >= height && (t > height || lexicographic(p, found))) {
-                height = t;
-                found = p;
-            }
-        }
-        farthest[side] = height;
+        scan(chunk, (side % 2 == 0 ? 1.0 : -1.0) * directions[k], best[side]);
     };
-    // The most promising chunks first, so that the others can be skipped.
-    std::array<std::size_t, 6> promising;
-    promising.fill(chunks_);
-    for (std::size_t side = 0; side < 6 && chunks_ > kFewChunks; ++side) {
-        const double* middle = middle_.data() + side / 2 * chunks_;
-        const double* reach = reach_.data() + side / 2 * chunks_;
-        const double sign = side % 2 == 0 ? 1.0 : -1.0;
-        std::size_t& first = promising[side];
-        first = 0;
-        for (std::size_t i = 1; i < chunks_; ++i)
-            if (sign * middle[i] + reach[i] > sign * middle[first] + reach[first]) first = i;
-        scan(first, side);
+    // One promising chunk a side first, so that most others can be skipped.
+    std::array<std::size_t, 6> scanned;
+    scanned.fill(chunks_);
+    for (std::size_t side = 0; side < 6 && chunks_ > kScanAllChunks; ++side) {
+        scanned[side] = most_promising_chunk(side);
+        scan_for(side, scanned[side]);
     }
     for (std::size_t i = 0; i < chunks_; ++i) {
         bool skip = true;
         for (std::size_t k = 0; k < 3; ++k) {
-            const double middle = middle_[k * chunks_ + i], reach = reach_[k * chunks_ + i] + kSlack;
-            skip = skip && middle + reach < farthest[2 * k] && reach - middle < farthest[2 * k + 1];
+            const double middle = middle_[k * chunks_ + i], radius = projected_radius_[k * chunks_ + i] + kErrorBound;
+            skip = skip && middle + radius < best[2 * k].height && radius - middle < best[2 * k + 1].height;
         }
         wanted_[i] = !skip;
     }
-    quick_extents(directions);
-    // What the rounded extents promise at least, then exactly where they leave a doubt.
+    find_extents(directions);
+    // Scan in double every chunk that may hold the support point, as far as its rounded extents tell.
     for (std::size_t k = 0; k < 3; ++k) {
-        const double* lows = middle_.data() + k * chunks_;
-        const double* highs = reach_.data() + k * chunks_;
-        const double least =
-            std::min(-farthest[2 * k + 1], *std::min_element(lows, lows + chunks_) + scan_slack_) + scan_slack_;
-        const double greatest =
-            std::max(farthest[2 * k], *std::max_element(highs, highs + chunks_) - scan_slack_) - scan_slack_;
+        const double* low = low_.data() + k * chunks_;
+        const double* high = high_.data() + k * chunks_;
+        const double error = extent_error_bound_;
+        const double least = std::min(-best[2 * k + 1].height, *std::min_element(low, low + chunks_) + error) + error;
+        const double greatest = std::max(best[2 * k].height, *std::max_element(high, high + chunks_) - error) - error;
         for (std::size_t i = 0; i < chunks_; ++i) {
-            if (highs[i] >= greatest && i != promising[2 * k]) scan(i, 2 * k);
-            if (lows[i] <= least && i != promising[2 * k + 1]) scan(i, 2 * k + 1);
+            if (high[i] >= greatest && i != scanned[2 * k]) scan_for(2 * k, i);
+            if (low[i] <= least && i != scanned[2 * k + 1]) scan_for(2 * k + 1, i);
         }
     }
-    return best;
+    Supports supports;
+    for (std::size_t side = 0; side < 6; ++side) supports[side] = best[side].point;
+    return supports;
 }
 
-void PointCloud::visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& reach,
+void PointCloud::visit_beyond(const glm::dmat3& directions, const glm::dvec3& center, const glm::dvec3& limit,
                               FunctionRef<void(int k, const glm::dvec3& p)> visit) {
-    project(directions);
+    project_boxes(directions);
     const glm::dvec3 middle = (center - origin_) * scale_ * directions;
-    const glm::dvec3 limit = reach * scale_ - kSlack;
+    const glm::dvec3 beyond = limit * scale_ - kErrorBound;
     for (std::size_t i = 0; i < chunks_; ++i) {
         bool skip = true;
-        for (std::size_t k = 0; k < 3; ++k)
-            skip = skip && std::abs(middle_[k * chunks_ + i] - middle[static_cast<int>(k)]) + reach_[k * chunks_ + i] <
-                               limit[static_cast<int>(k)];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int axis = static_cast<int>(k);
+            skip = skip && std::abs(middle_[k * chunks_ + i] - middle[axis]) + projected_radius_[k * chunks_ + i] <
+                               beyond[axis];
+        }
         wanted_[i] = !skip;
     }
-    quick_extents(directions);
+    find_extents(directions);
     for (int k = 0; k < 3; ++k)
         for (std::size_t chunk = 0; chunk < chunks_; ++chunk) {
-            const double low = middle_[static_cast<std::size_t>(k) * chunks_ + chunk];
-            const double high = reach_[static_cast<std::size_t>(k) * chunks_ + chunk];
-            if (high - middle[k] < limit[k] - scan_slack_ && middle[k] - low < limit[k] - scan_slack_) continue;
+            const double low = low_[static_cast<std::size_t>(k) * chunks_ + chunk];
+            const double high = high_[static_cast<std::size_t>(k) * chunks_ + chunk];
+            const double certain = beyond[k] - extent_error_bound_;
+            if (high - middle[k] < certain && middle[k] - low < certain) continue;
             const std::size_t end = std::min(count_, (chunk + 1) * kernels::kChunk);
             for (std::size_t i = chunk * kernels::kChunk; i < end; ++i)
-                if (std::abs(glm::dot(normalised(i), directions[k]) - middle[k]) >= limit[k]) visit(k, world(i));
+                if (std::abs(glm::dot(normalised(i), directions[k]) - middle[k]) >= beyond[k]) visit(k, world(i));
         }
 }
 

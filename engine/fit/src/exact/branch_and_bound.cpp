@@ -1,4 +1,4 @@
-#include "branch_and_bound.hpp"
+#include "exact/branch_and_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,15 +6,15 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "cell_kernels.hpp"
-#include "polish.hpp"
+#include "exact/cell_kernels.hpp"
+#include "search/polish.hpp"
 
 namespace crofton::fit {
 namespace {
 
 using kernels::kBatch;
 
-// By the symmetries of a box every frame turns into one with a Rodrigues vector in |c_i| ≤ tan(π/8), Σ|c_i| ≤ 1.
+// tan(π/8). By the 24 symmetries of a box, Rodrigues vectors c with |c_i| ≤ tan(π/8) and Σ|c_i| ≤ 1 cover all frames.
 constexpr double kRootHalf = 0.41421356237309515;
 
 struct Cell {
@@ -42,7 +42,7 @@ class Search {
 
     SearchResult run() {
         result_.best.value = std::numeric_limits<double>::infinity();
-        try_frame(root_);
+        search_from(root_);
         Cell root{glm::dvec3(0.0), glm::dvec3(kRootHalf), glm::dvec3(1.0), 0.0, 0, {}, 0};
         cells_.push_back(root);
         while (!cells_.empty()) {
@@ -50,7 +50,7 @@ class Search {
             cells_.pop_back();
             load_lists(cell);
             if (cell.bound >= target()) continue;
-            if (result_.cells >= limits_.cells || (++steps_ % 64 == 0 && !ask())) {
+            if (result_.cells >= limits_.cells || (++steps_ % 64 == 0 && !keep_going())) {
                 cells_.push_back(cell);
                 break;
             }
@@ -68,20 +68,20 @@ class Search {
 
     void set_best(const glm::dmat3& axes, double value, const glm::dvec3& w) {
         result_.best = {axes, value};
-        // Thinner than 1e-13 of the size is noise of the coordinates; what that does to the value is left unproved.
+        // Widths below 1e-13 of the size are rounding of the coordinates: the proof leaves out what they may change.
         const double slopes = weights_.product * (w.x * w.y + w.y * w.z + w.z * w.x) +
                               2.0 * weights_.pairs * (w.x + w.y + w.z) + 3.0 * weights_.sum;
         target_ = std::max(0.0, value * (1.0 - limits_.gap) - 1e-13 * slopes);
     }
 
-    bool ask() {
-        if (limits_.go_on == nullptr) return true;
+    bool keep_going() {
+        if (limits_.keep_going == nullptr) return true;
         double bound = target();
         for (const Cell& cell : cells_) bound = std::min(bound, cell.bound);
-        return (*limits_.go_on)(result_.best.value, bound, result_.cells);
+        return (*limits_.keep_going)(result_.best.value, bound, result_.cells);
     }
 
-    // Adds a point to the subset and to the lists at work; coordinates are those of the root frame from here on.
+    // Adds a point to the subset and, in the root frame's coordinates, to the current lists.
     void add(const glm::dvec3& p) {
         subset_.push_back(p);
         append(glm::transpose(root_) * p);
@@ -98,7 +98,7 @@ class Search {
         for (std::size_t side = 0; side < 6; ++side) ++count_[side];
     }
 
-    // The arena is a stack like the cells: the last cell's lists are at its end.
+    // Makes the last cell's lists the current ones. The arena is a stack like cells_: they lie at its end.
     void load_lists(const Cell& cell) {
         const double* from = arena_.data() + cell.begin;
         for (std::size_t side = 0; side < 6; ++side) {
@@ -125,19 +125,19 @@ class Search {
         return lists;
     }
 
-    // Local search from a frame of the cloud's coordinates, then what the whole cloud says of it. The support points
-    // that the subset lacks join it.
-    void try_frame(const glm::dmat3& axes) {
+    // Improves a frame (in the cloud's coordinates) on the subset and evaluates the result on the cloud; again while
+    // the cloud's value is higher, which adds points to the subset.
+    void search_from(const glm::dmat3& axes) {
         Candidate candidate{axes, 0.0};
         for (int round = 0; round < 8; ++round) {
             descend(weights_, subset_, candidate, buffers_);
             polish(weights_, subset_, candidate, buffers_);
-            if (look(candidate.axes) <= candidate.value * (1.0 + 1e-12)) break;
+            if (evaluate_on_cloud(candidate.axes) <= candidate.value * (1.0 + 1e-12)) break;
         }
     }
 
-    // The cloud's own value of a frame; may improve the best.
-    double look(const glm::dmat3& axes) {
+    // The frame's value for the whole cloud; the best is updated. Support points that the subset lacks join it.
+    double evaluate_on_cloud(const glm::dmat3& axes) {
         const Supports supports = cloud_.supports(axes);
         const glm::dvec3 extent = widths(supports, axes);
         const double value = weights_(extent.x, extent.y, extent.z);
@@ -153,7 +153,7 @@ class Search {
     }
 
     void split(const Cell& cell) {
-        // Eight equal parts: three halvings, each along the coordinate over which the value varies most.
+        // Eight equal parts, by three halvings, each along the coordinate that changes the value most.
         std::array<int, 3> parts = {1, 1, 1};
         glm::dvec3 half = cell.half;
         for (int i = 0; i < 3; ++i) {
@@ -173,17 +173,18 @@ class Search {
             known = subset_.size();
             kernels::evaluate_cells(weights_, side_lists(), target(), batch_);
             for (std::size_t i = 0; i < kBatch && subset_.size() == known; ++i)
-                if (batch_.bound[i] < target() && batch_.value[i] < result_.best.value && in_domain(i)) look_closer(i);
+                if (batch_.bound[i] < target() && batch_.value[i] < result_.best.value && in_domain(i))
+                    try_cell_center(i);
         } while (subset_.size() != known);
         result_.cells += kBatch;
-        std::array<std::size_t, kBatch> open;
-        std::size_t open_count = 0;
+        std::array<std::size_t, kBatch> remaining;
+        std::size_t remaining_count = 0;
         for (std::size_t i = 0; i < kBatch; ++i)
-            if (batch_.bound[i] < target() && in_domain(i)) open[open_count++] = i;
-        // The most promising child is to be taken next: push it last.
-        std::stable_sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(open_count),
+            if (batch_.bound[i] < target() && in_domain(i)) remaining[remaining_count++] = i;
+        // The child with the lowest bound is pushed last, to be taken next.
+        std::stable_sort(remaining.begin(), remaining.begin() + static_cast<std::ptrdiff_t>(remaining_count),
                          [&](std::size_t a, std::size_t b) { return batch_.bound[a] > batch_.bound[b]; });
-        for (std::size_t i = 0; i < open_count; ++i) push(open[i], cell.bound);
+        for (std::size_t i = 0; i < remaining_count; ++i) push(remaining[i], cell.bound);
     }
 
     [[nodiscard]] glm::dvec3 center(std::size_t i) const {
@@ -195,11 +196,11 @@ class Search {
         return least.x + least.y + least.z <= 1.0 + 1e-12;
     }
 
-    // The subset says that the centre of cell i beats the best; if the cloud agrees, search from there.
-    void look_closer(std::size_t i) {
+    // For the subset the centre of cell i is better than the best frame. If it is for the cloud too, searches from it.
+    void try_cell_center(std::size_t i) {
         const glm::dmat3 axes = root_ * rotation(center(i));
         const double before = result_.best.value;
-        if (look(axes) < before) try_frame(axes);
+        if (evaluate_on_cloud(axes) < before) search_from(axes);
     }
 
     void push(std::size_t i, double parent_bound) {

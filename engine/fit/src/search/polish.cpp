@@ -1,4 +1,4 @@
-#include "polish.hpp"
+#include "search/polish.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,11 @@
 namespace crofton::fit {
 namespace {
 
-constexpr double kReach = 0.04;   // radians a slide may go
-constexpr double kFlush = 1e-10;  // points this near a face lie on it (normalised coordinates)
+constexpr double kLongestSlide = 0.04;  // radians a slide may go
+constexpr double kFlush = 1e-10;        // points this near a face lie on it (normalised coordinates)
 
-// Frames with axis `first.axis` perpendicular to one edge and axis `second.axis` to another, by the angle of the first.
+// The frames whose axis `first.axis` is perpendicular to one edge and axis `second.axis` to another, by the angle of
+// the first from its place in `frame`.
 struct Slide {
     glm::dmat3 frame;
     FlushEdge first, second;
@@ -34,7 +35,7 @@ struct Slide {
     }
 };
 
-// Points that may bound the box somewhere within kReach or so of the frame.
+// Writes to `near` the points that may lie on a face for a frame within about kLongestSlide of this one.
 void collect_near(std::span<const glm::dvec3> points, const glm::dmat3& frame, Vector<glm::dvec3>& near) {
     near.clear();
     std::array<glm::dvec3, 6> top;
@@ -51,7 +52,7 @@ void collect_near(std::span<const glm::dvec3> points, const glm::dmat3& frame, V
     for (const glm::dvec3& p : points)
         for (std::size_t side = 0; side < 6; ++side) {
             const double t = (side % 2 == 0 ? 1.0 : -1.0) * glm::dot(p, frame[static_cast<int>(side / 2)]);
-            if (height[side] - t <= 3.0 * kReach * glm::distance(p, top[side])) {
+            if (height[side] - t <= 3.0 * kLongestSlide * glm::distance(p, top[side])) {
                 near.push_back(p);
                 break;
             }
@@ -71,7 +72,7 @@ void collect_edges(std::span<const glm::dvec3> points, const glm::dmat3& frame, 
             if (count < flush.size() && height - glm::dot(p, normal) <= kFlush) flush[count++] = p;
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t j = i + 1; j < count; ++j) {
-                // Perpendicular to the axis to the last bit, so that the slide starts where the frame is.
+                // Made perpendicular to the axis, so that the slide starts at the frame.
                 glm::dvec3 d = flush[j] - flush[i];
                 d -= glm::dot(d, frame[axis]) * frame[axis];
                 if (const double length = glm::length(d); length > 1e-6) edges.push_back({axis, d / length});
@@ -79,8 +80,8 @@ void collect_edges(std::span<const glm::dvec3> points, const glm::dmat3& frame, 
     }
 }
 
-// The least value along a slide in the direction of `sign`, by doubling steps and golden section; false if none is
-// lower.
+// Sets `best` to the frame of least value along a slide in the direction of `sign`, found by doubling steps and golden
+// section; returns false if none is lower.
 bool minimise(const Weights& weights, std::span<const glm::dvec3> points, const Slide& slide, double sign,
               const Steps& steps, Candidate& best) {
     glm::dmat3 frame;
@@ -91,7 +92,7 @@ bool minimise(const Weights& weights, std::span<const glm::dvec3> points, const 
     double a = 0.0, b = steps.first, at_b = value(b);
     if (!(at_b < enough)) return false;
     double c = 2.0 * b, at_c = value(c);
-    while (at_c < at_b && c < kReach) {
+    while (at_c < at_b && c < kLongestSlide) {
         a = b;
         b = c;
         at_b = at_c;

@@ -1,18 +1,18 @@
-#include "few_kernels.hpp"
+#include "small_set/kernels.hpp"
 
 #include <bit>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "few_kernels.cpp"
+#define HWY_TARGET_INCLUDE "small_set/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "few_lanes-inl.hpp"
+#include "small_set/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::fit::kernels::HWY_NAMESPACE {
 
-void extremes_impl(const FewPoints& points, const Directions& directions, float* least, float* greatest) {
+void find_extremes(const SmallSet& points, const Directions& directions, float* least, float* greatest) {
     const Tag d;
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
         const Vec3 direction = {hn::LoadU(d, directions.x + lane), hn::LoadU(d, directions.y + lane),
@@ -31,7 +31,7 @@ void extremes_impl(const FewPoints& points, const Directions& directions, float*
     }
 }
 
-void ranks_impl(const FewPoints& points, float* ranks) {
+void find_ranks(const SmallSet& points, float* ranks) {
     const Tag d;
     const auto one = hn::Set(d, 1.0f);
     for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
@@ -47,7 +47,7 @@ void ranks_impl(const FewPoints& points, float* ranks) {
     }
 }
 
-void frames_impl(const FewPoints& points, const FloatWeights& weights, const float* frames, std::size_t count,
+void best_frames(const SmallSet& points, const FloatWeights& weights, const float* frames, std::size_t count,
                  float* values, float* rows) {
     const Tag d;
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
@@ -66,7 +66,7 @@ void frames_impl(const FewPoints& points, const FloatWeights& weights, const flo
     }
 }
 
-void support_impl(const FewPoints& points, const float frame[9], float supports[6], float widths[3]) {
+void supports_of_frame(const SmallSet& points, const float frame[9], float supports[6], float widths[3]) {
     const Tag d;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 axis = set(d, frame + 3 * k);
@@ -79,7 +79,8 @@ void support_impl(const FewPoints& points, const float frame[9], float supports[
             high = hn::IfThenElse(hn::Gt(t, range.high), index, high);
             range.include(t);
         }
-        // Of lanes that hold the extreme, the least index: padding repeats the first point, which then has index 0.
+        // Of the lanes that hold the extreme value the least index wins. Padding repeats point 0, which then wins
+        // itself.
         const auto none = hn::Set(d, kHuge);
         const auto least = hn::MinOfLanes(d, range.low), greatest = hn::MaxOfLanes(d, range.high);
         supports[2 * k] = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(range.high, greatest), high, none)));
@@ -96,7 +97,55 @@ constexpr Angle kTurns[2][4] = {
     {{0.97814760f, 0.20791169f}, {0.99026807f, 0.13917310f}, {0.99619470f, 0.08715574f}, {0.99904822f, 0.04361939f}},
     {{0.99862953f, 0.05233596f}, {0.99939083f, 0.03489950f}, {0.99978068f, 0.02094242f}, {0.99994517f, 0.01047178f}}};
 
-void settle_impl(const FewPoints& points, const FloatWeights& weights, float* scratch, FrameLanes& frames) {
+// One step of descend_frames: turns the frame of each lane about axes[k] to the best of nine angles; returns the
+// values.
+HWY_INLINE Lane turn_about(const SmallSet& points, const FloatWeights& weights, const Angle angles[4], std::size_t k,
+                           Vec3 axes[3], float* scratch) {
+    const Tag d;
+    const Vec3 axis = axes[k];
+    Vec3 &right = axes[(k + 1) % 3], &up = axes[(k + 2) % 3];
+    Range depths = nothing(d), along_right = depths, along_up = depths;
+    for (std::size_t i = 0; i < points.count; ++i) {
+        const Vec3 p = broadcast(d, points, i);
+        depths.include(dot(axis, p));
+        const auto x = dot(right, p), y = dot(up, p);
+        along_right.include(x);
+        along_up.include(y);
+        hn::StoreU(x, d, scratch + 2 * kLanes * i);
+        hn::StoreU(y, d, scratch + 2 * kLanes * i + kLanes);
+    }
+    const auto depth = depths.width();
+    auto best = value(d, weights, along_right.width(), along_up.width(), depth);
+    auto cosine = hn::Set(d, 1.0f), sine = hn::Zero(d);
+    const auto keep_better = [&](Lane found, Lane c, Lane s) {
+        const auto better = hn::Lt(found, best);
+        best = hn::Min(best, found);
+        cosine = hn::IfThenElse(better, c, cosine);
+        sine = hn::IfThenElse(better, s, sine);
+    };
+    for (std::size_t j = 0; j < 4; ++j) {
+        const auto c = hn::Set(d, angles[j].cosine), s = hn::Set(d, angles[j].sine);
+        Range a = nothing(d), b = a, a_back = a, b_back = a;
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const auto x = hn::LoadU(d, scratch + 2 * kLanes * i);
+            const auto y = hn::LoadU(d, scratch + 2 * kLanes * i + kLanes);
+            const auto cx = hn::Mul(c, x), sx = hn::Mul(s, x), cy = hn::Mul(c, y), sy = hn::Mul(s, y);
+            a.include(hn::Add(cx, sy));
+            b.include(hn::Sub(cy, sx));
+            a_back.include(hn::Sub(cx, sy));
+            b_back.include(hn::Add(cy, sx));
+        }
+        keep_better(value(d, weights, a.width(), b.width(), depth), c, s);
+        keep_better(value(d, weights, a_back.width(), b_back.width(), depth), c, hn::Neg(s));
+    }
+    const Vec3 c_right = scaled(right, cosine), s_up = scaled(up, sine);
+    const Vec3 c_up = scaled(up, cosine), s_right = scaled(right, sine);
+    right = {hn::Add(c_right.x, s_up.x), hn::Add(c_right.y, s_up.y), hn::Add(c_right.z, s_up.z)};
+    up = {hn::Sub(c_up.x, s_right.x), hn::Sub(c_up.y, s_right.y), hn::Sub(c_up.z, s_right.z)};
+    return best;
+}
+
+void descend_frames(const SmallSet& points, const FloatWeights& weights, float* scratch, FrameLanes& frames) {
     const Tag d;
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
         Vec3 axes[3];
@@ -104,49 +153,8 @@ void settle_impl(const FewPoints& points, const FloatWeights& weights, float* sc
             axes[k] = {hn::LoadU(d, frames.axes[3 * k] + lane), hn::LoadU(d, frames.axes[3 * k + 1] + lane),
                        hn::LoadU(d, frames.axes[3 * k + 2] + lane)};
         auto best = hn::Set(d, kHuge);
-        for (std::size_t step = 0; step < 6; ++step) {
-            Vec3 &axis = axes[step % 3], &right = axes[(step + 1) % 3], &up = axes[(step + 2) % 3];
-            Range depths = nothing(d), along_right = depths, along_up = depths;
-            for (std::size_t i = 0; i < points.count; ++i) {
-                const Vec3 p = broadcast(d, points, i);
-                depths.include(dot(axis, p));
-                const auto x = dot(right, p), y = dot(up, p);
-                along_right.include(x);
-                along_up.include(y);
-                hn::StoreU(x, d, scratch + 2 * kLanes * i);
-                hn::StoreU(y, d, scratch + 2 * kLanes * i + kLanes);
-            }
-            const auto depth = depths.width();
-            best = value(d, weights, along_right.width(), along_up.width(), depth);
-            auto cosine = hn::Set(d, 1.0f), sine = hn::Zero(d);
-            for (const Angle& angle : kTurns[step / 3]) {
-                const auto c = hn::Set(d, angle.cosine), s = hn::Set(d, angle.sine);
-                Range a = nothing(d), b = a, a_back = a, b_back = a;
-                for (std::size_t i = 0; i < points.count; ++i) {
-                    const auto x = hn::LoadU(d, scratch + 2 * kLanes * i);
-                    const auto y = hn::LoadU(d, scratch + 2 * kLanes * i + kLanes);
-                    const auto cx = hn::Mul(c, x), sx = hn::Mul(s, x), cy = hn::Mul(c, y), sy = hn::Mul(s, y);
-                    a.include(hn::Add(cx, sy));
-                    b.include(hn::Sub(cy, sx));
-                    a_back.include(hn::Sub(cx, sy));
-                    b_back.include(hn::Add(cy, sx));
-                }
-                const auto forth = value(d, weights, a.width(), b.width(), depth);
-                const auto back = value(d, weights, a_back.width(), b_back.width(), depth);
-                const auto forth_better = hn::Lt(forth, best);
-                best = hn::Min(best, forth);
-                cosine = hn::IfThenElse(forth_better, c, cosine);
-                sine = hn::IfThenElse(forth_better, s, sine);
-                const auto back_better = hn::Lt(back, best);
-                best = hn::Min(best, back);
-                cosine = hn::IfThenElse(back_better, c, cosine);
-                sine = hn::IfThenElse(back_better, hn::Neg(s), sine);
-            }
-            const Vec3 c_right = scaled(right, cosine), s_up = scaled(up, sine);
-            const Vec3 c_up = scaled(up, cosine), s_right = scaled(right, sine);
-            right = {hn::Add(c_right.x, s_up.x), hn::Add(c_right.y, s_up.y), hn::Add(c_right.z, s_up.z)};
-            up = {hn::Sub(c_up.x, s_right.x), hn::Sub(c_up.y, s_right.y), hn::Sub(c_up.z, s_right.z)};
-        }
+        for (std::size_t step = 0; step < 6; ++step)
+            best = turn_about(points, weights, kTurns[step / 3], step % 3, axes, scratch);
         hn::StoreU(best, d, frames.values + lane);
         for (std::size_t k = 0; k < 3; ++k) {
             hn::StoreU(axes[k].x, d, frames.axes[3 * k] + lane);
@@ -156,7 +164,7 @@ void settle_impl(const FewPoints& points, const FloatWeights& weights, float* sc
     }
 }
 
-void supports_impl(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
+void supports_of_frames(const SmallSet& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
     const Tag d;
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
         Range range[3];
@@ -179,7 +187,7 @@ void supports_impl(const FewPoints& points, const FloatWeights& weights, FrameLa
     }
 }
 
-void slides_impl(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
+void values_of_slides(const SmallSet& points, const FloatWeights& weights, Slides& slides) {
     const Tag d;
     const Vec3 start = set(d, slides.start), across = set(d, slides.across), edge = set(d, slides.edge);
     const auto one = hn::Set(d, 1.0f);
@@ -209,7 +217,7 @@ HWY_INLINE void append(Tag d, hn::Mask<Tag> mask, std::size_t base, std::size_t 
     }
 }
 
-void flush_impl(const FewPoints& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]) {
+void flush_points(const SmallSet& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]) {
     const Tag d;
     const auto near = hn::Set(d, tolerance);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -236,39 +244,39 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::fit::kernels {
 
-HWY_EXPORT(extremes_impl);
-HWY_EXPORT(frames_impl);
-HWY_EXPORT(ranks_impl);
-HWY_EXPORT(support_impl);
-HWY_EXPORT(settle_impl);
-HWY_EXPORT(supports_impl);
-HWY_EXPORT(slides_impl);
-HWY_EXPORT(flush_impl);
+HWY_EXPORT(find_extremes);
+HWY_EXPORT(best_frames);
+HWY_EXPORT(find_ranks);
+HWY_EXPORT(supports_of_frame);
+HWY_EXPORT(descend_frames);
+HWY_EXPORT(supports_of_frames);
+HWY_EXPORT(values_of_slides);
+HWY_EXPORT(flush_points);
 
-void extremes(const FewPoints& points, const Directions& directions, float* least, float* greatest) {
-    HWY_DYNAMIC_DISPATCH(extremes_impl)(points, directions, least, greatest);
+void find_extremes(const SmallSet& points, const Directions& directions, float* least, float* greatest) {
+    HWY_DYNAMIC_DISPATCH(find_extremes)(points, directions, least, greatest);
 }
-void best_frames(const FewPoints& points, const FloatWeights& weights, const float* frames, std::size_t count,
+void best_frames(const SmallSet& points, const FloatWeights& weights, const float* frames, std::size_t count,
                  float* values, float* rows) {
-    HWY_DYNAMIC_DISPATCH(frames_impl)(points, weights, frames, count, values, rows);
+    HWY_DYNAMIC_DISPATCH(best_frames)(points, weights, frames, count, values, rows);
 }
-void settle(const FewPoints& points, const FloatWeights& weights, float* scratch, FrameLanes& frames) {
-    HWY_DYNAMIC_DISPATCH(settle_impl)(points, weights, scratch, frames);
+void descend_frames(const SmallSet& points, const FloatWeights& weights, float* scratch, FrameLanes& frames) {
+    HWY_DYNAMIC_DISPATCH(descend_frames)(points, weights, scratch, frames);
 }
-void supports_of_frames(const FewPoints& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
-    HWY_DYNAMIC_DISPATCH(supports_impl)(points, weights, frames, supports);
+void supports_of_frames(const SmallSet& points, const FloatWeights& weights, FrameLanes& frames, float* supports) {
+    HWY_DYNAMIC_DISPATCH(supports_of_frames)(points, weights, frames, supports);
 }
-void supports_of_frame(const FewPoints& points, const float frame[9], float supports[6], float widths[3]) {
-    HWY_DYNAMIC_DISPATCH(support_impl)(points, frame, supports, widths);
+void supports_of_frame(const SmallSet& points, const float frame[9], float supports[6], float widths[3]) {
+    HWY_DYNAMIC_DISPATCH(supports_of_frame)(points, frame, supports, widths);
 }
-void ranks(const FewPoints& points, float* ranks) {
-    HWY_DYNAMIC_DISPATCH(ranks_impl)(points, ranks);
+void find_ranks(const SmallSet& points, float* ranks) {
+    HWY_DYNAMIC_DISPATCH(find_ranks)(points, ranks);
 }
-void values_of_slides(const FewPoints& points, const FloatWeights& weights, Slides& slides) {
-    HWY_DYNAMIC_DISPATCH(slides_impl)(points, weights, slides);
+void values_of_slides(const SmallSet& points, const FloatWeights& weights, Slides& slides) {
+    HWY_DYNAMIC_DISPATCH(values_of_slides)(points, weights, slides);
 }
-void flush_points(const FewPoints& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]) {
-    HWY_DYNAMIC_DISPATCH(flush_impl)(points, frame, tolerance, scratch, sides);
+void flush_points(const SmallSet& points, const float frame[9], float tolerance, float* scratch, FlushSide sides[6]) {
+    HWY_DYNAMIC_DISPATCH(flush_points)(points, frame, tolerance, scratch, sides);
 }
 
 }  // namespace crofton::fit::kernels

@@ -1,11 +1,11 @@
-#include "few_kernels.hpp"
+#include "small_set/kernels.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "few_turn.cpp"
+#define HWY_TARGET_INCLUDE "small_set/turn.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "few_lanes-inl.hpp"
+#include "small_set/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::fit::kernels::HWY_NAMESPACE {
@@ -65,7 +65,7 @@ HWY_INLINE std::size_t index_of_least(const float* values) {
     return 0;
 }
 
-void turn_impl(const FewPoints& points, const FloatWeights& weights, float* scratch, Turn& turn) {
+void turn_frame(const SmallSet& points, const FloatWeights& weights, float* scratch, Turn& turn) {
     const Tag d;
     const std::size_t padded = (points.count + kLanes - 1) / kLanes * kLanes;
     float* const px = scratch;
@@ -114,10 +114,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::fit::kernels {
 
-HWY_EXPORT(turn_impl);
+HWY_EXPORT(turn_frame);
 
-void turn(const FewPoints& points, const FloatWeights& weights, float* scratch, Turn& turn) {
-    HWY_DYNAMIC_DISPATCH(turn_impl)(points, weights, scratch, turn);
+void turn_frame(const SmallSet& points, const FloatWeights& weights, float* scratch, Turn& turn) {
+    HWY_DYNAMIC_DISPATCH(turn_frame)(points, weights, scratch, turn);
 }
 
 }  // namespace crofton::fit::kernels

@@ -1,4 +1,4 @@
-#include "calipers.hpp"
+#include "search/calipers.hpp"
 
 #include <algorithm>
 #include <cmath>

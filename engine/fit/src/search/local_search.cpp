@@ -1,11 +1,11 @@
-#include "local_search.hpp"
+#include "search/local_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "calipers.hpp"
+#include "search/calipers.hpp"
 
 namespace crofton::fit {
 namespace {
@@ -57,7 +57,7 @@ double value_of(const Weights& weights, std::span<const glm::dvec3> points, cons
 
 void descend(const Weights& weights, std::span<const glm::dvec3> points, Candidate& candidate, SearchBuffers& buffers) {
     candidate.value = value_of(weights, points, candidate.axes);
-    // Each turn lands on one of finitely many flush angles with a lower value; the cap is for slow zigzags.
+    // Each turn ends at one of finitely many flush angles with a lower value. The limit of 60 is for slow zigzags.
     for (int step = 0, idle = 0; idle < 3 && step < 60; ++step)
         idle = turn(weights, points, step % 3, candidate, buffers) ? 0 : idle + 1;
 }
@@ -71,7 +71,7 @@ glm::dmat3 frame_along(const glm::dvec3& first) {
 }
 
 void tetrahedral_frames(std::span<const glm::dvec3> points, Vector<glm::dmat3>& frames) {
-    // Widest pair among the extremes: quadratic, on few points.
+    // The widest pair.
     glm::dvec3 a = points[0], b = points[0];
     double widest = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i)

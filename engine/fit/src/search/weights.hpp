@@ -1,4 +1,4 @@
-// A criterion in the normalised coordinates that the searches work in.
+// A criterion's weights for boxes in normalised coordinates.
 #pragma once
 #include <crofton/measure/criterion.hpp>
 #include <numbers>
@@ -21,15 +21,15 @@ struct NormalisedWeights {
     double scale;  // criterion of a box = scale · value of its edges in units
 };
 
-// For lengths measured in `unit`s: V scales with its cube, F with its square. Divided by the largest weight, which
-// changes no minimiser and keeps later products away from overflow.
+// The weights for lengths in units of `unit`: V scales with its cube, F with its square. They are divided by the
+// largest, which changes no minimiser and keeps later products from overflow.
 [[nodiscard]] inline NormalisedWeights normalised_weights(const measure::Criterion& criterion, double unit) {
     const Weights w{criterion.volume_weight * unit * unit, 2.0 * criterion.area_weight * unit,
                     std::numbers::pi * criterion.mean_curvature_weight};
     double largest = w.product > w.pairs ? w.product : w.pairs;
     if (w.sum > largest) largest = w.sum;
     if (largest > 0.0) return {{w.product / largest, w.pairs / largest, w.sum / largest}, largest * unit};
-    // Every weight underflowed: any criterion that asks for the same measures will do.
+    // Every weight underflowed: search by the first measure that the criterion asks for.
     return {{criterion.volume_weight > 0.0 ? 1.0 : 0.0, criterion.area_weight > 0.0 ? 1.0 : 0.0, 0.0}, 0.0};
 }
 
