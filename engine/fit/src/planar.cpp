@@ -53,17 +53,17 @@ Rectangle around(std::span<const glm::dvec2> points, const glm::dvec2& axis) {
     return rectangle;
 }
 
-Circle through(const glm::dvec2& a, const glm::dvec2& b) {
+Disc through(const glm::dvec2& a, const glm::dvec2& b) {
     return {0.5 * (a + b), 0.5 * glm::distance(a, b)};
 }
 
-Circle through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+Disc through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const glm::dvec2 p = b - a, q = c - a;
     const double twice = 2.0 * (p.x * q.y - p.y * q.x);
     if (twice == 0.0) {
         // Collinear: the longest of the three segments.
-        Circle longest = through(a, b);
-        for (const Circle& other : {through(b, c), through(c, a)})
+        Disc longest = through(a, b);
+        for (const Disc& other : {through(b, c), through(c, a)})
             if (other.radius > longest.radius) longest = other;
         return longest;
     }
@@ -88,7 +88,7 @@ Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygo
     return around(polygon, best.direction);
 }
 
-Result<Circle> minimal_circle(std::span<const glm::dvec2> points) {
+Result<Disc> minimal_disc(std::span<const glm::dvec2> points) {
     if (auto valid = check(points); !valid) return tl::unexpected(valid.error());
     auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
@@ -102,26 +102,26 @@ Result<Circle> minimal_circle(std::span<const glm::dvec2> points) {
     // Work near the origin, so that squares do not lose what the coordinates hold.
     const glm::dvec2 origin = corners[0];
     for (glm::dvec2& p : corners) p -= origin;
-    Circle circle;
+    Disc disc;
     const auto outside = [&](const glm::dvec2& p) {
-        return glm::distance(p, circle.center) > circle.radius * (1.0 + 1e-14);
+        return glm::distance(p, disc.center) > disc.radius * (1.0 + 1e-14);
     };
     for (std::size_t i = 1; i < corners.size(); ++i) {
         if (!outside(corners[i])) continue;
-        circle = {corners[i], 0.0};
+        disc = {corners[i], 0.0};
         for (std::size_t j = 0; j < i; ++j) {
             if (!outside(corners[j])) continue;
-            circle = through(corners[i], corners[j]);
+            disc = through(corners[i], corners[j]);
             for (std::size_t k = 0; k < j; ++k)
-                if (outside(corners[k])) circle = through(corners[i], corners[j], corners[k]);
+                if (outside(corners[k])) disc = through(corners[i], corners[j], corners[k]);
         }
     }
-    circle.center += origin;
-    circle.radius = 0.0;
+    disc.center += origin;
+    disc.radius = 0.0;
     // Differences, squares, sum and root round by less than 4 units together.
     for (const glm::dvec2& p : points)
-        circle.radius = std::max(circle.radius, glm::distance(p, circle.center) * (1.0 + 5.0 * kUnit));
-    return circle;
+        disc.radius = std::max(disc.radius, glm::distance(p, disc.center) * (1.0 + 5.0 * kUnit));
+    return disc;
 }
 
 }  // namespace crofton::fit

@@ -1,27 +1,12 @@
-// In the plane: the best rectangle and the smallest circle around points.
+// In the plane: the best rectangle and the smallest disc around points.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/geometry/disc.hpp>
+#include <crofton/geometry/rectangle.hpp>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <span>
 
 namespace crofton::fit {
-
-// The points p with |dot(axis, p − center)| ≤ half_extents.x and |dot(perp(axis), p − center)| ≤ half_extents.y, where
-// perp(x, y) = (−y, x); `axis` has unit length up to rounding.
-struct Rectangle {
-    glm::dvec2 center{0.0};
-    glm::dvec2 axis{1.0, 0.0};
-    glm::dvec2 half_extents{0.0};
-
-    [[nodiscard]] double area() const { return 4.0 * half_extents.x * half_extents.y; }
-    [[nodiscard]] double perimeter() const { return 4.0 * (half_extents.x + half_extents.y); }
-};
-
-struct Circle {
-    glm::dvec2 center{0.0};
-    double radius = 0.0;
-};
 
 enum class PlanarCriterion : std::uint8_t {
     perimeter,  // the measure of the lines that meet the rectangle
@@ -39,8 +24,8 @@ enum class PlanarCriterion : std::uint8_t {
 [[nodiscard]] Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon,
                                                             PlanarCriterion criterion);
 
-// The smallest circle. Contains every point, and is larger than the smallest by rounding only. Errors as above.
+// The smallest disc. Contains every point, and is larger than the smallest by rounding only. Errors as above.
 // O(n log n) for the hull, then expected linear in its corners (Welzl 1991).
-[[nodiscard]] Result<Circle> minimal_circle(std::span<const glm::dvec2> points);
+[[nodiscard]] Result<Disc> minimal_disc(std::span<const glm::dvec2> points);
 
 }  // namespace crofton::fit
