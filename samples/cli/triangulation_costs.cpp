@@ -4,9 +4,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <crofton/geometry/clip_space.hpp>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <crofton/sampling/random.hpp>
 #include <crofton/sampling/random_motion.hpp>
@@ -218,7 +218,7 @@ Result<std::vector<DrawCost>> draw_wall(std::span<const TriangulatedPolygon> pol
             camera.forward = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -1.0};
             camera.far = 100.0;
             const render::DrawTransform transform =
-                render::draw_transform(ModelToClip(camera)(glm::dmat3(1.0), glm::dvec3(0.0)), glm::dmat3(1.0));
+                render::draw_transform(render::ModelToClip(camera)(glm::dmat3(1.0), glm::dvec3(0.0)), glm::dmat3(1.0));
             const auto start = std::chrono::steady_clock::now();
             const auto drawn = rasterizer->draw({camera, {&transform, 1}, {&range, 1}});
             if (!drawn) return tl::unexpected(drawn.error());

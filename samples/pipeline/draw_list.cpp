@@ -100,7 +100,7 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
     selected_.clear();
     for (const scene::InstanceId instance : visible) selected_.push_back(ranks_[instance]);
     std::sort(selected_.begin(), selected_.end());
-    const ModelToClip to_clip(camera);
+    const render::ModelToClip to_clip(camera);
     ranges_.clear();
     transforms_.clear();
     transforms_.push_back(render::draw_transform(to_clip(glm::dmat3(1.0), baked_origin_), glm::dmat3(1.0)));
@@ -118,7 +118,7 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
         // Mirrored, fronts and backs change places: such instances show both.
         const bool one_sided = one_sided_[rank] != 0 && glm::determinant(world.linear) > 0.0;
         ranges_.push_back({part.first_index, part.index_count, transform, one_sided,
-                           inside_clip_planes(part.bounds, transforms_[transform].to_clip)});
+                           render::inside_clip_planes(part.bounds, transforms_[transform].to_clip)});
     }
 }
 

@@ -1,6 +1,6 @@
 // A scene as one static vertex and index buffer, and a set of visible instances as ranges of it.
 #pragma once
-#include <crofton/geometry/clip_space.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
@@ -59,7 +59,7 @@ class DrawList {
     std::vector<std::uint32_t> selected_;                  // ranks, ascending
     std::vector<render::DrawRange> ranges_;
     std::vector<render::DrawTransform> transforms_;
-    ClipPredictor predictor_;
+    render::ClipPredictor predictor_;
 };
 
 }  // namespace crofton::pipeline

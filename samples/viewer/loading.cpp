@@ -2,7 +2,6 @@
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>
 
-#include <crofton/geometry/clip_space.hpp>
 #include <crofton/render/vertex.hpp>
 #include <filesystem>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/cull/cull.hpp>
-#include <crofton/geometry/clip_space.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <thread>

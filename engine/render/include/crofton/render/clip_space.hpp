@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-namespace crofton {
+namespace crofton::render {
 
 // Makes the one float matrix per drawn mesh that CPU and GPU both multiply by, so that they agree to the bit. Composed
 // in double relative to the camera, rounded once: coordinates lose nothing at large offsets.
@@ -54,4 +54,4 @@ class ClipPredictor {
     Vector<std::uint8_t> codes_;  // per position: bit k set where it lies outside plane k
 };
 
-}  // namespace crofton
+}  // namespace crofton::render

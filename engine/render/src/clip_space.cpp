@@ -3,14 +3,14 @@
 #include <bit>
 #include <cmath>
 #include <crofton/core/assert.hpp>
-#include <crofton/geometry/clip_space.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 
-namespace crofton {
+namespace crofton::render {
 namespace {
 
 constexpr unsigned kPlanes = 6;
@@ -194,4 +194,4 @@ std::uint64_t ClipPredictor::count(std::span<const glm::vec3> positions, std::sp
     }
 }
 
-}  // namespace crofton
+}  // namespace crofton::render
