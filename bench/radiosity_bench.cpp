@@ -58,7 +58,7 @@ const char* scene_name(int which) {
 void lines_one_by_one(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
     const LineSource source(s.lines.bounds(), LineMethod::walls, 3, sampling::Sequence::quasi_random);
-    Vector<sampling::Line> lines;
+    Vector<Line> lines;
     LineHits hits;
     double count = 0.0, crossings = 0.0;
     std::uint64_t block = 0;
@@ -196,7 +196,7 @@ BENCHMARK(factors_by_bundles)
 
 void factors_by_global_lines(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
-    Vector<sampling::Line> lines;
+    Vector<Line> lines;
     LineHits hits;
     measure_factors(state, s, kSeconds, [&](std::uint64_t seed, std::uint64_t k, SampledRows& rows) {
         const auto start = Clock::now();

@@ -52,7 +52,7 @@ void EmbreeScene::first_hits(std::span<const radiosity::Ray> rays, std::span<rad
         RTCRayHit16 packet;
         for (std::size_t i = 0; i < 16; ++i) {
             valid[i] = i < count ? -1 : 0;
-            const sampling::Line& line = rays[begin + std::min(i, count - 1)].line;
+            const Line& line = rays[begin + std::min(i, count - 1)].line;
             packet.ray.org_x[i] = static_cast<float>(line.point.x);
             packet.ray.org_y[i] = static_cast<float>(line.point.y);
             packet.ray.org_z[i] = static_cast<float>(line.point.z);

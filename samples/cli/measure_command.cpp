@@ -59,7 +59,7 @@ class HalfSpaces {
     }
 
     // The length of the line's part inside; 0 where it misses.
-    [[nodiscard]] double chord(const sampling::Line& line) const {
+    [[nodiscard]] double chord(const Line& line) const {
         double enter = -HUGE_VAL, leave = HUGE_VAL;
         for (const Face& face : faces_) {
             const double speed = glm::dot(face.normal, line.direction);
@@ -104,10 +104,10 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     if (hull.rank == 3) {
         const HalfSpaces solid(points, hull);
         Mean hits, chords;
-        Vector<sampling::Line> lines;
+        Vector<Line> lines;
         for (std::uint64_t block = 0; block < blocks; ++block) {
             source.draw(block, lines);
-            for (const sampling::Line& line : lines) {
+            for (const Line& line : lines) {
                 const double chord = solid.chord(line);
                 hits.add(chord > 0.0 ? 1.0 : 0.0);
                 chords.add(chord);

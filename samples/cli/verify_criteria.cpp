@@ -168,7 +168,7 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const double reach = 2.5;
     const sampling::UnitPoints points(options.seed * 1000 + 260);
     std::uint64_t planes = 0, lines = 0;
-    const auto box_met = [](const Obb& box, const sampling::Line& line) {  // by slabs
+    const auto box_met = [](const Obb& box, const Line& line) {  // by slabs
         double low = -1e300, high = 1e300;
         for (int k = 0; k < 3; ++k) {
             const glm::dvec3 axis(box.axes[k]);
@@ -186,7 +186,7 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         planes += std::all_of(bodies.begin(), bodies.end(), [&](const study::ConvexBody& k) {
             return -support(k, -n) <= distance && distance <= support(k, n);
         });
-        const sampling::Line line = sampling::line_through_disc({glm::dvec3(0.0), reach}, u);
+        const Line line = sampling::line_through_disc({glm::dvec3(0.0), reach}, u);
         const glm::dvec3 d = bodies[2].points[0] - line.point;
         const bool ball = glm::length(glm::cross(d, line.direction)) <= bodies[2].radius;
         lines += ball && box_met(a, line) && box_met(b, line);

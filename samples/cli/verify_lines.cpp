@@ -15,7 +15,6 @@ namespace crofton::cli {
 namespace {
 
 using sampling::Ball;
-using sampling::Line;
 using sampling::Random;
 using std::numbers::pi;
 

@@ -99,7 +99,7 @@ Result<FactorMatrix> factors_by_global_lines(const LineTracer& tracer, const Pat
     for (std::uint64_t first = 0; first < blocks; first += kWave) {
         const std::size_t count = static_cast<std::size_t>(std::min(kWave, blocks - first));
         executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<sampling::Line> lines;
+            Vector<Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
                 source.draw(first + b, lines);
                 tracer.all_hits(lines, hits[b]);

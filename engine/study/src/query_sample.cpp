@@ -60,7 +60,7 @@ Result<QuerySample> QuerySample::lines(const sampling::Ball& region, std::uint32
     if (!sample) return sample;
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const sampling::Line line = sampling::line_through_disc(region, points.at<4>(i));
+        const Line line = sampling::line_through_disc(region, points.at<4>(i));
         sample->queries_[i].point = line.point;
         sample->queries_[i].direction = line.direction;
     }

@@ -29,7 +29,7 @@ struct LineHits {
 };
 
 struct Ray {
-    sampling::Line line;                 // followed forward from its point
+    Line line;                           // followed forward from its point
     std::uint32_t skip = Hit::kNothing;  // the triangle it starts on
 };
 
@@ -47,7 +47,7 @@ class LineTracer {
     LineTracer& operator=(LineTracer&&) noexcept;
 
     // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe.
-    void all_hits(std::span<const sampling::Line> lines, LineHits& result) const;
+    void all_hits(std::span<const Line> lines, LineHits& result) const;
     // The first crossing of each ray beyond that distance, triangle = kNothing where there is none. Same sizes.
     void first_hits(std::span<const Ray> rays, std::span<Hit> result) const;
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/line.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <crofton/sampling/random.hpp>
@@ -10,13 +11,6 @@
 #include <glm/vec3.hpp>
 
 namespace crofton::sampling {
-
-// { point + t·direction }, all real t; `direction` is a unit vector. Its sign is uniform too where nothing else is
-// said.
-struct Line {
-    glm::dvec3 point{0.0};
-    glm::dvec3 direction{0.0, 0.0, 1.0};
-};
 
 struct Ball {
     glm::dvec3 center{0.0};
