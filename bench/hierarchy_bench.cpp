@@ -32,7 +32,7 @@ using study::Visit;
 struct World {
     std::vector<Obb> boxes;
     std::vector<Camera> views;
-    sampling::Ball region;
+    Sphere region;
 };
 
 void enclose(World& world) {
@@ -256,7 +256,7 @@ void bound_given_ancestors(benchmark::State& state, const study::QuerySample& qu
 }
 
 const bool kRegistered = [] {
-    const sampling::Ball region{glm::dvec3(0.0), 2.5};
+    const Sphere region{glm::dvec3(0.0), 2.5};
     Camera camera;
     camera.far = 20.0;
     const std::pair<const char*, study::QuerySample> samples[] = {

@@ -14,7 +14,6 @@
 namespace crofton::cli {
 namespace {
 
-using sampling::Ball;
 using sampling::Random;
 using std::numbers::pi;
 
@@ -57,7 +56,7 @@ class Uniformity {
 constexpr double kMeanChiSquare = kCells - 1.0;
 const double kErrorOfChiSquare = std::sqrt(2.0 * kMeanChiSquare);
 
-const Ball kUnitBall{glm::dvec3(0.0), 1.0};
+const Sphere kUnitSphere{glm::dvec3(0.0), 1.0};
 const Aabb kBox{glm::dvec3(-1.5, -1.0, -1.0), glm::dvec3(1.0, 2.0, 1.25)};  // around the unit ball
 
 TriangleMesh octahedron(float reach) {
@@ -84,10 +83,10 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
                                     kErrorOfChiSquare));
     };
     right(
-        "(a) two sphere points", [](Random& r) { return line_through_two_sphere_points(kUnitBall, r.point<4>()); },
+        "(a) two sphere points", [](Random& r) { return line_through_two_sphere_points(kUnitSphere, r.point<4>()); },
         trials);
     right(
-        "(b) a direction and a disc point", [](Random& r) { return line_through_disc(kUnitBall, r.point<4>()); },
+        "(b) a direction and a disc point", [](Random& r) { return line_through_disc(kUnitSphere, r.point<4>()); },
         trials);
     right(
         "(d) cosine-weighted from a box", [](Random& r) { return sampling::line_from_box(kBox, r.point<5>()); },
@@ -100,7 +99,7 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
     const auto number_in_bundle = [](Random& r, Vector<Line>& bundle) {
         constexpr double cell = 0.5, most = 36.0;  // 6 × 6 cells of side 0.71 can reach the unit disc
         bundle.clear();
-        append_line_bundle(kUnitBall, cell, r, bundle);
+        append_line_bundle(kUnitSphere, cell, r, bundle);
         return static_cast<std::size_t>(most * r.uniform());
     };
     Vector<Line> bundle;
@@ -122,7 +121,7 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
     wrong("lines through two uniform points of a box",
           [](Random& r) { return measure::wrong::line_through_two_box_points(kBox, r.point<6>()); });
     wrong("lines from a sphere point in uniform directions",
-          [](Random& r) { return measure::wrong::line_from_sphere_uniform_direction(kUnitBall, r.point<4>()); });
+          [](Random& r) { return measure::wrong::line_from_sphere_uniform_direction(kUnitSphere, r.point<4>()); });
 }
 
 // In the plane: distances from the centre are uniform on [0, R].
@@ -188,8 +187,8 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                                     2.0 * Patch::kArea / surface, mean.value(), mean.standard_error()));
     };
     const glm::dvec3 size = kBox.max - kBox.min;
-    row("(a), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_two_sphere_points(kUnitBall, r.point<4>()); });
-    row("(b), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_disc(kUnitBall, r.point<4>()); });
+    row("(a), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_two_sphere_points(kUnitSphere, r.point<4>()); });
+    row("(b), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_disc(kUnitSphere, r.point<4>()); });
     row("(d) from a box, 2A/F", 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x),
         [](Random& r) { return sampling::line_from_box(kBox, r.point<5>()); });
     const auto hull = sampling::LinesFromHull::make(octahedron(2.0f));
@@ -201,7 +200,7 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     Mean mean, lines_per_bundle;
     for (std::uint64_t i = 0; i < std::max<std::uint64_t>(options.trials / 50, 400); ++i) {
         lines.clear();
-        append_line_bundle(kUnitBall, cell, random, lines);
+        append_line_bundle(kUnitSphere, cell, random, lines);
         double hits = 0.0;
         for (const Line& line : lines) hits += patch.crossings(line);
         mean.add(hits);

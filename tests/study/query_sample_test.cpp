@@ -34,14 +34,14 @@ TEST_SUITE("study/query_sample") {
     TEST_CASE("empty regions, no queries and endless frusta are refused") {
         CHECK(QuerySample::planes({glm::dvec3(0.0), 0.0}, 10, 1).error().code == ErrorCode::invalid_argument);
         CHECK(QuerySample::lines({glm::dvec3(std::nan("")), 1.0}, 10, 1).error().code == ErrorCode::invalid_argument);
-        CHECK(QuerySample::lines({}, 0, 1).error().code == ErrorCode::out_of_range);
+        CHECK(QuerySample::lines({glm::dvec3(0.0), 1.0}, 0, 1).error().code == ErrorCode::out_of_range);
         Camera endless;
         endless.far = std::numeric_limits<double>::infinity();
-        CHECK_FALSE(QuerySample::frusta(endless, {}, 10, 1).has_value());
+        CHECK_FALSE(QuerySample::frusta(endless, {glm::dvec3(0.0), 1.0}, 10, 1).has_value());
     }
 
     TEST_CASE("planes, lines and frusta hit a box as often as M, F and the kinematic formula say") {
-        const Ball region{glm::dvec3(0.1, 0.0, 0.2), 2.0};
+        const Sphere region{glm::dvec3(0.1, 0.0, 0.2), 2.0};
         const Obb box = turned_box();
         const IntrinsicVolumes k = of_box(box);
         const std::uint32_t n = 1 << 16;
@@ -59,7 +59,7 @@ TEST_SUITE("study/query_sample") {
     TEST_CASE("a frustum straddles what it meets and does not contain, planes and lines contain nothing") {
         Camera camera;
         camera.near = 0.5, camera.far = 8.0;
-        const Ball region{glm::dvec3(0.0), 2.0};
+        const Sphere region{glm::dvec3(0.0), 2.0};
         const auto frusta = *QuerySample::frusta(camera, region, 4096, 1);
         const auto planes = *QuerySample::planes(region, 4096, 1);
         Obb large = turned_box(), point;

@@ -7,7 +7,7 @@
 namespace crofton::radiosity {
 namespace {
 
-sampling::Ball ball_around(const Aabb& box) {
+Sphere ball_around(const Aabb& box) {
     return {box.center(), glm::length(box.half_extents())};
 }
 

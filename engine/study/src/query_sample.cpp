@@ -29,7 +29,7 @@ struct HalfEdges {
 
 }  // namespace
 
-Result<QuerySample> QuerySample::make(Kind kind, const sampling::Ball& region, std::uint32_t count) {
+Result<QuerySample> QuerySample::make(Kind kind, const Sphere& region, std::uint32_t count) {
     if (!(region.radius > 0.0) || !std::isfinite(region.radius) ||
         !std::isfinite(region.center.x + region.center.y + region.center.z))
         return fail(ErrorCode::invalid_argument, kNoItem, "query sample: the region has no positive, finite radius");
@@ -41,7 +41,7 @@ Result<QuerySample> QuerySample::make(Kind kind, const sampling::Ball& region, s
     return sample;
 }
 
-Result<QuerySample> QuerySample::planes(const sampling::Ball& region, std::uint32_t count, std::uint64_t seed) {
+Result<QuerySample> QuerySample::planes(const Sphere& region, std::uint32_t count, std::uint64_t seed) {
     auto sample = make(Kind::plane, region, count);
     if (!sample) return sample;
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
@@ -55,7 +55,7 @@ Result<QuerySample> QuerySample::planes(const sampling::Ball& region, std::uint3
     return sample;
 }
 
-Result<QuerySample> QuerySample::lines(const sampling::Ball& region, std::uint32_t count, std::uint64_t seed) {
+Result<QuerySample> QuerySample::lines(const Sphere& region, std::uint32_t count, std::uint64_t seed) {
     auto sample = make(Kind::line, region, count);
     if (!sample) return sample;
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
@@ -68,7 +68,7 @@ Result<QuerySample> QuerySample::lines(const sampling::Ball& region, std::uint32
     return sample;
 }
 
-Result<QuerySample> QuerySample::frusta(const Camera& camera, const sampling::Ball& region, std::uint32_t count,
+Result<QuerySample> QuerySample::frusta(const Camera& camera, const Sphere& region, std::uint32_t count,
                                         std::uint64_t seed) {
     auto sample = make(Kind::frustum, region, count);
     if (!sample) return sample;

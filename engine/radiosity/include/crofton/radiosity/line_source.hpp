@@ -35,7 +35,7 @@ class LineSource {
 
   private:
     Aabb bounds_;
-    sampling::Ball ball_;
+    Sphere ball_;
     LineMethod method_;
     std::uint64_t seed_;
     sampling::UnitPoints points_;

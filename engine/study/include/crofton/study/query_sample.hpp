@@ -20,12 +20,10 @@ class QuerySample {
     // ball's radius, holds the ball's centre; all motions that can hit anything inside the ball are among them. At most
     // 2^24. Errors: a radius that is not positive and finite; count 0 or too large; as measure::of_frustum for the
     // camera.
-    [[nodiscard]] static Result<QuerySample> planes(const sampling::Ball& region, std::uint32_t count,
+    [[nodiscard]] static Result<QuerySample> planes(const Sphere& region, std::uint32_t count, std::uint64_t seed);
+    [[nodiscard]] static Result<QuerySample> lines(const Sphere& region, std::uint32_t count, std::uint64_t seed);
+    [[nodiscard]] static Result<QuerySample> frusta(const Camera& camera, const Sphere& region, std::uint32_t count,
                                                     std::uint64_t seed);
-    [[nodiscard]] static Result<QuerySample> lines(const sampling::Ball& region, std::uint32_t count,
-                                                   std::uint64_t seed);
-    [[nodiscard]] static Result<QuerySample> frusta(const Camera& camera, const sampling::Ball& region,
-                                                    std::uint32_t count, std::uint64_t seed);
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(queries_.size()); }
     // Of all motions sampled from, normalised as (4), (5) and (1): a share of the queries times this is a measure.
@@ -50,7 +48,7 @@ class QuerySample {
         glm::dvec3 direction{0.0};
         glm::dmat3 rotation{1.0};
     };
-    static Result<QuerySample> make(Kind kind, const sampling::Ball& region, std::uint32_t count);
+    static Result<QuerySample> make(Kind kind, const Sphere& region, std::uint32_t count);
     [[nodiscard]] bool frustum_hits(const Query& query, const Obb& box, bool* contained) const;
 
     Kind kind_ = Kind::plane;
