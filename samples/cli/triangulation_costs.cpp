@@ -167,7 +167,7 @@ QuadComparison pixel_quads(std::span<const TriangulatedPolygon> polygons, std::u
     for (std::uint64_t i = 0; i < trials; ++i) {
         const TriangulatedPolygon& p = polygons[i % polygons.size()];
         const auto u = points.at<3>(i);
-        const glm::dmat2 rotation = sampling::rotation2(u[0]);
+        const glm::dmat2 rotation = sampling::planar_rotation(u[0]);
         const glm::dvec2 offset(2.0 * u[1], 2.0 * u[2]);
         for (std::size_t m = 0; m < methods; ++m) {
             double expected = 0.0, met = 0.0, covered = 0.0;

@@ -164,9 +164,9 @@ Body frustum_body(double tan_x, double tan_y, double near, double far, bool pers
     return body;
 }
 
-Body moved(const Body& body, const sampling::Motion& motion) {
+Body moved(const Body& body, const RigidTransform& motion) {
     Body result = body;
-    for (glm::dvec3& p : result.corners) p = motion(p);
+    for (glm::dvec3& p : result.corners) p = transform(motion, p);
     for (glm::dvec3& n : result.normals) n = motion.rotation * n;
     for (glm::dvec3& e : result.edges) e = motion.rotation * e;
     return result;
@@ -191,8 +191,8 @@ Placements::Placements(const Body& moving, const Body& fixed) : middle_(center_o
     range_.max += glm::dvec3(radius_about_center(fixed));
 }
 
-sampling::Motion Placements::motion(const std::array<double, 6>& u) const {
-    const sampling::Motion uniform = sampling::motion(range_, u);
+RigidTransform Placements::motion(const std::array<double, 6>& u) const {
+    const RigidTransform uniform = sampling::motion(range_, u);
     return {uniform.rotation, middle_ - uniform.rotation * uniform.translation};
 }
 
@@ -242,14 +242,14 @@ bool holds(const Figure& outer, const Figure& inner) {
     return true;
 }
 
-Figure moved(const Figure& figure, const sampling::Motion2& motion) {
+Figure moved(const Figure& figure, const sampling::PlanarMotion& motion) {
     Figure result;
     for (const glm::dvec2& p : figure) result.push_back(motion(p));
     return result;
 }
 
 Anchored anchored(const Body& query, double radius, const std::array<double, 8>& u) {
-    sampling::Motion motion{sampling::rotation({u[0], u[1], u[2]}), glm::dvec3(0.0)};
+    RigidTransform motion{sampling::rotation({u[0], u[1], u[2]}), glm::dvec3(0.0)};
     const glm::dvec3 target = radius * sampling::ball_point({u[3], u[4], u[5]});
     const double ball = 4.0 / 3.0 * pi * radius * radius * radius;
     Anchored result;
@@ -290,7 +290,7 @@ AnchoredFigure anchored(const Figure& query, double radius, const std::array<dou
     std::size_t i = 0;
     while (i + 1 < sides && left >= glm::length(side(query, i))) left -= glm::length(side(query, i++));
     const glm::dvec2 point = query[i] + left / glm::length(side(query, i)) * side(query, i);
-    sampling::Motion2 motion{sampling::rotation2(u[0]), glm::dvec2(0.0)};
+    sampling::PlanarMotion motion{sampling::planar_rotation(u[0]), glm::dvec2(0.0)};
     motion.translation = radius * sampling::disc_point({u[1], u[2]}) - motion.rotation * point;
     AnchoredFigure result{moved(query, motion), 0.0};
     double inside = 0.0;

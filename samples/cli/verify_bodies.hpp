@@ -29,7 +29,7 @@ struct Body {
 [[nodiscard]] Body flat_body(std::vector<glm::dvec3> corners);  // a convex polygon
 // Half-tangents and depths: eye at the origin, looking along −z. Orthographic: `tan_x`, `tan_y` are half extents.
 [[nodiscard]] Body frustum_body(double tan_x, double tan_y, double near, double far, bool perspective);
-[[nodiscard]] Body moved(const Body& body, const sampling::Motion& motion);
+[[nodiscard]] Body moved(const Body& body, const RigidTransform& motion);
 [[nodiscard]] double radius_about_center(const Body& body);  // of a ball around center_of(body)
 [[nodiscard]] glm::dvec3 center_of(const Body& body);
 
@@ -38,7 +38,7 @@ struct Body {
 class Placements {
   public:
     Placements(const Body& moving, const Body& fixed);
-    [[nodiscard]] sampling::Motion motion(const std::array<double, 6>& u) const;
+    [[nodiscard]] RigidTransform motion(const std::array<double, 6>& u) const;
     [[nodiscard]] double measure() const;
 
   private:
@@ -55,7 +55,7 @@ class Placements {
 using Figure = std::vector<glm::dvec2>;
 [[nodiscard]] bool meet(const Figure& a, const Figure& b);
 [[nodiscard]] bool holds(const Figure& outer, const Figure& inner);
-[[nodiscard]] Figure moved(const Figure& figure, const sampling::Motion2& motion);
+[[nodiscard]] Figure moved(const Figure& figure, const sampling::PlanarMotion& motion);
 
 // The mean of independent numbers, with its standard error.
 class Mean {

@@ -78,7 +78,7 @@ VerifyRow counted(const char* claim, const Figure& b, const Figure& k, std::uint
     const sampling::UnitPoints points(seed);
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i)
-        hits += meet(moved(b, sampling::motion2(glm::dvec2(-reach), glm::dvec2(reach), points.at<3>(i))), k);
+        hits += meet(moved(b, sampling::planar_motion(glm::dvec2(-reach), glm::dvec2(reach), points.at<3>(i))), k);
     const double all = 4.0 * reach * reach;
     const Share share = share_of(hits, trials);
     return measured_row(claim, "theory.md (1), in the plane", measure::kinematic_measure(measures(b), measures(k)),

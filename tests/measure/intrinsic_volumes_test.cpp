@@ -95,8 +95,8 @@ TEST_SUITE("measure/intrinsic_volumes") {
             CHECK(larger.volume >= k.volume);
             CHECK(larger.area >= k.area);
             CHECK(larger.mean_curvature >= k.mean_curvature);
-            const Motion move{rotation(random.point<3>()), glm::dvec3(5.0)};
-            for (glm::dvec3& p : points) p = move(3.0 * p);
+            const RigidTransform move{rotation(random.point<3>()), glm::dvec3(5.0)};
+            for (glm::dvec3& p : points) p = transform(move, 3.0 * p);
             const IntrinsicVolumes moved = *of_hull(points);
             CHECK(moved.volume == doctest::Approx(27.0 * k.volume));
             CHECK(moved.area == doctest::Approx(9.0 * k.area));

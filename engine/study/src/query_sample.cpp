@@ -91,7 +91,7 @@ Result<QuerySample> QuerySample::frusta(const Camera& camera, const Sphere& regi
     range.max += glm::dvec3(region.radius);
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const sampling::Motion uniform = sampling::motion(range, points.at<6>(i));
+        const RigidTransform uniform = sampling::motion(range, points.at<6>(i));
         sample->queries_[i].rotation = uniform.rotation;
         sample->queries_[i].point = region.center - uniform.rotation * uniform.translation;
     }

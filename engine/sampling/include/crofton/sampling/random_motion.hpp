@@ -4,6 +4,7 @@
 #include <array>
 #include <crofton/geometry/aabb.hpp>
 #include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/rigid_transform.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
@@ -24,16 +25,11 @@ namespace crofton::sampling {
 
 // Uniform (Haar measure, normalised to 1) rotations of space (Shoemake, Graphics Gems III) and of the plane.
 [[nodiscard]] glm::dmat3 rotation(const std::array<double, 3>& u);
-[[nodiscard]] glm::dmat2 rotation2(double u);
+[[nodiscard]] glm::dmat2 planar_rotation(double u);
 [[nodiscard]] glm::dvec3 box_point(const Aabb& box, const std::array<double, 3>& u);
 
-// x ↦ rotation · x + translation.
-struct Motion {
-    glm::dmat3 rotation{1.0};
-    glm::dvec3 translation{0.0};
-    [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& x) const { return rotation * x + translation; }
-};
-struct Motion2 {
+// x ↦ rotation · x + translation, in the plane.
+struct PlanarMotion {
     glm::dmat2 rotation{1.0};
     glm::dvec2 translation{0.0};
     [[nodiscard]] glm::dvec2 operator()(const glm::dvec2& x) const { return rotation * x + translation; }
@@ -41,9 +37,9 @@ struct Motion2 {
 
 // Uniform over the motions whose translation lies in `translations`. The measure of an event is its share × that
 // volume.
-[[nodiscard]] Motion motion(const Aabb& translations, const std::array<double, 6>& u);
+[[nodiscard]] RigidTransform motion(const Aabb& translations, const std::array<double, 6>& u);
 // Likewise in the plane, translation in the rectangle [low, high].
-[[nodiscard]] Motion2 motion2(const glm::dvec2& low, const glm::dvec2& high, const std::array<double, 3>& u);
+[[nodiscard]] PlanarMotion planar_motion(const glm::dvec2& low, const glm::dvec2& high, const std::array<double, 3>& u);
 
 // `prototype` seen from a uniform position in `positions`, uniformly turned (forward and up are replaced).
 [[nodiscard]] Camera random_camera(const Camera& prototype, const Aabb& positions, const std::array<double, 6>& u);
