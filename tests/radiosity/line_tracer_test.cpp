@@ -120,7 +120,7 @@ TEST_SUITE("radiosity/line_tracer") {
             std::vector<Hit> ahead;
             for (const Hit& hit : all.hits)
                 if (hit.t > 0.0f) ahead.push_back(hit);
-            Ray ray{line, Hit::kNothing};
+            FirstHitQuery ray{line, Hit::kNothing};
             Hit first;
             tracer->first_hits({&ray, 1}, {&first, 1});
             CHECK(first.triangle == (ahead.empty() ? Hit::kNothing : ahead[0].triangle));

@@ -39,7 +39,7 @@ FactorRow factors_by_local_lines(const LineTracer& tracer, const Patches& patche
     row.lines = lines;
     Vector<double> squares(patches.count(), 0.0);
     row.factors.assign(patches.count(), 0.0);
-    Vector<Ray> rays;
+    Vector<FirstHitQuery> rays;
     Vector<double> weights;
     Vector<Hit> hits;
     for (std::uint64_t begin = 0; begin < lines; begin += kBatch) {

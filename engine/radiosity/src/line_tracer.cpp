@@ -78,7 +78,7 @@ void LineTracer::all_hits(std::span<const Line> lines, LineHits& result) const {
     }
 }
 
-void LineTracer::first_hits(std::span<const Ray> rays, std::span<Hit> result) const {
+void LineTracer::first_hits(std::span<const FirstHitQuery> rays, std::span<Hit> result) const {
     CROFTON_ASSERT(rays.size() == result.size(), "one result per ray");
     const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
     std::array<detail::FlatRay, kBatch> flat_rays;
