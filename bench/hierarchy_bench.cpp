@@ -121,7 +121,7 @@ Criterion by_frustum(const World& world) {
 }
 // How often a bound straddles: μ(hits) − μ(is contained) = 2V + 2·F_B·M/4π to first order; F drops out.
 Criterion by_straddling(const World& world) {
-    const auto b = *measure::of_frustum(finite(world.views[0], world));
+    const auto b = *measure::intrinsic_volumes_of_frustum(finite(world.views[0], world));
     return {1.0, 0.0, b.area / (4.0 * std::numbers::pi)};
 }
 
@@ -248,7 +248,7 @@ void bound_given_ancestors(benchmark::State& state, const study::QuerySample& qu
             for (std::size_t k = 0; k < levels; ++k)
                 ancestors.push_back(*fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>()))));
             const auto found = *study::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
-            plain += found.plain_hits, given += found.hits, reaching += found.reaching;
+            plain += found.plain_hits, given += found.hits, reaching += found.ancestor_hits;
         }
     }
     state.counters["plain"] = plain / reaching;

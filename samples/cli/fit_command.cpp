@@ -54,7 +54,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
         const auto box = fit::fit_obb(points, {criterion, quality});
         if (!box) return tl::unexpected(box.error());
         fitted.box = *box;
-        fitted.value = criterion(measure::of_box(*box));
+        fitted.value = criterion(measure::intrinsic_volumes_of_box(*box));
     }
     fitted.milliseconds = watch.milliseconds();
     return fitted;

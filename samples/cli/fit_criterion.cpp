@@ -40,7 +40,7 @@ Result<measure::Criterion> partner(const std::string& path) {
     const auto hull = convex_hull(span);
     if (!hull) return fail(hull.error().code, hull.error().item, path + ": " + hull.error().message);
     if (hull->rank == 3)
-        return measure::of_polytope(span, hull->triangles).map([](const auto& body) {
+        return measure::intrinsic_volumes_of_polytope(span, hull->triangles).map([](const auto& body) {
             return measure::for_partner(body);
         });
     if (hull->rank == 2) {
@@ -51,10 +51,11 @@ Result<measure::Criterion> partner(const std::string& path) {
             perimeter += glm::distance(at(i), at(i + 1));
             twice_area += glm::cross(at(i) - at(0), at(i + 1) - at(0));
         }
-        return measure::for_partner(measure::of_flat_polygon(0.5 * glm::length(twice_area), perimeter));
+        return measure::for_partner(
+            measure::intrinsic_volumes_of_flat_polygon(0.5 * glm::length(twice_area), perimeter));
     }
     const double length = hull->rank == 1 ? glm::distance(span[hull->vertices[0]], span[hull->vertices[1]]) : 0.0;
-    return measure::for_partner(measure::of_segment(length));
+    return measure::for_partner(measure::intrinsic_volumes_of_segment(length));
 }
 
 }  // namespace

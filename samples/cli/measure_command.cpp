@@ -133,7 +133,7 @@ Result<void> run(const MeasureOptions& options) {
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
     const auto hull = convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
-    const auto exact = measure::of_hull(points);
+    const auto exact = measure::intrinsic_volumes_of_hull(points);
     if (!exact) return tl::unexpected(exact.error());
     const auto tracer = radiosity::LineTracer::build(*mesh);
     if (!tracer) return tl::unexpected(tracer.error());

@@ -118,7 +118,7 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
     camera.aspect = 1.5;
     camera.near = 0.05;
     camera.far = 1.0;
-    const auto b = *measure::of_frustum(camera);
+    const auto b = *measure::intrinsic_volumes_of_frustum(camera);
     // Every camera whose frustum may reach the polygon stands in this box.
     const double half = camera.far * std::tan(camera.fov_y / 2);
     const double reach = std::sqrt(1.0 + half * half * (1.0 + camera.aspect * camera.aspect));

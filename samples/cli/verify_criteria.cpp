@@ -65,14 +65,15 @@ IntrinsicVolumes frustum_volumes(double depth) {
     camera.fov_y = 2.0 * std::atan(0.6);
     camera.aspect = 1.0 / 0.6;
     camera.near = 0.01 * depth, camera.far = depth;
-    return *measure::of_frustum(camera);
+    return *measure::intrinsic_volumes_of_frustum(camera);
 }
 
 // The correction of section 3.7: a cube (F 6, M 3π) and a plate (F 3.67, M 3.15π) around a point.
 void ranking_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const Body cube = box_body({0.5, 0.5, 0.5}), plate = box_body({1.2, 0.35, 0.025});
     const Body point = box_body(glm::dvec3(1e-9));  // nearly
-    const IntrinsicVolumes c = measure::of_box(1.0, 1.0, 1.0), p = measure::of_box(2.4, 0.7, 0.05), none;
+    const IntrinsicVolumes c = measure::intrinsic_volumes_of_box(1.0, 1.0, 1.0),
+                           p = measure::intrinsic_volumes_of_box(2.4, 0.7, 0.05), none;
     std::uint64_t seed = options.seed * 1000 + 200;
     const auto exact = [&](const IntrinsicVolumes& q) {
         return measure::improper_outside(q, c, none) / measure::improper_outside(q, p, none);
@@ -80,10 +81,10 @@ void ranking_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const double long_ray = 50.0;
     const Ratios rays = compare(segment_body(long_ray), cube, plate, point, 2.6, 4 * options.trials, seed++);
     rows.push_back(measured_row("rays of length 50: improper tests of the cube over the plate's", "theory.md section 2",
-                                exact(measure::of_segment(long_ray)), rays.outside.value(),
+                                exact(measure::intrinsic_volumes_of_segment(long_ray)), rays.outside.value(),
                                 rays.outside.standard_error()));
     rows.push_back(computed_row("rays: the ratio tends to that of F", "paper, section 3; theory.md section 2",
-                                c.area / p.area, exact(measure::of_segment(1e6)), 1e-4));
+                                c.area / p.area, exact(measure::intrinsic_volumes_of_segment(1e6)), 1e-4));
     for (const double depth : {0.5, 5.0, 20.0, 100.0, 1000.0}) {
         char size[48];
         std::snprintf(size, sizeof size, "frustum of depth %g: ", depth);
@@ -233,7 +234,7 @@ void triangulation_rows(const VerifyOptions& options, std::vector<VerifyRow>& ro
             camera.fov_y = 2.0 * std::atan(lens.tan_y), camera.height = 2.0 * lens.tan_y,
             camera.aspect = lens.tan_x / lens.tan_y;
             camera.near = lens.near, camera.far = lens.far;
-            const IntrinsicVolumes b = *measure::of_frustum(camera);
+            const IntrinsicVolumes b = *measure::intrinsic_volumes_of_frustum(camera);
             const Placements placements(frustum, flat_body(v));
             const sampling::UnitPoints points(seed++);
             Mean passed;

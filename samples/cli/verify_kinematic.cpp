@@ -27,7 +27,7 @@ IntrinsicVolumes frustum_volumes(double tan_x, double tan_y, double near, double
     camera.height = 2.0 * tan_y;
     camera.aspect = tan_x / tan_y;
     camera.near = near, camera.far = far;
-    return *measure::of_frustum(camera);
+    return *measure::intrinsic_volumes_of_frustum(camera);
 }
 
 std::vector<NamedBody> frusta() {
@@ -52,12 +52,12 @@ std::vector<NamedBody> frusta() {
 std::vector<NamedBody> bodies() {
     const std::vector<glm::dvec3> triangle = {{-1.0, -1.0, 0.0}, {2.0, -1.0, 0.0}, {-1.0, 1.5, 0.0}};
     const double perimeter = 3.0 + 2.5 + std::sqrt(9.0 + 6.25);
-    return {{"a cube", box_body({0.5, 0.5, 0.5}), measure::of_box(1.0, 1.0, 1.0)},
-            {"a needle", box_body({3.0, 0.05, 0.05}), measure::of_box(6.0, 0.1, 0.1)},
-            {"a plate", box_body({1.2, 0.35, 0.025}), measure::of_box(2.4, 0.7, 0.05)},
-            {"a ball", ball_body(0.8), measure::of_ball(0.8)},
-            {"a triangle", flat_body(triangle), measure::of_flat_polygon(0.5 * 3.0 * 2.5, perimeter)},
-            {"a segment", segment_body(2.0), measure::of_segment(2.0)}};
+    return {{"a cube", box_body({0.5, 0.5, 0.5}), measure::intrinsic_volumes_of_box(1.0, 1.0, 1.0)},
+            {"a needle", box_body({3.0, 0.05, 0.05}), measure::intrinsic_volumes_of_box(6.0, 0.1, 0.1)},
+            {"a plate", box_body({1.2, 0.35, 0.025}), measure::intrinsic_volumes_of_box(2.4, 0.7, 0.05)},
+            {"a ball", ball_body(0.8), measure::intrinsic_volumes_of_sphere(0.8)},
+            {"a triangle", flat_body(triangle), measure::intrinsic_volumes_of_flat_polygon(0.5 * 3.0 * 2.5, perimeter)},
+            {"a segment", segment_body(2.0), measure::intrinsic_volumes_of_segment(2.0)}};
 }
 
 // μ by counting.
@@ -73,7 +73,7 @@ VerifyRow counted(const NamedBody& b, const NamedBody& k, std::uint64_t trials, 
 }
 
 VerifyRow counted(const char* claim, const Figure& b, const Figure& k, std::uint64_t trials, std::uint64_t seed) {
-    const auto measures = [](const Figure& f) { return measure::of_convex_polygon(f); };
+    const auto measures = [](const Figure& f) { return measure::planar_measures_of_convex_polygon(f); };
     const double reach = 6.0;
     const sampling::UnitPoints points(seed);
     std::uint64_t hits = 0;
@@ -103,8 +103,8 @@ std::vector<VerifyRow> kinematic_rows(const VerifyOptions& options) {
         counted("motions of a segment that hit a segment (Buffon)", segment, segment, options.trials, seed++));
 
     // (2): what a criterion's difference predicts is the difference of the measures.
-    const IntrinsicVolumes b = frusta()[0].volumes, cube = measure::of_box(1.0, 1.0, 1.0),
-                           plate = measure::of_box(2.4, 0.7, 0.05);
+    const IntrinsicVolumes b = frusta()[0].volumes, cube = measure::intrinsic_volumes_of_box(1.0, 1.0, 1.0),
+                           plate = measure::intrinsic_volumes_of_box(2.4, 0.7, 0.05);
     const measure::Criterion criterion = measure::for_partner(b);
     const double difference = measure::kinematic_measure(b, cube) - measure::kinematic_measure(b, plate);
     rows.push_back(computed_row("the criterion of a frustum ranks bounds by how often it hits them", "theory.md (2)",

@@ -52,7 +52,8 @@ void line_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                                      apart = {circles[1], PlanarSupport(Disc{{-3.0, 0.0}, 0.7})};
 
     rows.push_back(counted_lines("lines that hit a triangle: its perimeter", "theory.md section 1",
-                                 measure::of_convex_polygon(triangle).perimeter, {polygon}, options, 101));
+                                 measure::planar_measures_of_convex_polygon(triangle).perimeter, {polygon}, options,
+                                 101));
     rows.push_back(counted_lines("lines that hit a disc, a triangle and a rectangle", "theory.md (3)",
                                  measure_of_lines_hitting_all(mixed), mixed, options, 102));
     rows.push_back(counted_lines("lines that hit four discs", "theory.md (3)", measure_of_lines_hitting_all(circles),
@@ -118,7 +119,7 @@ Improper improper(const Figure& query, const Figure& bound, const Figure& object
 // The mean over all rotations of the area of positions at which a triangular frustum contains K: the inner parallel
 // triangle is similar, of area A·(1 − Σ ℓ_i·h_i/2A)². Valid while it exists for every rotation.
 double measure_of_containing(const Figure& triangle, const PlanarSupport& k) {
-    const double area = measure::of_convex_polygon(triangle).area;
+    const double area = measure::planar_measures_of_convex_polygon(triangle).area;
     const int steps = 1 << 16;
     double sum = 0.0;
     for (int s = 0; s < steps; ++s) {
@@ -135,7 +136,8 @@ double measure_of_containing(const Figure& triangle, const PlanarSupport& k) {
 void theorem_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const Figure object = {{-0.8, -0.3}, {0.9, -0.4}, {0.2, 0.6}};
     const Figure bound = {{-0.8, -0.4}, {0.9, -0.4}, {0.9, 0.6}, {-0.8, 0.6}};
-    const PlanarMeasures o = measure::of_convex_polygon(object), b = measure::of_convex_polygon(bound);
+    const PlanarMeasures o = measure::planar_measures_of_convex_polygon(object),
+                         b = measure::planar_measures_of_convex_polygon(bound);
     const PlanarSupport oh = PlanarSupport::of_convex_polygon(object), bh = PlanarSupport::of_convex_polygon(bound);
     const double gap = b.perimeter - o.perimeter;
     std::uint64_t salt = 120;
@@ -149,9 +151,9 @@ void theorem_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         };
         const Improper rays = improper(ray, bound, object, 2.5, options, salt++);
         row("rays: improper tests m/((L − L0)·R)", "paper, Theorem 1",
-            measure::improper_outside(measure::of_planar_segment(size), b, o), rays.outside);
+            measure::improper_outside(measure::planar_measures_of_segment(size), b, o), rays.outside);
         const Figure wedge = {{0.0, 0.0}, {size, -0.4 * size}, {size, 0.4 * size}};
-        const PlanarMeasures w = measure::of_convex_polygon(wedge);
+        const PlanarMeasures w = measure::planar_measures_of_convex_polygon(wedge);
         const Improper frusta = improper(wedge, bound, object, 2.5, options, salt++);
         row("frusta: improper outside m_o/((L − L0)·R)", "paper, Theorem 2", measure::improper_outside(w, b, o),
             frusta.outside);
@@ -161,9 +163,10 @@ void theorem_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     // The limits: exact values at a size where what is left over is below the tolerance.
     const double far = 1e6;
     const Figure wedge = {{0.0, 0.0}, {far, -0.4 * far}, {far, 0.4 * far}};
-    const PlanarMeasures w = measure::of_convex_polygon(wedge);
+    const PlanarMeasures w = measure::planar_measures_of_convex_polygon(wedge);
     rows.push_back(computed_row("rays: m/((L − L0)·R) tends to 1/π", "paper, Theorem 1", 1.0 / pi,
-                                measure::improper_outside(measure::of_planar_segment(far), b, o) / (gap * far), 1e-5));
+                                measure::improper_outside(measure::planar_measures_of_segment(far), b, o) / (gap * far),
+                                1e-5));
     rows.push_back(computed_row("frusta: m_o/((L − L0)·R) tends to L_B/(2πR)", "paper, Theorem 2",
                                 w.perimeter / (2.0 * pi * far), measure::improper_outside(w, b, o) / (gap * far),
                                 1e-5));
@@ -189,7 +192,7 @@ void rectangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) 
         const auto corner = [&](double x, double y) { return x * axis + y * across; };
         return Figure{corner(low.x, low.y), corner(high.x, low.y), corner(high.x, high.y), corner(low.x, high.y)};
     };
-    const auto perimeter = [](const Figure& f) { return measure::of_convex_polygon(f).perimeter; };
+    const auto perimeter = [](const Figure& f) { return measure::planar_measures_of_convex_polygon(f).perimeter; };
     Figure best = rectangle({1.0, 0.0});
     for (std::size_t i = 0; i < object.size(); ++i) {  // one side of the minimum is flush
         const Figure flush = rectangle(glm::normalize(object[(i + 1) % object.size()] - object[i]));
@@ -212,8 +215,9 @@ void rectangle_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) 
     rows.push_back(
         at_most_row("frusta: improper tests of the minimal-perimeter rectangle less those of random rectangles",
                     "paper, Theorem 2", 0.0, difference.value(), difference.standard_error()));
-    const PlanarMeasures w = measure::of_convex_polygon(wedge), b = measure::of_convex_polygon(best),
-                         o = measure::of_convex_polygon(object);
+    const PlanarMeasures w = measure::planar_measures_of_convex_polygon(wedge),
+                         b = measure::planar_measures_of_convex_polygon(best),
+                         o = measure::planar_measures_of_convex_polygon(object);
     const double exact = measure::improper_outside(w, b, o) +
                          measure_of_containing(wedge, PlanarSupport::of_convex_polygon(object)) -
                          measure_of_containing(wedge, PlanarSupport::of_convex_polygon(best));

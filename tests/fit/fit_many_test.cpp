@@ -94,10 +94,10 @@ TEST_SUITE("fit/fit_many") {
             REQUIRE(fit::fit_many(input.clusters(), {criterion, fit::Quality::exact}, serial_executor(), exact));
             double fast_excess = 0.0, tight_excess = 0.0;
             for (std::size_t i = 0; i < 300; ++i) {
-                const double best = criterion(measure::of_box(exact[i]));
-                fast_excess += criterion(measure::of_box(fast[i])) / best - 1.0;
-                tight_excess += criterion(measure::of_box(tight[i])) / best - 1.0;
-                CHECK(criterion(measure::of_box(tight[i])) >= best * (1.0 - 1e-6));
+                const double best = criterion(measure::intrinsic_volumes_of_box(exact[i]));
+                fast_excess += criterion(measure::intrinsic_volumes_of_box(fast[i])) / best - 1.0;
+                tight_excess += criterion(measure::intrinsic_volumes_of_box(tight[i])) / best - 1.0;
+                CHECK(criterion(measure::intrinsic_volumes_of_box(tight[i])) >= best * (1.0 - 1e-6));
             }
             CHECK(fast_excess / 300.0 <= 0.01);
             CHECK(tight_excess / 300.0 <= 0.001);

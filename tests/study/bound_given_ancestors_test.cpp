@@ -35,7 +35,7 @@ TEST_SUITE("study/bound_given_ancestors") {
                 const auto result = bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
                 REQUIRE(result.has_value());
                 CHECK(result->hits <= result->plain_hits);
-                CHECK(result->plain_hits <= result->reaching);
+                CHECK(result->plain_hits <= result->ancestor_hits);
                 for (const glm::dvec3& p : points) CHECK(contains(result->bound, p));
                 CHECK(queries.hitting(queries.hitting(queries.all(), ancestors[0]), result->bound).size() ==
                       result->hits);

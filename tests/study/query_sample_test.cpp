@@ -43,17 +43,19 @@ TEST_SUITE("study/query_sample") {
     TEST_CASE("planes, lines and frusta hit a box as often as M, F and the kinematic formula say") {
         const Sphere region{glm::dvec3(0.1, 0.0, 0.2), 2.0};
         const Obb box = turned_box();
-        const IntrinsicVolumes k = of_box(box);
+        const IntrinsicVolumes k = intrinsic_volumes_of_box(box);
         const std::uint32_t n = 1 << 16;
         check(*QuerySample::planes(region, n, 1), box, k.mean_curvature);
         check(*QuerySample::lines(region, n, 2), box, measure_of_lines(k.area));
         Camera camera;
         camera.near = 0.5, camera.far = 8.0;
         camera.position = glm::dvec3(100.0);  // where the prototype stands does not matter
-        check(*QuerySample::frusta(camera, region, n, 3), box, kinematic_measure(*of_frustum(camera), k));
+        check(*QuerySample::frusta(camera, region, n, 3), box,
+              kinematic_measure(*intrinsic_volumes_of_frustum(camera), k));
         camera.projection = Projection::orthographic;
         camera.height = 1.0;
-        check(*QuerySample::frusta(camera, region, n, 4), box, kinematic_measure(*of_frustum(camera), k));
+        check(*QuerySample::frusta(camera, region, n, 4), box,
+              kinematic_measure(*intrinsic_volumes_of_frustum(camera), k));
     }
 
     TEST_CASE("a frustum straddles what it meets and does not contain, planes and lines contain nothing") {

@@ -174,7 +174,7 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
 
     ExactFit fit;
     fit.box = box_of(found.best.axes, weights, 3e-7);
-    fit.value = options.criterion(measure::of_box(fit.box));
+    fit.value = options.criterion(measure::intrinsic_volumes_of_box(fit.box));
     fit.lower_bound = flat ? 0.0 : std::min(found.lower_bound * normalised.scale, fit.value);
     fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;
     const double unrounded = flat ? 0.0 : found.best.value * normalised.scale;

@@ -90,7 +90,7 @@ Result<Obb> transformed_box(const Transform& transform, const Obb& box, const me
             for (std::size_t e = 1; e <= 2; ++e) {
                 const glm::dvec3 along = glm::normalize(perpendicular_part(edges[(k + e) % 3], normal));
                 const Obb candidate = box_with_axes(image, normal, along);
-                const double cost = criterion(measure::of_box(candidate));
+                const double cost = criterion(measure::intrinsic_volumes_of_box(candidate));
                 if (!(cost < least)) continue;
                 least = cost;
                 best = candidate;

@@ -22,7 +22,7 @@ struct HalfEdges {
         for (int k = 0; k < 3; ++k)
             axis[static_cast<std::size_t>(k)] = glm::dvec3(box.axes[k]) * double{box.half_extents[k]};
     }
-    [[nodiscard]] double reach(const glm::dvec3& n) const {
+    [[nodiscard]] double projected_radius(const glm::dvec3& n) const {
         return std::abs(glm::dot(axis[0], n)) + std::abs(glm::dot(axis[1], n)) + std::abs(glm::dot(axis[2], n));
     }
 };
@@ -72,7 +72,7 @@ Result<QuerySample> QuerySample::frusta(const Camera& camera, const Sphere& regi
                                         std::uint64_t seed) {
     auto sample = make(Kind::frustum, region, count);
     if (!sample) return sample;
-    if (auto finite = measure::of_frustum(camera); !finite) return tl::unexpected(finite.error());
+    if (auto finite = measure::intrinsic_volumes_of_frustum(camera); !finite) return tl::unexpected(finite.error());
     const Frustum frustum = *frustum_of(camera);
     sample->corners_ = *frustum_corners(frustum);
     const auto& c = sample->corners_;
@@ -103,13 +103,13 @@ Result<QuerySample> QuerySample::frusta(const Camera& camera, const Sphere& regi
 bool QuerySample::hits(std::uint32_t i, const Obb& box) const {
     const Query& q = queries_[i];
     const glm::dvec3 d = box.center - q.point;
-    if (kind_ == Kind::plane) return std::abs(glm::dot(d, q.direction)) <= HalfEdges(box).reach(q.direction);
+    if (kind_ == Kind::plane) return std::abs(glm::dot(d, q.direction)) <= HalfEdges(box).projected_radius(q.direction);
     if (kind_ == Kind::frustum) return frustum_hits(q, box, nullptr);
     // Separating axes of a line and a box: the box's axes crossed with the line.
     const HalfEdges half(box);
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 n = glm::cross(glm::dvec3(box.axes[k]), q.direction);
-        if (std::abs(glm::dot(d, n)) > half.reach(n)) return false;
+        if (std::abs(glm::dot(d, n)) > half.projected_radius(n)) return false;
     }
     return true;
 }
@@ -128,19 +128,19 @@ bool QuerySample::frustum_hits(const Query& q, const Obb& box, bool* contained) 
     for (glm::dvec3& a : half.axis) a = back * a;
     bool inside = true;
     for (std::size_t k = 0; k < normals_.size(); ++k) {
-        const double at = glm::dot(normals_[k], center), reach = half.reach(normals_[k]);
-        if (at + reach < extents_[k][0] || at - reach > extents_[k][1]) return false;
+        const double at = glm::dot(normals_[k], center), radius = half.projected_radius(normals_[k]);
+        if (at + radius < extents_[k][0] || at - radius > extents_[k][1]) return false;
         // Inward normals: the lower extent is the plane itself; the far plane is the upper one along near's normal.
-        inside = inside && at - reach >= extents_[k][0] && (k != 4 || at + reach <= extents_[k][1]);
+        inside = inside && at - radius >= extents_[k][0] && (k != 4 || at + radius <= extents_[k][1]);
     }
     if (contained != nullptr) *contained = inside;
     if (inside) return true;
     const auto apart = [&](const glm::dvec3& n) {
-        const double at = glm::dot(n, center), reach = half.reach(n);
+        const double at = glm::dot(n, center), radius = half.projected_radius(n);
         double low = std::numeric_limits<double>::infinity(), high = -low;
         for (const glm::dvec3& corner : corners_)
             low = std::min(low, glm::dot(n, corner)), high = std::max(high, glm::dot(n, corner));
-        return at + reach < low || at - reach > high;
+        return at + radius < low || at - radius > high;
     };
     std::array<glm::dvec3, 3> axes;
     for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,5 @@
-// Uniform random lines through a region: no point and no direction is preferred (theory.md section 6).
+// Uniform random lines through a region: no place and no direction is preferred (theory.md section 6). The directions'
+// signs are uniform too unless a function says otherwise.
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>
@@ -13,9 +14,9 @@
 
 namespace crofton::sampling {
 
-// The motion-invariant measure of the lines that meet a convex body of this surface area: π·area/2 (lines without
-// direction). Of N uniform lines through a convex body A, the expected number through a convex B inside it is
-// N·F_B/F_A, and of crossings with any surface of area S inside it 2·N·S/F_A: N·S/(2πR²) for the ball.
+// The motion-invariant measure of the lines, without direction, that meet a convex body of this surface area: π·area/2.
+// Of N uniform lines through a convex body A, N·F_B/F_A are expected to meet a convex B inside it. They are expected to
+// cross a surface of area S inside it 2·N·S/F_A times: N·S/(2πR²) for a sphere.
 [[nodiscard]] double measure_of_lines(double surface_area);
 
 // (a) Through two independent uniform points of the sphere; starts at one and points to the other.
@@ -24,10 +25,10 @@ namespace crofton::sampling {
 // (b) A uniform direction through a uniform point of the orthogonal disc through the centre.
 [[nodiscard]] Line line_through_disc(const Sphere& ball, const std::array<double, 4>& u);
 
-// (c) A bundle of parallel lines: a uniform direction, one line in each cell of a square grid of cell area Δ in the
-// plane orthogonal to it, uniform in its cell, the grid itself turned and shifted at random; appended to `lines` are
-// those that meet the ball: πR²/Δ on average. A surface of area S inside the ball expects S/(2Δ) crossings per bundle.
-// Requires cell_area > 0 and at most 2^31 cells across the ball's shadow.
+// (c) A bundle of parallel lines: a uniform direction, and a square grid of cell area Δ in the plane orthogonal to it,
+// turned and shifted at random. Each cell has one line, uniform in it. Appends those that meet the ball, πR²/Δ on
+// average. A surface of area S inside the ball is expected to be crossed S/(2Δ) times by a bundle.
+// Requires cell_area > 0 and at most 2^31 cells across the ball's projection.
 void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Vector<Line>& lines);
 
 // (d) From a uniform point of a box's surface inward, cosine-weighted. Starts on the surface.
@@ -35,8 +36,8 @@ void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Ve
 [[nodiscard]] Line line_from_box(const Aabb& box, const std::array<double, 5>& u);
 [[nodiscard]] Line line_from_box(const Obb& box, const std::array<double, 5>& u);
 
-// (d) for any convex polytope, as a closed triangle mesh seen counter-clockwise from outside: the tighter the body, the
-// fewer lines miss what is inside it. Convexity is the caller's promise.
+// (d) for a convex polytope, given by a closed triangle mesh, counter-clockwise from outside. The tighter the body, the
+// fewer lines miss what is inside it. Convexity is not checked.
 class LinesFromHull {
   public:
     // Errors: as validate(TriangleMesh); empty, or no area at all.

@@ -1,5 +1,5 @@
-// Uniform directions, rotations and motions as maps of the unit cube: fed with Random or UnitPoints they are seeded,
-// reproducible, and quasi-random where wanted. Only + − × ÷ and square roots: the same bits on every machine.
+// Uniform directions, rotations, motions and cameras, as functions of points u of the unit cube. Take these from Random
+// or UnitPoints. Computed with + − × ÷ and square roots only: the same bits on every machine.
 #pragma once
 #include <array>
 #include <crofton/geometry/aabb.hpp>
@@ -18,7 +18,7 @@ namespace crofton::sampling {
 [[nodiscard]] glm::dvec3 direction(const std::array<double, 2>& u);
 [[nodiscard]] glm::dvec2 disc_point(const std::array<double, 2>& u);
 [[nodiscard]] glm::dvec3 ball_point(const std::array<double, 3>& u);
-// Density ∝ cosine of the angle to `normal`, a unit vector: what leaves a diffuse surface.
+// Density ∝ cosine of the angle to the unit vector `normal`, as light leaves a diffuse surface.
 [[nodiscard]] glm::dvec3 cosine_direction(const glm::dvec3& normal, const std::array<double, 2>& u);
 // Two unit vectors that complete the unit vector `axis` to a right-handed frame (first, second, axis).
 [[nodiscard]] std::array<glm::dvec3, 2> orthonormal_frame(const glm::dvec3& axis);
@@ -35,10 +35,10 @@ struct PlanarMotion {
     [[nodiscard]] glm::dvec2 operator()(const glm::dvec2& x) const { return rotation * x + translation; }
 };
 
-// Uniform over the motions whose translation lies in `translations`. The measure of an event is its share × that
-// volume.
+// Uniform over the motions whose translation lies in `translations`. The measure of a set of motions is their share of
+// all × that volume.
 [[nodiscard]] RigidTransform motion(const Aabb& translations, const std::array<double, 6>& u);
-// Likewise in the plane, translation in the rectangle [low, high].
+// The same in the plane, with translations in the rectangle [low, high].
 [[nodiscard]] PlanarMotion planar_motion(const glm::dvec2& low, const glm::dvec2& high, const std::array<double, 3>& u);
 
 // `prototype` seen from a uniform position in `positions`, uniformly turned (forward and up are replaced).

@@ -1,4 +1,4 @@
-// Support functions in the plane, piece by piece in closed form: what makes the measures of section 4 exact.
+// Support functions in the plane, piece by piece in closed form: the measures of theory.md section 4 are exact by them.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
