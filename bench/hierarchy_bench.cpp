@@ -141,12 +141,12 @@ constexpr Strategy kStrategies[] = {
     {"inserted_kinematic", Build::inserted, by_frustum, false},
 };
 
-VisitTree build(const World& world, const Strategy& strategy) {
+BinaryTree build(const World& world, const Strategy& strategy) {
     const Criterion criterion = strategy.criterion(world);
     study::BinaryTreeOptions options{
         .split_criterion = criterion, .criterion = criterion, .oriented = strategy.oriented};
     if (strategy.build == Build::inserted) {
-        VisitTree tree = *VisitTree::build({}, options);
+        BinaryTree tree = *BinaryTree::build({}, options);
         for (const Obb& box : world.boxes) (void)*tree.insert(box);
         return tree;
     }
@@ -158,7 +158,7 @@ VisitTree build(const World& world, const Strategy& strategy) {
         queries = *study::QuerySample::frusta(finite(world.views[0], world), world.region, 4096, 1);
         options.queries = &queries;
     }
-    return *VisitTree::build(world.boxes, options);
+    return *BinaryTree::build(world.boxes, options);
 }
 
 struct Tally {
@@ -170,7 +170,7 @@ struct Below {
     std::uint32_t met = 0, inside = 0, all = 0;
 };
 
-Tally tally(const World& world, const VisitTree& tree) {
+Tally tally(const World& world, const BinaryTree& tree) {
     Tally sum;
     std::vector<Below> below(2 * world.boxes.size());
     for (const Camera& view : world.views) {
@@ -185,7 +185,7 @@ Tally tally(const World& world, const VisitTree& tree) {
             }
         }
         const auto node_of = [&](const Obb& bound) {
-            const auto* node = reinterpret_cast<const VisitTree::Node*>(&bound);  // `bound` is a node's first member
+            const auto* node = reinterpret_cast<const BinaryTree::Node*>(&bound);  // `bound` is a node's first member
             return static_cast<std::size_t>(node - &tree.node(0));
         };
         sum.tests += static_cast<double>(tree.visit(
@@ -209,7 +209,7 @@ Tally tally(const World& world, const VisitTree& tree) {
     return {sum.tests / n, sum.tests_without_taking / n, sum.improper_outside / n, sum.improper_inside / n};
 }
 
-double tests_per_line(const World& world, const VisitTree& tree) {
+double tests_per_line(const World& world, const BinaryTree& tree) {
     const auto lines = *study::QuerySample::lines(world.region, 1024, 2);
     std::size_t tests = 0;
     for (std::uint32_t i = 0; i < lines.size(); ++i)
@@ -222,7 +222,7 @@ void hierarchy(benchmark::State& state, const std::string& world_name, const Str
     const World& world = world_named(world_name);
     if (world.boxes.empty() || world.views.empty()) return state.SkipWithError("scene not found");
     for (auto _ : state) benchmark::DoNotOptimize(build(world, strategy));
-    const VisitTree tree = build(world, strategy);
+    const BinaryTree tree = build(world, strategy);
     const Tally result = tally(world, tree);
     state.counters["boxes"] = static_cast<double>(world.boxes.size());
     state.counters["tests"] = result.tests;
