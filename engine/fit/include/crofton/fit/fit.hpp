@@ -27,7 +27,7 @@ struct FitOptions {
 [[nodiscard]] Result<Obb> fit_obb(std::span<const glm::dvec3> points, const FitOptions& options = {});
 
 // The box with the given orthonormal axes around the points: refits a box whose points have moved. Its half extents are
-// the least floats that hold all points around its centre.
+// the least floats that hold all points around its centre. Errors: as fit_obb; axes that are not orthonormal.
 [[nodiscard]] Result<Obb> fit_oriented(std::span<const glm::vec3> points, const glm::mat3& axes);
 [[nodiscard]] Result<Obb> fit_oriented(std::span<const glm::dvec3> points, const glm::mat3& axes);
 
