@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "../pipeline/png.hpp"
+#include "pipeline/png.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {

@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "verify_bodies.hpp"
-#include "verify_topics.hpp"
+#include "bodies.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

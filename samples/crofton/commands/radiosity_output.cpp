@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "../pipeline/png.hpp"
 #include "assets/split_mesh.hpp"
+#include "pipeline/png.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {

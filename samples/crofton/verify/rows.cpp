@@ -1,4 +1,4 @@
-#include "verify_rows.hpp"
+#include "rows.hpp"
 
 #include <algorithm>
 #include <cmath>

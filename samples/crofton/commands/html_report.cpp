@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "../pipeline/png.hpp"
 #include "html_chart.hpp"
+#include "pipeline/png.hpp"
 
 namespace crofton::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify_bodies.hpp"
+#include "bodies.hpp"
 
 #include <algorithm>
 #include <glm/geometric.hpp>

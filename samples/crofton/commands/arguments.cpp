@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "../assets/file.hpp"
+#include "assets/file.hpp"
 
 namespace crofton::cli {
 namespace {

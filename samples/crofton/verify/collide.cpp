@@ -1,4 +1,4 @@
-#include "verify_collide.hpp"
+#include "collide.hpp"
 
 #include <algorithm>
 #include <cmath>

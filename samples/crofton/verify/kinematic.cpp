@@ -5,8 +5,8 @@
 #include <crofton/sampling/random.hpp>
 #include <numbers>
 
-#include "verify_bodies.hpp"
-#include "verify_topics.hpp"
+#include "bodies.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

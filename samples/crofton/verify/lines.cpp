@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "verify_bodies.hpp"
-#include "verify_topics.hpp"
+#include "bodies.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 namespace {

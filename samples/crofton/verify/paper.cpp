@@ -1,6 +1,6 @@
 #include <utility>
 
-#include "verify_topics.hpp"
+#include "topics.hpp"
 
 namespace crofton::cli {
 

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "../assets/file.hpp"
-#include "../assets/obj_file.hpp"
-#include "../assets/scene_source.hpp"
+#include "assets/file.hpp"
+#include "assets/obj_file.hpp"
+#include "assets/scene_source.hpp"
 
 namespace crofton::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify_cull.hpp"
+#include "cull.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <crofton/cull/cull.hpp>
 #include <cstdio>
 
-#include "verify_certificate.hpp"
-#include "verify_straddlers.hpp"
+#include "certificate.hpp"
+#include "straddlers.hpp"
 
 namespace crofton::cli {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "verify_rows.hpp"
+#include "rows.hpp"
 
 namespace crofton::cli {
 

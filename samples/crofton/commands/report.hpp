@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "../assets/file.hpp"
+#include "assets/file.hpp"
 
 namespace crofton::cli {
 

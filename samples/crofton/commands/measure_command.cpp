@@ -17,7 +17,7 @@
 #include "commands.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
-#include "verify_rows.hpp"
+#include "verify/rows.hpp"
 
 namespace crofton::cli {
 namespace {

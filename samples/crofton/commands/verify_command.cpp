@@ -8,10 +8,10 @@
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "report.hpp"
-#include "verify_collide.hpp"
-#include "verify_cull.hpp"
-#include "verify_rows.hpp"
-#include "verify_topics.hpp"
+#include "verify/collide.hpp"
+#include "verify/cull.hpp"
+#include "verify/rows.hpp"
+#include "verify/topics.hpp"
 
 namespace crofton::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify_straddlers.hpp"
+#include "straddlers.hpp"
 
 #include <cmath>
 #include <glm/common.hpp>

@@ -3,7 +3,7 @@
 #include <crofton/geometry/dyadic.hpp>
 #include <glm/geometric.hpp>
 
-#include "verify_certificate.hpp"
+#include "certificate.hpp"
 
 namespace crofton::cli {
 namespace {

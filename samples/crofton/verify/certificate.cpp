@@ -1,4 +1,4 @@
-#include "verify_certificate.hpp"
+#include "certificate.hpp"
 
 #include <array>
 #include <cmath>
