@@ -7,15 +7,12 @@
 #include <cmath>
 
 #include "assets/name_color.hpp"
+#include "srgb.hpp"
 
 namespace crofton::assets {
 namespace {
 
 constexpr int kMaxSide = 16384;
-
-float linear_from_srgb(float v) {
-    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
 
 int wrap(float coordinate, int size) {
     const float turns = coordinate - std::floor(coordinate);

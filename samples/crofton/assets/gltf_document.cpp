@@ -152,11 +152,11 @@ class FilesBeside {
     }
 
     // Without a URI and a chunk (the place of what is compressed elsewhere) it holds nothing.
-    Result<std::string> buffer(Json& json, const std::optional<std::string_view>& binary) {
-        if (!json.is_object()) return fail(ErrorCode::parse, kNoItem, "is no object");
-        const auto length = whole_number(json, "byteLength", 0);
+    Result<std::string> buffer(Json& description, const std::optional<std::string_view>& binary) {
+        if (!description.is_object()) return fail(ErrorCode::parse, kNoItem, "is no object");
+        const auto length = whole_number(description, "byteLength", 0);
         if (!length) return tl::unexpected(length.error());
-        const std::string* uri = uri_of(json);
+        const std::string* uri = uri_of(description);
         if (!uri && !binary) return std::string();
         Result<std::string> bytes;
         if (!uri)

@@ -84,8 +84,8 @@ Result<void> apply_sparse(const GltfDocument& document, const Json& sparse, cons
 }
 
 // Elements that the file does not hold: zeros but for what a sparse part replaces.
-Result<Elements> assemble(const GltfDocument& document, const Json& json, const ElementLayout& layout, bool has_view,
-                          std::string& storage) {
+Result<Elements> assemble(const GltfDocument& document, const Json& description, const ElementLayout& layout,
+                          bool has_view, std::string& storage) {
     const std::size_t element = component_size(layout.component_type) * static_cast<std::size_t>(layout.components);
     if (element == 0) return bad(ErrorCode::parse, "unknown type");
     storage.assign(layout.count * element, '\0');
@@ -95,7 +95,7 @@ Result<Elements> assemble(const GltfDocument& document, const Json& json, const 
         for (std::size_t i = 0; i < layout.count; ++i)
             std::memcpy(storage.data() + i * element, base->data + i * base->stride, element);
     }
-    if (const Json* sparse = member(json, "sparse"))
+    if (const Json* sparse = member(description, "sparse"))
         if (auto done = apply_sparse(document, *sparse, layout, element, storage); !done)
             return tl::unexpected(done.error());
     return Elements{reinterpret_cast<const unsigned char*>(storage.data()),
@@ -108,30 +108,30 @@ Result<Elements> assemble(const GltfDocument& document, const Json& json, const 
 
 Result<Elements> find(const GltfDocument& document, std::size_t accessor, std::optional<std::size_t> count,
                       std::string& storage) {
-    const Json* json = entry(document.root, "accessors", accessor);
-    if (!json) return bad(ErrorCode::out_of_range, "does not exist");
+    const Json* description = entry(document.root, "accessors", accessor);
+    if (!description) return bad(ErrorCode::out_of_range, "does not exist");
     ElementLayout layout;
-    const auto type = component_type_of(*json);
-    const auto given = whole_number(*json, "count", 0);
+    const auto type = component_type_of(*description);
+    const auto given = whole_number(*description, "count", 0);
     if (!type) return tl::unexpected(type.error());
     if (!given) return tl::unexpected(given.error());
     if (count && *given != *count)
         return bad(ErrorCode::out_of_range,
                    std::to_string(*given) + " elements for " + std::to_string(*count) + " vertices");
     layout.component_type = *type;
-    layout.components = components_of(*json);
+    layout.components = components_of(*description);
     layout.count = *given;
-    if (const Json* normalized = member(*json, "normalized"))
+    if (const Json* normalized = member(*description, "normalized"))
         layout.normalized = normalized->is_boolean() && normalized->get<bool>();
-    const bool has_view = member(*json, "bufferView") != nullptr;
+    const bool has_view = member(*description, "bufferView") != nullptr;
     if (has_view)
-        if (auto found = locate(document, *json, layout); !found) return tl::unexpected(found.error());
-    if (has_view && !member(*json, "sparse")) return place(layout);
+        if (auto found = locate(document, *description, layout); !found) return tl::unexpected(found.error());
+    if (has_view && !member(*description, "sparse")) return place(layout);
     // Without a view nothing but the caller's count bounds what would be made up.
     if (!has_view && !count) return bad(ErrorCode::unsupported, "has no buffer view");
     if (has_view)
         if (const auto base = place(layout); !base) return base;
-    return assemble(document, *json, layout, has_view, storage);
+    return assemble(document, *description, layout, has_view, storage);
 }
 
 }  // namespace

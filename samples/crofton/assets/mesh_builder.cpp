@@ -7,12 +7,13 @@
 #include <numbers>
 #include <vector>
 
+#include "assets/srgb.hpp"
+
 namespace crofton::assets {
 namespace {
 
-float linear_from_srgb(int byte) {
-    const float v = static_cast<float>(byte) / 255.0f;
-    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+float linear_from_byte(int byte) {
+    return linear_from_srgb(static_cast<float>(byte) / 255.0f);
 }
 
 // Two directions that make a right-handed frame with the unit vector `axis`.
@@ -71,7 +72,7 @@ double noise(const glm::dvec3& p) {
 }  // namespace
 
 glm::vec3 srgb(int red, int green, int blue) {
-    return {linear_from_srgb(red), linear_from_srgb(green), linear_from_srgb(blue)};
+    return {linear_from_byte(red), linear_from_byte(green), linear_from_byte(blue)};
 }
 
 glm::vec3 scaled(const glm::vec3& color, double factor) {

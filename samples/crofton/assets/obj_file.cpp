@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "assets/file.hpp"
+#include "srgb.hpp"
 
 namespace crofton::assets {
 namespace {
@@ -36,10 +37,6 @@ bool parse(std::string_view word, Number& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     return error == std::errc{} && end == word.data() + word.size() && std::isfinite(value);
-}
-
-float linear_from_srgb(float v) {
-    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
 struct Surface {

@@ -15,7 +15,7 @@ namespace {
 
 // A marine is 56 units tall, so 32 units are a metre; 1/32 keeps every coordinate exact in float.
 constexpr double kMetresPerUnit = 1.0 / 32.0;
-constexpr double kEyeHeight = 41.0 * kMetresPerUnit;
+constexpr double kPlayerEyeHeight = 41.0 * kMetresPerUnit;
 
 bool is_sky(const std::string& texture) {
     return texture.rfind("F_SKY", 0) == 0;
@@ -102,7 +102,7 @@ class LevelBuilder {
             middle = (a + b + c) / 3.0;
         }
         if (best > kLeastArea)
-            source_.walk.emplace_back(middle.x * kMetresPerUnit, s.floor * kMetresPerUnit + kEyeHeight,
+            source_.walk.emplace_back(middle.x * kMetresPerUnit, s.floor * kMetresPerUnit + kPlayerEyeHeight,
                                       -middle.y * kMetresPerUnit);
     }
 

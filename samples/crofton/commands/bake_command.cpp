@@ -1,5 +1,4 @@
 // `crofton bake`: a scene made ready at build time, and what such a file holds.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/thread_pool.hpp>
@@ -7,12 +6,11 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "arguments.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -121,30 +119,27 @@ class BakeRun {
 
 }  // namespace
 
-void add_bake_command(CLI::App& app, Outcome& outcome) {
+void add_bake_command(CommandLine& line) {
     auto options = std::make_shared<BakeOptions>();
-    CLI::App* command = app.add_subcommand("bake", "Write a scene's boxes, tree and triangulations to a .crofton file");
+    Command command = line.command("bake", "Write a scene's boxes, tree and triangulations to a .crofton file");
     command
-        ->add_option(
-            "scene", options->scene,
-            "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
-        ->required();
-    command->add_option("-o,--output", options->output, "The file to write")->check(writable_file());
-    command->add_option("--map", options->map, "Which level of a WAD");
-    command->add_option("--instances", options->instances, "Size of the town, roughly");
-    command->add_option("--seed", options->seed, "Of the town")->capture_default_str();
-    command->add_option("--threads", options->threads, "0: one per core")
-        ->check(CLI::Range(0u, 256u))
-        ->capture_default_str();
-    command->add_option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
-        ->check(writable_file());
-    command->footer(
+        .option("scene", options->scene,
+                "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
+        .required();
+    command.option("-o,--output", options->output, "The file to write").writable_file();
+    command.option("--map", options->map, "Which level of a WAD");
+    command.option("--instances", options->instances, "Size of the town, roughly");
+    command.option("--seed", options->seed, "Of the town").show_default();
+    command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
+    command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
+        .writable_file();
+    command.footer(
         "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged.\n\n"
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
-    command->callback([options, &outcome] { outcome.status = BakeRun(*options).run(); });
+    command.action([options] { return BakeRun(*options).run(); });
 }
 
 }  // namespace crofton::cli

@@ -1,5 +1,4 @@
 // crofton collide: do two meshes meet, where, how deep, or how far apart are they?
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -7,17 +6,15 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
 namespace {
 
-using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 struct Request {
@@ -28,8 +25,8 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-json array_of(const glm::dvec3& v) {
-    return json::array({v.x, v.y, v.z});
+Json array_of(const glm::dvec3& v) {
+    return Json::array({v.x, v.y, v.z});
 }
 
 const char* name_of(mesh::Containment containment) {
@@ -134,8 +131,8 @@ Answer ask(const std::string& mode, const mesh::MeshTree& a, const mesh::MeshTre
     return answer;
 }
 
-json document_of(const Answer& answer) {
-    json document{{"hit", answer.hit}, {"pairs", json::array()}, {"contacts", json::array()}, {"depth", answer.depth}};
+Json document_of(const Answer& answer) {
+    Json document{{"hit", answer.hit}, {"pairs", Json::array()}, {"contacts", Json::array()}, {"depth", answer.depth}};
     for (const mesh::MeshContact& c : answer.contacts) {
         document["pairs"].push_back({c.triangles.first, c.triangles.second});
         document["contacts"].push_back({{"triangles", {c.triangles.first, c.triangles.second}},
@@ -144,7 +141,7 @@ json document_of(const Answer& answer) {
                                         {"end", array_of(c.segment.end)},
                                         {"normal", array_of(c.normal)}});
     }
-    document["distance"] = answer.distance >= 0.0 ? json(answer.distance) : json(nullptr);
+    document["distance"] = answer.distance >= 0.0 ? Json(answer.distance) : Json(nullptr);
     if (answer.distance >= 0.0) {
         document["nearest"] = {{"on_a", array_of(answer.nearest.on_a)},
                                {"on_b", array_of(answer.nearest.on_b)},
@@ -179,7 +176,7 @@ int run(const Request& request) {
         std::printf("  (build %.3f ms, query %.3f ms)\n", build, query);
     }
     if (request.json_path.empty()) return kSuccess;
-    json document = document_of(answer);
+    Json document = document_of(answer);
     document["milliseconds"] = {{"build", build}, {"query", query}};
     if (const auto written = write_json(request.json_path, document); !written)
         return report_error("", written.error());
@@ -188,24 +185,21 @@ int run(const Request& request) {
 
 }  // namespace
 
-void add_collide_command(CLI::App& app, Outcome& outcome) {
+void add_collide_command(CommandLine& line) {
     auto request = std::make_shared<Request>();
-    CLI::App* command =
-        app.add_subcommand("collide", "Do two meshes meet, where, how deep, or how far apart are they?");
-    command->add_option("A", request->a, "Mesh file (.obj, or any scene format)")->required();
-    command->add_option("B", request->b, "Mesh file that the pose moves")->required();
-    command->add_option("--pose", request->pose,
-                        "Of B in A's frame: tx,ty,tz,qw,qx,qy,qz or a file with these numbers");
+    Command command = line.command("collide", "Do two meshes meet, where, how deep, or how far apart are they?");
+    command.option("A", request->a, "Mesh file (.obj, or any scene format)").required();
+    command.option("B", request->b, "Mesh file that the pose moves").required();
+    command.option("--pose", request->pose, "Of B in A's frame: tx,ty,tz,qw,qx,qy,qz or a file with these numbers");
     command
-        ->add_option(
-            "--mode", request->mode,
-            "any: whether they meet; all: which triangles, where and how deep; distance: between the surfaces; "
-            "contain: is one inside the other")
-        ->check(CLI::IsMember({"any", "all", "distance", "contain"}))
-        ->capture_default_str();
-    command->add_option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
-        ->check(writable_file());
-    command->footer(
+        .option("--mode", request->mode,
+                "any: whether they meet; all: which triangles, where and how deep; distance: between the surfaces; "
+                "contain: is one inside the other")
+        .one_of({"any", "all", "distance", "contain"})
+        .show_default();
+    command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
+        .writable_file();
+    command.footer(
         "A mesh inside the other, which is to be closed, counts as a hit and is reported in `contained`. Each piece "
         "is\n"
         "asked, and triangles make a piece where they share vertices, by index or by position: of loose triangles "
@@ -219,7 +213,7 @@ void add_collide_command(CLI::App& app, Outcome& outcome) {
         "  crofton collide bunny.obj cow.obj\n"
         "  crofton collide bunny.obj bunny.obj --pose 0.05,0,0,1,0,0,0 --mode all --json -\n"
         "  crofton collide a.obj b.obj --pose pose.txt --mode distance");
-    command->callback([request, &outcome] { outcome.status = run(*request); });
+    command.action([request] { return run(*request); });
 }
 
 }  // namespace crofton::cli

@@ -1,17 +1,15 @@
 // crofton fit: the best oriented box around each mesh, with the proof that it is.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/convex_hull.hpp>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "commands.hpp"
 #include "fit_criterion.hpp"
 #include "fit_output.hpp"
+#include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
 
@@ -119,28 +117,27 @@ int run(const Request& request) {
 
 }  // namespace
 
-void add_fit_command(CLI::App& app, Outcome& outcome) {
+void add_fit_command(CommandLine& line) {
     auto request = std::make_shared<Request>();
-    CLI::App* command =
-        app.add_subcommand("fit", "The best oriented box around each mesh, for a criterion of your choice");
-    command->add_option("files", request->files, "OBJ, glTF, GLB or WAD files; only their vertices count")->required();
-    command->add_option("--criterion", request->criterion, kCriterionSyntax)->capture_default_str();
+    Command command = line.command("fit", "The best oriented box around each mesh, for a criterion of your choice");
+    command.option("files", request->files, "OBJ, glTF, GLB or WAD files; only their vertices count").required();
+    command.option("--criterion", request->criterion, kCriterionSyntax).show_default();
     command
-        ->add_option("--quality", request->quality,
-                     "fast: a few passes over the points; tight: a local optimum; exact: the optimum, proved")
-        ->check(CLI::IsMember({"fast", "tight", "exact"}))
-        ->capture_default_str();
+        .option("--quality", request->quality,
+                "fast: a few passes over the points; tight: a local optimum; exact: the optimum, proved")
+        .one_of({"fast", "tight", "exact"})
+        .show_default();
     command
-        ->add_option("--budget", request->budget_seconds,
-                     "Seconds per box after which exact returns the best so far, with its gap")
-        ->check(CLI::NonNegativeNumber);
+        .option("--budget", request->budget_seconds,
+                "Seconds per box after which exact returns the best so far, with its gap")
+        .not_negative();
     command
-        ->add_option("--json", request->json_path,
-                     "Write the boxes as JSON to this file; - for standard output, instead of the text")
-        ->check(writable_file());
-    command->add_option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
-        ->check(writable_file());
-    command->footer(
+        .option("--json", request->json_path,
+                "Write the boxes as JSON to this file; - for standard output, instead of the text")
+        .writable_file();
+    command.option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
+        .writable_file();
+    command.footer(
         "The criterion is alpha V + beta F + gamma M of volume, surface area and integral of mean curvature (pi times "
         "the edge sum).\n"
         "Every box contains every vertex, checked in exact arithmetic. Several files give a table of all criteria.\n\n"
@@ -148,7 +145,7 @@ void add_fit_command(CLI::App& app, Outcome& outcome) {
         "  crofton fit bunny.obj\n"
         "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"
         "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg");
-    command->callback([request, &outcome] { outcome.status = run(*request); });
+    command.action([request] { return run(*request); });
 }
 
 }  // namespace crofton::cli

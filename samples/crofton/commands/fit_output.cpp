@@ -6,7 +6,8 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <nlohmann/json.hpp>
+
+#include "json/json.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -24,13 +25,13 @@ append(std::string& text, const char* format, ...) {
     text += line;
 }
 
-nlohmann::json optional_number(const std::optional<double>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+Json optional_number(const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
 }
 
-nlohmann::json box_json(const FittedBox& fitted, double hull_milliseconds) {
+Json box_json(const FittedBox& fitted, double hull_milliseconds) {
     const Obb& box = fitted.box;
-    nlohmann::json axes = nlohmann::json::array();
+    Json axes = Json::array();
     for (int k = 0; k < 3; ++k)
         axes.push_back({static_cast<double>(box.axes[k].x), static_cast<double>(box.axes[k].y),
                         static_cast<double>(box.axes[k].z)});
@@ -72,15 +73,15 @@ std::string file_name(const std::string& path) {
 
 }  // namespace
 
-nlohmann::json fit_json(const std::vector<FittedMesh>& meshes, const std::string& quality) {
-    nlohmann::json list = nlohmann::json::array();
+Json fit_json(const std::vector<FittedMesh>& meshes, const std::string& quality) {
+    Json list = Json::array();
     for (const FittedMesh& mesh : meshes) {
-        nlohmann::json entry = box_json(mesh.chosen, mesh.hull_milliseconds);
+        Json entry = box_json(mesh.chosen, mesh.hull_milliseconds);
         entry["file"] = mesh.file;
         entry["vertices"] = mesh.vertices;
         entry["hull_vertices"] = mesh.hull_vertices;
         if (!mesh.others.empty()) {
-            nlohmann::json criteria = nlohmann::json::object();
+            Json criteria = Json::object();
             for (const FittedBox& other : mesh.others)
                 criteria[other.criterion] = box_json(other, mesh.hull_milliseconds);
             entry["criteria"] = std::move(criteria);

@@ -2,10 +2,11 @@
 #pragma once
 #include <crofton/geometry/obb.hpp>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace crofton::cli {
 
@@ -29,7 +30,7 @@ struct FittedMesh {
     std::vector<FittedBox> others;  // volume, area and perimeter, when several files are compared
 };
 
-[[nodiscard]] nlohmann::json fit_json(const std::vector<FittedMesh>& meshes, const std::string& quality);
+[[nodiscard]] Json fit_json(const std::vector<FittedMesh>& meshes, const std::string& quality);
 [[nodiscard]] std::string fit_text(const std::vector<FittedMesh>& meshes);
 [[nodiscard]] std::string fit_svg(const std::vector<FittedMesh>& meshes);
 

@@ -1,5 +1,4 @@
 // `crofton frames`: the main job. A scene, a camera path; each frame culled, collided, drawn and counted.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <crofton/core/thread_pool.hpp>
@@ -8,19 +7,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "arguments.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "frames_output.hpp"
 #include "html_report.hpp"
+#include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
+#include "pipeline/pedestrian_path.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/verify.hpp"
-#include "pipeline/walk.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
 
@@ -140,7 +138,7 @@ class FramesRun {
         source_->scene.update(executor());
         focus_ = pipeline::focus_of(source_->scene);
         if (source_->walk.empty() && options_.camera == "street")
-            source_->walk = pipeline::find_walk(source_->scene, focus_);
+            source_->walk = pipeline::find_pedestrian_path(source_->scene, focus_);
         auto path = pipeline::make_camera_path({options_.camera, options_.frames.value_or(0), options_.seed, aspect},
                                                focus_, source_->walk);
         if (!path) return tl::unexpected(path.error());
@@ -261,42 +259,37 @@ constexpr const char* kExamples =
 
 }  // namespace
 
-void add_frames_command(CLI::App& app, Outcome& outcome) {
+void add_frames_command(CommandLine& line) {
     auto options = std::make_shared<FramesOptions>();
-    CLI::App* command =
-        app.add_subcommand("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
-    command->footer(kExamples);
-    command->add_option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file")
-        ->capture_default_str();
-    command->add_option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
-    command->add_option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras")
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "Seed of the town and of random cameras")->capture_default_str();
-    command->add_option("--instances", options->instances, "Size of the town, up to 1000000; 0: about 3000")
-        ->capture_default_str();
-    command->add_option("--size", options->size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
-    command->add_option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
-        ->capture_default_str();
-    command->add_option("--cull", options->cull, "none, flat or tree")->capture_default_str();
-    command->add_option("--map", options->map, "Which level of a .wad; the first where absent");
-    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")
-        ->check(CLI::Range(0u, 256u))
-        ->capture_default_str();
-    auto* draw =
-        command->add_flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
-    command->add_flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone")->excludes(draw);
-    command->add_flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
-    command->add_flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
-    command->add_option("--json", options->output.json, "Write everything as JSON; - for stdout")
-        ->check(writable_file());
-    command->add_option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout")
-        ->check(writable_file());
-    command->add_option("--png", options->output.png, "Write a picture per frame into this folder");
-    command->add_option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
-        ->check(writable_file());
-    command->callback([options, &outcome] {
+    Command command =
+        line.command("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
+    command.footer(kExamples);
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
+    command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
+    command.option("--seed", options->seed, "Seed of the town and of random cameras").show_default();
+    command.option("--instances", options->instances, "Size of the town, up to 1000000; 0: about 3000").show_default();
+    command.option("--size", options->size, "Pixels, WIDTHxHEIGHT").show_default();
+    command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+        .show_default();
+    command.option("--cull", options->cull, "none, flat or tree").show_default();
+    command.option("--map", options->map, "Which level of a .wad; the first where absent");
+    command.option("--threads", options->threads, "Worker threads; 0: one per core")
+        .whole_between(0, 256)
+        .show_default();
+    const Option draw =
+        command.flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
+    command.flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone").excludes(draw);
+    command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
+    command.flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
+    command.option("--json", options->output.json, "Write everything as JSON; - for stdout").writable_file();
+    command.option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout").writable_file();
+    command.option("--png", options->output.png, "Write a picture per frame into this folder");
+    command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
+        .writable_file();
+    command.action([options] {
         const auto status = FramesRun(*options).run();
-        outcome.status = status ? *status : report_error("", status.error());
+        return status ? *status : report_error("", status.error());
     });
 }
 

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "json/json.hpp"
 #include "pipeline/png.hpp"
 #include "report.hpp"
 
@@ -122,13 +122,13 @@ Result<void> write_picture(const std::string& folder, std::uint32_t index, const
 Result<void> write_results(const FramesOutput& output, const SceneFacts& scene, std::span<const FrameStatistics> frames,
                            const std::optional<pipeline::Verification>& verification) {
     if (!output.json.empty()) {
-        nlohmann::json document = {{"scene",
-                                    {{"name", scene.name},
-                                     {"nodes", scene.nodes},
-                                     {"instances", scene.instances},
-                                     {"triangles", scene.triangles}}},
-                                   {"frames", nlohmann::json::array()},
-                                   {"summary", pipeline::summary_json(frames, verification)}};
+        Json document = {{"scene",
+                          {{"name", scene.name},
+                           {"nodes", scene.nodes},
+                           {"instances", scene.instances},
+                           {"triangles", scene.triangles}}},
+                         {"frames", Json::array()},
+                         {"summary", pipeline::summary_json(frames, verification)}};
         for (const FrameStatistics& frame : frames) document["frames"].push_back(to_json(frame, output.ids));
         if (auto written = write_json(output.json, document); !written) return written;
     }

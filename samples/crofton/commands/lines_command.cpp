@@ -1,5 +1,4 @@
 // `crofton lines`: the ways to draw global lines, compared on one scene.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,11 +6,10 @@
 #include <crofton/radiosity/line_source.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -66,8 +64,7 @@ Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double 
 // How well a way to draw lines counts the scene's surface, a number known exactly: S = crossings · F / (2 N).
 // Efficiency is the reciprocal of error² · time, so it does not depend on how many lines were spent.
 template <class Look>
-nlohmann::json compare(const char* method, sampling::Sequence sequence, double surface, const Options& options,
-                       Look&& look) {
+Json compare(const char* method, sampling::Sequence sequence, double surface, const Options& options, Look&& look) {
     double squares = 0.0;
     Seen all;
     const auto start = std::chrono::steady_clock::now();
@@ -110,7 +107,7 @@ Result<void> run(const Options& options) {
     if (!bundles) return tl::unexpected(bundles.error());
     const double box_area = radiosity::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
     const double cell_area = surface / static_cast<double>(mesh.triangle_count());
-    nlohmann::json rows = nlohmann::json::array();
+    Json rows = Json::array();
     for (const sampling::Sequence sequence : {sampling::Sequence::pseudo_random, sampling::Sequence::quasi_random}) {
         for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
             rows.push_back(compare(radiosity::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
@@ -131,21 +128,22 @@ Result<void> run(const Options& options) {
                 mesh.triangle_count(), surface, best);
     std::printf("%-8s %-7s %12s %10s %10s %8s %10s %12s\n", "method", "numbers", "lines/s", "crossings", "deviation",
                 "wasted", "error", "efficiency");
-    for (const auto& row : rows)
-        std::printf("%-8s %-7s %12.0f %10.3f %10.3f %7.1f%% %9.3f%% %12.0f\n", row["method"].get<std::string>().c_str(),
-                    row["sequence"].get<std::string>().c_str(), row["lines_per_second"].get<double>(),
-                    row["mean_crossings"].get<double>(), row["deviation"].get<double>(),
-                    100.0 * row["wasted"].get<double>(), 100.0 * row["relative_error"].get<double>(),
-                    row["efficiency"].get<double>());
+    for (const Json& row : rows.elements()) {
+        const auto text = [&](const char* name) { return row.find(name)->text(); };
+        const auto number = [&](const char* name) { return row.find(name)->number(); };
+        std::printf("%-8s %-7s %12.0f %10.3f %10.3f %7.1f%% %9.3f%% %12.0f\n", text("method").c_str(),
+                    text("sequence").c_str(), number("lines_per_second"), number("mean_crossings"), number("deviation"),
+                    100.0 * number("wasted"), 100.0 * number("relative_error"), number("efficiency"));
+    }
     return {};
 }
 
 }  // namespace
 
-void add_lines_command(CLI::App& app, Outcome& outcome) {
+void add_lines_command(CommandLine& line) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("lines", "Compare the ways to draw global lines on a scene");
-    command->footer(
+    Command command = line.command("lines", "Compare the ways to draw global lines on a scene");
+    command.footer(
         "Each way of drawing uniform lines counts the scene's surface S, a number known exactly, as\n"
         "S = crossings a line * F / 2, where F is the surface of the body that the lines fill (docs/theory.md).\n"
         "Columns: lines a second; crossings a line, and their deviation; lines that meet nothing (wasted); the\n"
@@ -155,19 +153,19 @@ void add_lines_command(CLI::App& app, Outcome& outcome) {
         "  crofton lines                       the built-in town\n"
         "  crofton lines level.wad --map MAP07\n"
         "  crofton lines room --json -\n");
-    command->add_option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file")
-        ->capture_default_str();
-    command->add_option("--blocks", options->blocks, "Blocks of 1024 lines per estimate")
-        ->check(CLI::Range(1, 100000))
-        ->capture_default_str();
-    command->add_option("--repeats", options->repeats, "Estimates per method, for its error")
-        ->check(CLI::Range(2, 10000))
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "Seed of the lines and of the town")->capture_default_str();
-    command->add_option("--map", options->map, "Which level of a .wad");
-    command->add_option("--json", options->json, "Write the comparison as JSON; - for stdout")->check(writable_file());
-    command->callback([options, &outcome] {
-        if (const auto done = run(*options); !done) outcome.status = report_error("", done.error());
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("--blocks", options->blocks, "Blocks of 1024 lines per estimate")
+        .whole_between(1, 100000)
+        .show_default();
+    command.option("--repeats", options->repeats, "Estimates per method, for its error")
+        .whole_between(2, 10000)
+        .show_default();
+    command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
+    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file();
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? kSuccess : report_error("", done.error());
     });
 }
 

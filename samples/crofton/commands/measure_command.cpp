@@ -1,6 +1,5 @@
 // `crofton measure`: Crofton's formula on one's own mesh. What random lines count, beside what the mesh's geometry
 // says.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/convex_hull.hpp>
@@ -10,11 +9,10 @@
 #include <crofton/study/convex_body.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "arguments.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
 #include "verify/rows.hpp"
@@ -165,11 +163,11 @@ Result<void> run(const MeasureOptions& options) {
 
 }  // namespace
 
-void add_measure_command(CLI::App& app, Outcome& outcome) {
+void add_measure_command(CommandLine& line) {
     auto options = std::make_shared<MeasureOptions>();
-    CLI::App* command = app.add_subcommand(
-        "measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
-    command->footer(
+    Command command =
+        line.command("measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
+    command.footer(
         "Columns: what is measured; what is counted; the value that follows from the triangles; the estimate, its\n"
         "standard error, and how many of these it is off (z). docs/theory.md derives the formulas. Lengths are in the\n"
         "file's unit.\n\n"
@@ -177,14 +175,15 @@ void add_measure_command(CLI::App& app, Outcome& outcome) {
         "  crofton measure bunny.obj\n"
         "  crofton measure room --lines 1000000\n"
         "  crofton measure level.wad --json -\n");
-    command->add_option("file", options->file, "town, room, or a .glb, .gltf, .obj or .wad file")->required();
-    command->add_option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
-        ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1} << 40))
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "The same seed gives the same lines")->capture_default_str();
-    command->add_option("--json", options->json, "Write the table as JSON; - for stdout")->check(writable_file());
-    command->callback([options, &outcome] {
-        if (const auto done = run(*options); !done) outcome.status = report_error("", done.error());
+    command.option("file", options->file, "town, room, or a .glb, .gltf, .obj or .wad file").required();
+    command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
+        .whole_between(1000, std::uint64_t{1} << 40)
+        .show_default();
+    command.option("--seed", options->seed, "The same seed gives the same lines").show_default();
+    command.option("--json", options->json, "Write the table as JSON; - for stdout").writable_file();
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? kSuccess : report_error("", done.error());
     });
 }
 

@@ -1,5 +1,4 @@
 // `crofton radiosity`: light in a scene, to a target error, baked into vertex colours.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <crofton/core/thread_pool.hpp>
@@ -7,11 +6,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "progress_bar.hpp"
 #include "radiosity_output.hpp"
@@ -131,7 +129,7 @@ Result<void> run(const Options& options) {
         area += lit->patches.areas[i];
     }
     light /= area;
-    const nlohmann::json report = {
+    const Json report = {
         {"scene", source->name},
         {"patches", lit->patches.count()},
         {"triangles", lit->patches.mesh.triangle_count()},
@@ -156,11 +154,10 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void add_radiosity_command(CLI::App& app, Outcome& outcome) {
+void add_radiosity_command(CommandLine& line) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        app.add_subcommand("radiosity", "Light a scene by global lines and bake it into vertex colours");
-    command->footer(
+    Command command = line.command("radiosity", "Light a scene by global lines and bake it into vertex colours");
+    command.footer(
         "Colours are reflectances; above 0.9, white paint's, they count as 0.9, so that light ends. Triangles of no "
         "area are "
         "left out.\n"
@@ -170,37 +167,32 @@ void add_radiosity_command(CLI::App& app, Outcome& outcome) {
         "  crofton radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
         "  crofton radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
-    command->add_option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file")->required();
-    auto* lines = command->add_option("--lines", options->lines, "Trace about this many lines, in two runs or more")
-                      ->capture_default_str();
-    command->add_option("--error", options->error, "Stop at this relative error instead, for example 0.02")
-        ->check(CLI::PositiveNumber)
-        ->excludes(lines);
-    command->add_option("--method", options->method, "local, global, bundles or walls")->capture_default_str();
-    command->add_option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
-        ->check(CLI::PositiveNumber);
-    command->add_option("--sky", options->sky, "Radiosity of the sky")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    command->add_option("--sun", options->sun, "Irradiance toward the sun")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    command->add_option("--exposure", options->exposure, "Factor from radiosity to colour; automatic without")
-        ->check(CLI::PositiveNumber);
-    command->add_option("--seed", options->seed, "Seed of the lines and of the town")->capture_default_str();
-    command->add_option("--map", options->map, "Which level of a .wad");
-    command->add_option("--threads", options->threads, "Worker threads; 0: one per core")
-        ->check(CLI::Range(0u, 256u))
-        ->capture_default_str();
-    command->add_option("--out", options->out, "Write the lit scene as .glb")->check(writable_file());
-    command->add_option("--png", options->png, "Write a picture of it")->check(writable_file());
-    command->add_option("--json", options->json, "Write the figures as JSON; - for stdout")->check(writable_file());
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
+    const Option lines =
+        command.option("--lines", options->lines, "Trace about this many lines, in two runs or more").show_default();
+    command.option("--error", options->error, "Stop at this relative error instead, for example 0.02")
+        .positive()
+        .excludes(lines);
+    command.option("--method", options->method, "local, global, bundles or walls").show_default();
+    command.option("--edge", options->edge, "Cut patches until no edge is longer (metres); automatic without")
+        .positive();
+    command.option("--sky", options->sky, "Radiosity of the sky").not_negative().show_default();
+    command.option("--sun", options->sun, "Irradiance toward the sun").not_negative().show_default();
+    command.option("--exposure", options->exposure, "Factor from radiosity to colour; automatic without").positive();
+    command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
+    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--threads", options->threads, "Worker threads; 0: one per core")
+        .whole_between(0, 256)
+        .show_default();
+    command.option("--out", options->out, "Write the lit scene as .glb").writable_file();
+    command.option("--png", options->png, "Write a picture of it").writable_file();
+    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
     command
-        ->add_option("--checkpoint", options->checkpoint,
-                     "Save after every run to this file; go on from it where it exists")
-        ->check(writable_file());
-    command->callback([options, &outcome] {
-        if (const auto done = run(*options); !done) outcome.status = report_error("", done.error());
+        .option("--checkpoint", options->checkpoint, "Save after every run to this file; go on from it where it exists")
+        .writable_file();
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? kSuccess : report_error("", done.error());
     });
 }
 

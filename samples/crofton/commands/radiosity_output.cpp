@@ -7,10 +7,10 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "assets/split_mesh.hpp"
+#include "json/json.hpp"
 #include "pipeline/png.hpp"
 #include "report.hpp"
 
@@ -167,8 +167,7 @@ TriangleMesh baked(const LitScene& scene, const radiosity::Solver& solver, doubl
 
 Result<void> write_glb(const std::string& path, const TriangleMesh& whole) {
     std::string binary;
-    nlohmann::json views = nlohmann::json::array(), accessors = nlohmann::json::array(),
-                   primitives = nlohmann::json::array();
+    Json views = Json::array(), accessors = Json::array(), primitives = Json::array();
     const auto append = [&](const void* data, std::size_t bytes) {
         views.push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes}});
         binary.append(static_cast<const char*>(data), bytes);
@@ -196,17 +195,16 @@ Result<void> write_glb(const std::string& path, const TriangleMesh& whole) {
         primitives.push_back(
             {{"attributes", {{"POSITION", position}, {"COLOR_0", color}}}, {"indices", indices}, {"material", 0}});
     }
-    const nlohmann::json document = {
-        {"asset", {{"version", "2.0"}, {"generator", "crofton radiosity"}}},
-        {"extensionsUsed", {"KHR_materials_unlit"}},
-        {"scene", 0},
-        {"scenes", {{{"nodes", {0}}}}},
-        {"nodes", {{{"mesh", 0}, {"name", "lit"}}}},
-        {"materials", {{{"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}}},
-        {"meshes", {{{"primitives", primitives}}}},
-        {"accessors", accessors},
-        {"bufferViews", views},
-        {"buffers", {{{"byteLength", binary.size()}}}}};
+    const Json document = {{"asset", {{"version", "2.0"}, {"generator", "crofton radiosity"}}},
+                           {"extensionsUsed", {"KHR_materials_unlit"}},
+                           {"scene", 0},
+                           {"scenes", {{{"nodes", {0}}}}},
+                           {"nodes", {{{"mesh", 0}, {"name", "lit"}}}},
+                           {"materials", {{{"extensions", {{"KHR_materials_unlit", Json::object()}}}}}},
+                           {"meshes", {{{"primitives", primitives}}}},
+                           {"accessors", accessors},
+                           {"bufferViews", views},
+                           {"buffers", {{{"byteLength", binary.size()}}}}};
     std::string json = document.dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::string file;

@@ -1,9 +1,9 @@
 #include "report.hpp"
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "json/json.hpp"
 
 namespace crofton::cli {
 int report_error(std::string_view subject, const Error& error) {
@@ -46,8 +46,8 @@ std::string with_short_arrays(const std::string& text) {
 
 }  // namespace
 
-Result<void> write_json(const std::string& path, const nlohmann::json& document) {
-    const std::string text = document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+Result<void> write_json(const std::string& path, const Json& document) {
+    const std::string text = document.dump(1);
     return write_file(path, with_short_arrays(text) + "\n");
 }
 

@@ -1,15 +1,13 @@
 // `crofton triangulate`: polygons with holes, or the planar patches of meshes, to triangles.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "assets/file.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "polygon_files.hpp"
 #include "polygon_svg.hpp"
 #include "progress_bar.hpp"
@@ -20,7 +18,6 @@
 namespace crofton::cli {
 namespace {
 
-using nlohmann::json;
 using triangulate::Method;
 using triangulate::Triangulation;
 using Clock = std::chrono::steady_clock;
@@ -41,14 +38,14 @@ Result<Method> method_from(const std::string& name) {
                 "--method must be ear, delaunay or minimum-weight, not '" + name + "'");
 }
 
-json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds, bool no_indices) {
-    json entry{{"name", named.name},
+Json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds, bool no_indices) {
+    Json entry{{"name", named.name},
                {"vertices", named.polygon.points.size()},
                {"holes", named.polygon.ring_count() - 1},
                {"triangle_count", result.triangles.size()},
                {"weight", result.weight},
                {"optimal", result.optimal},
-               {"gap", std::isfinite(result.gap) ? json(result.gap) : json(nullptr)},
+               {"gap", std::isfinite(result.gap) ? Json(result.gap) : Json(nullptr)},
                {"microseconds", microseconds}};
     if (!no_indices) entry["triangles"] = result.triangles;
     return entry;
@@ -90,7 +87,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     for (const auto& warning : file->warnings) std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
     const auto& polygons = file->polygons;
     std::vector<Triangulation> results(polygons.size());
-    json entries = json::array();
+    Json entries = Json::array();
     Totals totals;
     triangulate::Triangulator triangulator;
     {
@@ -120,7 +117,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
             return tl::unexpected(written.error());
     }
     if (!options.json.empty()) {
-        const json document{{"file", assets::file_name(options.file)},
+        const Json document{{"file", assets::file_name(options.file)},
                             {"method", options.method},
                             {"polygons", std::move(entries)},
                             {"summary",
@@ -198,43 +195,38 @@ constexpr const char* kExamples =
 
 }  // namespace
 
-void add_triangulate_command(CLI::App& app, Outcome& outcome) {
+void add_triangulate_command(CommandLine& line) {
     auto options = std::make_shared<TriangulateOptions>();
-    CLI::App* command =
-        app.add_subcommand("triangulate", "Polygons with holes, or the planar patches of meshes, to triangles");
-    command->footer(kExamples);
-    command->add_option("file", options->file, "What to triangulate")->required();
-    command->add_option("--method", options->method, "ear, delaunay or minimum-weight")->capture_default_str();
-    command->add_option("--map", options->map, "Only this level of a .wad");
+    Command command = line.command("triangulate", "Polygons with holes, or the planar patches of meshes, to triangles");
+    command.footer(kExamples);
+    command.option("file", options->file, "What to triangulate").required();
+    command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
+    command.option("--map", options->map, "Only this level of a .wad");
     command
-        ->add_option("--time-limit,--seconds", options->seconds,
-                     "Seconds allowed per polygon; then the best so far, with its proven gap")
-        ->capture_default_str();
-    command->add_option(
-        "--tolerance", options->tolerance,
-        "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
+        .option("--time-limit,--seconds", options->seconds,
+                "Seconds allowed per polygon; then the best so far, with its proven gap")
+        .show_default();
+    const Option tolerance =
+        command.option("--tolerance", options->tolerance,
+                       "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
     command
-        ->add_option("--attribute-tolerance", options->attribute_tolerance,
-                     "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
-                     "within a patch; inf: as far as they like")
-        ->capture_default_str();
-    command->add_flag("--compare", options->compare,
-                      "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
-    command->add_option("--frusta", options->frusta, "How many random frusta --compare measures with")
-        ->capture_default_str();
-    command->add_option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out")
-        ->capture_default_str();
-    command->add_flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
-    command->add_option("--json", options->json, "Write results as JSON; - for stdout")->check(writable_file());
-    command->add_option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout")
-        ->check(writable_file());
-    command
-        ->add_option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
-        ->check(writable_file());
-    command->callback([options, command, &outcome] {
-        options->has_tolerance = command->count("--tolerance") > 0;
+        .option("--attribute-tolerance", options->attribute_tolerance,
+                "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
+                "within a patch; inf: as far as they like")
+        .show_default();
+    command.flag("--compare", options->compare,
+                 "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
+    command.option("--frusta", options->frusta, "How many random frusta --compare measures with").show_default();
+    command.option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out").show_default();
+    command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
+    command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file();
+    command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout").writable_file();
+    command.option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
+        .writable_file();
+    command.action([options, tolerance] {
+        options->has_tolerance = tolerance.given();
         const auto status = run(*options);
-        outcome.status = status ? *status : report_error("", status.error());
+        return status ? *status : report_error("", status.error());
     });
 }
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <crofton/triangulate/planar_patches.hpp>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "assets/gltf_primitive.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "polygon_files.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
@@ -18,7 +18,6 @@
 namespace crofton::cli {
 namespace {
 
-using nlohmann::json;
 using triangulate::Method;
 
 constexpr std::array<Method, 3> kMethods = {Method::ear, Method::delaunay, Method::minimum_weight};
@@ -92,11 +91,11 @@ Study triangulate_all(std::vector<Polygon> polygons, double seconds) {
     return study;
 }
 
-json to_json(const Study& study, const Comparison& passed, const QuadComparison& quads,
+Json to_json(const Study& study, const Comparison& passed, const QuadComparison& quads,
              const Result<std::vector<DrawCost>>& drawn) {
-    json rows = json::array();
+    Json rows = Json::array();
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
-        json row{{"method", kNames[m]},
+        Json row{{"method", kNames[m]},
                  {"weight", study.weight[m]},
                  {"triangles_passed",
                   {{"predicted", passed.predicted[m]},
@@ -147,7 +146,7 @@ Result<int> run_compare(const CompareRun& run) {
     const auto drawn = draw_wall(study.polygons, kFrames);
     if (!drawn) std::fprintf(stderr, "crofton: nothing drawn: %s\n", drawn.error().message.c_str());
     if (!run.json.empty()) {
-        const json document{{"file", assets::file_name(run.file)},
+        const Json document{{"file", assets::file_name(run.file)},
                             {"polygons", study.polygons.size()},
                             {"refused", study.refused},
                             {"unproven", study.unproven},

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "assets/gltf_builder.hpp"
 #include "assets/gltf_patches.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
 
@@ -17,7 +17,6 @@ namespace crofton::cli {
 namespace {
 
 using assets::PrimitivePatches;
-using nlohmann::json;
 
 // So many lines say what was left alone and why; the JSON has all of them.
 constexpr std::size_t kMostReasons = 20;
@@ -59,7 +58,7 @@ struct Sums {
         microseconds += p.microseconds;
     }
 
-    [[nodiscard]] json to_json() const {
+    [[nodiscard]] Json to_json() const {
         return {{"primitives", primitives},
                 {"vertices", vertices},
                 {"triangles_before", triangles_before},
@@ -86,9 +85,9 @@ std::string label(const PrimitivePatches& p) {
            std::to_string(p.primitive);
 }
 
-json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) {
+Json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) {
     const triangulate::PatchResult& r = p.report.results[number];
-    json entry{{"name", p.name + "_" + std::to_string(p.primitive) + "_" + std::to_string(number)},
+    Json entry{{"name", p.name + "_" + std::to_string(p.primitive) + "_" + std::to_string(number)},
                {"primitive", p.primitive},
                {"vertices", r.vertices},
                {"holes", r.holes},
@@ -96,10 +95,10 @@ json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) 
                {"weight_before", r.weight_before},
                {"weight", r.weight_after},
                {"optimal", r.optimal},
-               {"gap", std::isfinite(r.gap) ? json(r.gap) : json(nullptr)},
+               {"gap", std::isfinite(r.gap) ? Json(r.gap) : Json(nullptr)},
                {"microseconds", r.microseconds}};
     if (no_indices) return entry;
-    json triangles = json::array();
+    Json triangles = Json::array();
     for (const std::size_t t : r.triangles)
         triangles.push_back({p.indices[3 * t], p.indices[3 * t + 1], p.indices[3 * t + 2]});
     entry["triangles"] = std::move(triangles);
@@ -107,28 +106,26 @@ json patch_json(const PrimitivePatches& p, std::size_t number, bool no_indices) 
 }
 
 // What stays as it was: whole primitives, or one patch of them by its first triangle.
-json reasons_json(const PrimitivePatches& p) {
-    json reasons = json::array();
+void add_reasons(const PrimitivePatches& p, Json& reasons) {
     if (!p.left_alone.empty()) reasons.push_back({{"primitive", p.primitive}, {"why", p.left_alone}});
     for (const auto& r : p.report.results)
         if (!r.refused.empty())
             reasons.push_back({{"primitive", p.primitive}, {"first_triangle", r.triangles[0]}, {"why", r.refused}});
-    return reasons;
 }
 
 // A mesh's primitives; `primitives` is not empty.
-json mesh_json(const std::vector<const PrimitivePatches*>& primitives, bool no_indices) {
+Json mesh_json(const std::vector<const PrimitivePatches*>& primitives, bool no_indices) {
     Sums sums;
-    json polygons = json::array(), left_alone = json::array(), errors = json::array();
+    Json polygons = Json::array(), left_alone = Json::array(), errors = Json::array();
     for (const PrimitivePatches* p : primitives) {
         sums.add(*p);
         for (std::size_t i = 0; i < p->report.results.size(); ++i) polygons.push_back(patch_json(*p, i, no_indices));
-        for (auto& reason : reasons_json(*p)) left_alone.push_back(std::move(reason));
+        add_reasons(*p, left_alone);
         if (p->error)
             errors.push_back(
                 {{"primitive", p->primitive}, {"code", to_string(p->error->code)}, {"message", p->error->message}});
     }
-    json entry = sums.to_json();
+    Json entry = sums.to_json();
     entry["name"] = primitives[0]->name;
     entry["mesh"] = primitives[0]->mesh;
     entry["polygons"] = std::move(polygons);
@@ -175,9 +172,9 @@ void print_table(const ByMesh& meshes, const Sums& total, const std::vector<Prim
 }
 
 Result<void> write_report(const MeshRun& run, const ByMesh& meshes, const Sums& total) {
-    json entries = json::array();
+    Json entries = Json::array();
     for (const auto& primitives : meshes) entries.push_back(mesh_json(primitives, run.no_indices));
-    json summary = total.to_json();
+    Json summary = total.to_json();
     summary["meshes"] = meshes.size();
     return write_json(run.json, {{"file", assets::file_name(run.file)},
                                  {"method", run.method_name},

@@ -1,12 +1,10 @@
 // crofton verify: is what Crofton is built on true? One row a claim.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "commands.hpp"
+#include "json/json.hpp"
 #include "report.hpp"
 #include "verify/collide.hpp"
 #include "verify/cull.hpp"
@@ -50,22 +48,21 @@ int run(const Request& request) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, Outcome& outcome) {
+void add_verify_command(CommandLine& line) {
     auto request = std::make_shared<Request>();
-    CLI::App* command = app.add_subcommand("verify", "Check the claims Crofton is built on, one row each");
+    Command command = line.command("verify", "Check the claims Crofton is built on, one row each");
     std::vector<std::string> names;
     for (const Topic& topic : kTopics) names.emplace_back(topic.name);
-    command->add_option("topic", request->topic, "Only this topic; all when absent")->check(CLI::IsMember(names));
-    command->add_option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
-        ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1} << 40))
-        ->capture_default_str();
-    command->add_option("--seed", request->options.seed, "The same seed gives the same table, bit by bit")
-        ->capture_default_str();
+    command.option("topic", request->topic, "Only this topic; all when absent").one_of(names);
+    command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
+        .whole_between(1000, std::uint64_t{1} << 40)
+        .show_default();
+    command.option("--seed", request->options.seed, "The same seed gives the same table, bit by bit").show_default();
     command
-        ->add_option("--json", request->json_path,
-                     "Also write the rows as JSON to this file; - for standard output, instead of the table")
-        ->check(writable_file());
-    command->footer(
+        .option("--json", request->json_path,
+                "Also write the rows as JSON to this file; - for standard output, instead of the table")
+        .writable_file();
+    command.footer(
         "`holds` says whether the claim's sentence is borne out; sentences that begin \"wrong, must be rejected\" hold "
         "when the\n"
         "measurement rejects them at |z| > 4. Exit status: 0 all hold, 1 one does not, 2 bad usage.\n\n"
@@ -73,7 +70,7 @@ void add_verify_command(CLI::App& app, Outcome& outcome) {
         "  crofton verify\n"
         "  crofton verify lines --trials 1000000 --seed 7\n"
         "  crofton verify paper --json - | jq '.[] | select(.holds | not)'");
-    command->callback([request, &outcome] { outcome.status = run(*request); });
+    command.action([request] { return run(*request); });
 }
 
 }  // namespace crofton::cli

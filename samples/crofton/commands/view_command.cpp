@@ -1,8 +1,6 @@
 // `crofton view`: see what is culled, why, and what it costs.
-#include <CLI/CLI.hpp>
 #include <memory>
 
-#include "arguments.hpp"
 #include "commands.hpp"
 #include "frames_output.hpp"
 #include "pipeline/bounds.hpp"
@@ -60,41 +58,36 @@ constexpr const char* kExamples =
 
 }  // namespace
 
-void add_view_command(CLI::App& app, Outcome& outcome) {
+void add_view_command(CommandLine& line) {
     auto arguments = std::make_shared<ViewArguments>();
     viewer::ViewerOptions& options = arguments->options;
-    CLI::App* command =
-        app.add_subcommand("view", "Fly through a scene and see what is culled, why, and what it costs");
-    command->footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kExamples);
-    command->add_option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj or .wad file")
-        ->capture_default_str();
-    command->add_option("--map", options.scene.map, "which level of a WAD");
-    command->add_option("--seed", options.scene.seed, "of the town")->capture_default_str();
-    command->add_option("--instances", options.scene.instances, "of the town, roughly");
-    command->add_option("--scale", options.scale, "of texts and panels; as the display asks where absent")
-        ->check(CLI::Range(0.5f, 8.0f));
-    command->add_option("--resolution", options.settings.resolution, "draw this share of the pixels each way, enlarged")
-        ->check(CLI::Range(viewer::kMinResolution, 1.0))
-        ->capture_default_str();
-    command->add_option("--size", arguments->size, "of the window, as 1280x720")->capture_default_str();
-    command
-        ->add_option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
-        ->capture_default_str();
-    command->add_option("--cull", arguments->cull, "none, flat or tree")->capture_default_str();
-    command->add_option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
-    command->add_option("--after", options.frames, "quit after so many frames");
-    command->add_option("--screenshot", options.screenshot, "the last frame as PNG")->check(writable_file());
-    command->add_option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
-    command->add_option("--json", options.json, "statistics of all frames into this file, - for stdout")
-        ->check(writable_file());
-    command->add_option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
-        ->capture_default_str();
-    command->add_option("--device", options.device, "part of the Vulkan device's name, or cpu");
-    command->add_flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
-    command->add_flag("--no-window", arguments->no_window, "draw without any display");
-    command->callback([arguments, &outcome] {
+    Command command = line.command("view", "Fly through a scene and see what is culled, why, and what it costs");
+    command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kExamples);
+    command.option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("--map", options.scene.map, "which level of a WAD");
+    command.option("--seed", options.scene.seed, "of the town").show_default();
+    command.option("--instances", options.scene.instances, "of the town, roughly");
+    command.option("--scale", options.scale, "of texts and panels; as the display asks where absent").between(0.5, 8.0);
+    command.option("--resolution", options.settings.resolution, "draw this share of the pixels each way, enlarged")
+        .between(viewer::kMinResolution, 1.0)
+        .show_default();
+    command.option("--size", arguments->size, "of the window, as 1280x720").show_default();
+    command.option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+        .show_default();
+    command.option("--cull", arguments->cull, "none, flat or tree").show_default();
+    command.option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
+    command.option("--after", options.frames, "quit after so many frames");
+    command.option("--screenshot", options.screenshot, "the last frame as PNG").writable_file();
+    command.option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
+    command.option("--json", options.json, "statistics of all frames into this file, - for stdout").writable_file();
+    command.option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
+        .show_default();
+    command.option("--device", options.device, "part of the Vulkan device's name, or cpu");
+    command.flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
+    command.flag("--no-window", arguments->no_window, "draw without any display");
+    command.action([arguments] {
         const auto done = run(*arguments);
-        outcome.status = done ? kSuccess : report_error("", done.error());
+        return done ? kSuccess : report_error("", done.error());
     });
 }
 

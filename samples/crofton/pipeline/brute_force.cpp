@@ -8,7 +8,7 @@ namespace crofton::pipeline {
 namespace {
 
 // Twenty-odd roundings of 2^-53 relative to the largest number involved stay well below this.
-constexpr double kRounding = 1e-13;
+constexpr double kPlaneError = 1e-13;
 
 double size_of(const glm::dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -43,7 +43,7 @@ double rounding_of(const Frustum& frustum, std::span<const glm::dvec3> points) {
     double size = size_of(frustum.origin);
     for (const glm::dvec3& p : points) size = std::max(size, size_of(p));
     for (const Plane& plane : frustum.view()) size = std::max(size, std::abs(plane.offset));
-    return kRounding * size;
+    return kPlaneError * size;
 }
 
 Truth both(bool surely, bool possibly) {
@@ -104,7 +104,7 @@ Truth boxes_meet(const Obb& a, const Obb& b) {
     const double size = std::max({size_of(a.center), size_of(b.center), double(a.half_extents.x),
                                   double(a.half_extents.y), double(a.half_extents.z), double(b.half_extents.x),
                                   double(b.half_extents.y), double(b.half_extents.z)});
-    const double rounding = kRounding * size;
+    const double rounding = kPlaneError * size;
     bool unclear = false, skipped = false;
     double widest = -INFINITY;
     for (std::size_t i = 0; i < 6; ++i)

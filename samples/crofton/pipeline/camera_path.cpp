@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
+
+#include "json/json.hpp"
 
 namespace crofton::pipeline {
 namespace {
 
-using nlohmann::json;
 using std::numbers::pi;
 
 struct Frame {
@@ -81,21 +81,21 @@ Camera random_camera(Camera camera, const Aabb& bounds, std::mt19937_64& random)
     return camera;
 }
 
-Result<glm::dvec3> vector_from(const json& entry, const char* field, const glm::dvec3& otherwise, std::uint64_t item) {
-    if (!entry.contains(field)) return otherwise;
-    const json& value = entry[field];
-    if (!value.is_array() || value.size() != 3 ||
-        !std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); }))
+Result<glm::dvec3> vector_from(const Json& entry, const char* field, const glm::dvec3& otherwise, std::uint64_t item) {
+    const Json* value = entry.find(field);
+    if (value == nullptr) return otherwise;
+    const std::span<const Json> parts = value->elements();
+    if (parts.size() != 3 || !std::all_of(parts.begin(), parts.end(), [](const Json& v) { return v.is_number(); }))
         return fail(ErrorCode::parse, item, std::string("camera: ") + field + " must be three numbers");
-    return glm::dvec3(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
+    return glm::dvec3(parts[0].number(), parts[1].number(), parts[2].number());
 }
 
-Result<double> number_from(const json& entry, const char* field, double otherwise, std::uint64_t item) {
-    if (!entry.contains(field)) return otherwise;
-    const json& value = entry[field];
-    if (value.is_string() && value == "infinity") return std::numeric_limits<double>::infinity();
-    if (!value.is_number()) return fail(ErrorCode::parse, item, std::string("camera: ") + field + " must be a number");
-    return value.get<double>();
+Result<double> number_from(const Json& entry, const char* field, double otherwise, std::uint64_t item) {
+    const Json* value = entry.find(field);
+    if (value == nullptr) return otherwise;
+    if (value->text() == "infinity") return std::numeric_limits<double>::infinity();
+    if (!value->is_number()) return fail(ErrorCode::parse, item, std::string("camera: ") + field + " must be a number");
+    return value->number();
 }
 
 }  // namespace
@@ -187,18 +187,18 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
     return result;
 }
 
-json to_json(const Camera& camera) {
-    const auto vector = [](const glm::dvec3& v) { return json::array({v.x, v.y, v.z}); };
+Json to_json(const Camera& camera) {
+    const auto vector = [](const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); };
     return {{"position", vector(camera.position)},
             {"forward", vector(camera.forward)},
             {"up", vector(camera.up)},
             {"fov_y", camera.fov_y},
             {"aspect", camera.aspect},
             {"near", camera.near},
-            {"far", std::isinf(camera.far) ? json("infinity") : json(camera.far)}};
+            {"far", std::isinf(camera.far) ? Json("infinity") : Json(camera.far)}};
 }
 
-Result<Camera> camera_from_json(const json& entry, std::uint64_t item) {
+Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
     if (!entry.is_object()) return fail(ErrorCode::parse, item, "camera: an entry is not an object");
     Camera camera;
     for (auto [field, value] : {std::pair{"position", &camera.position}, std::pair{"forward", &camera.forward},
@@ -220,28 +220,28 @@ Result<Camera> camera_from_json(const json& entry, std::uint64_t item) {
 Result<CameraPath> load_camera_path(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return fail(ErrorCode::io, kNoItem, path + ": cannot open");
-    const json document = json::parse(file, nullptr, false);
-    if (document.is_discarded()) return fail(ErrorCode::parse, kNoItem, path + ": not valid JSON");
-    const json* list = &document;
-    if (document.is_object()) {
-        if (document.contains("cameras")) list = &document["cameras"];
-        if (document.contains("frames")) list = &document["frames"];
-    }
-    if (!list->is_array() || list->empty())
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    Json document;
+    if (!parse_json(text, document)) return fail(ErrorCode::parse, kNoItem, path + ": not valid JSON");
+    const Json* list = &document;
+    for (const char* name : {"cameras", "frames"})
+        if (const Json* found = document.find(name)) list = found;
+    if (list->elements().empty())
         return fail(ErrorCode::parse, kNoItem,
                     path + ": no cameras; expected an array, {\"cameras\": […]} or the JSON of 'crofton frames'");
     CameraPath result;
-    for (const json& entry : *list) {
+    for (const Json& entry : list->elements()) {
         const std::size_t number = result.cameras.size();
-        const bool wrapped = entry.is_object() && entry.contains("camera");
-        auto camera = camera_from_json(wrapped ? entry["camera"] : entry, number);
+        const Json* wrapped = entry.find("camera");
+        auto camera = camera_from_json(wrapped != nullptr ? *wrapped : entry, number);
         if (!camera) return fail(camera.error().code, camera.error().item, path + ": " + camera.error().message);
         result.cameras.push_back(*camera);
         result.scene_frames.push_back(static_cast<std::uint32_t>(number));
-        if (!entry.contains("scene_frame")) continue;
-        if (!entry["scene_frame"].is_number_unsigned())
+        const Json* scene_frame = entry.find("scene_frame");
+        if (scene_frame == nullptr) continue;
+        if (!scene_frame->is_number_unsigned())
             return fail(ErrorCode::parse, number, path + ": scene_frame must be a whole number");
-        result.scene_frames.back() = entry["scene_frame"].get<std::uint32_t>();
+        result.scene_frames.back() = static_cast<std::uint32_t>(scene_frame->whole());
     }
     return result;
 }

@@ -5,10 +5,11 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace crofton::pipeline {
 
@@ -37,10 +38,10 @@ struct CameraPath {
                                                   std::span<const glm::dvec3> walk);
 
 // {position, forward, up, fov_y, aspect, near, far}; far is the string "infinity" where it is infinite.
-[[nodiscard]] nlohmann::json to_json(const Camera& camera);
+[[nodiscard]] Json to_json(const Camera& camera);
 // Fields that are absent keep Camera's defaults. Errors: wrong types, invalid values (validate(Camera)), the entry's
 // number as item.
-[[nodiscard]] Result<Camera> camera_from_json(const nlohmann::json& entry, std::uint64_t item);
+[[nodiscard]] Result<Camera> camera_from_json(const Json& entry, std::uint64_t item);
 
 // A recorded path: an array of cameras, {"cameras": […]}, or the output of `crofton frames --json`. An entry may have
 // "scene_frame"; where it has none, it shows the scene frame of its own number.

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "camera_path.hpp"
+#include "json/json.hpp"
 
 namespace crofton::pipeline {
 namespace {
-
-using nlohmann::json;
 
 using Column = StatisticsColumn;
 
@@ -73,14 +71,14 @@ std::span<const StatisticsColumn> statistics_columns() {
     return kColumns;
 }
 
-json to_json(const FrameStatistics& f, bool with_ids) {
-    json gpu = nullptr;
+Json to_json(const FrameStatistics& f, bool with_ids) {
+    Json gpu = nullptr;
     if (f.gpu)
         gpu = {{"input_assembly_primitives", f.gpu->input_assembly_primitives},
                {"clipping_invocations", f.gpu->clipping_invocations},
                {"clipping_primitives", f.gpu->clipping_primitives},
                {"samples_passed", f.gpu->samples_passed}};
-    json entry = {{"index", f.index},
+    Json entry = {{"index", f.index},
                   {"camera", to_json(f.camera)},
                   {"instances", f.instances},
                   {"visible", f.visible},
@@ -110,8 +108,8 @@ json to_json(const FrameStatistics& f, bool with_ids) {
     return entry;
 }
 
-json summary_json(std::span<const FrameStatistics> frames, const std::optional<Verification>& verification) {
-    json summary = {{"frames", frames.size()}};
+Json summary_json(std::span<const FrameStatistics> frames, const std::optional<Verification>& verification) {
+    Json summary = {{"frames", frames.size()}};
     const double count = static_cast<double>(std::max<std::size_t>(1, frames.size()));
     for (const Column& column : kColumns) {
         if (needs_gpu(column) && !drawn(frames)) continue;

@@ -2,12 +2,13 @@
 #pragma once
 #include <crofton/geometry/camera.hpp>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace crofton::pipeline {
 
@@ -67,9 +68,9 @@ struct StatisticsColumn {
 };
 [[nodiscard]] std::span<const StatisticsColumn> statistics_columns();
 
-[[nodiscard]] nlohmann::json to_json(const FrameStatistics& frame, bool with_ids);
-[[nodiscard]] nlohmann::json summary_json(std::span<const FrameStatistics> frames,
-                                          const std::optional<Verification>& verification);
+[[nodiscard]] Json to_json(const FrameStatistics& frame, bool with_ids);
+[[nodiscard]] Json summary_json(std::span<const FrameStatistics> frames,
+                                const std::optional<Verification>& verification);
 [[nodiscard]] std::string to_csv(std::span<const FrameStatistics> frames);
 
 }  // namespace crofton::pipeline

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "json/json.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -84,10 +85,10 @@ std::string table_of(const std::vector<VerifyRow>& rows) {
     return table;
 }
 
-nlohmann::json json_of(const std::vector<VerifyRow>& rows) {
-    nlohmann::json result = nlohmann::json::array();
+Json json_of(const std::vector<VerifyRow>& rows) {
+    Json result = Json::array();
     for (const VerifyRow& r : rows) {
-        nlohmann::json z = nullptr;
+        Json z = nullptr;
         if (std::isfinite(r.z)) z = r.z;
         result.push_back({{"claim", r.claim},
                           {"source", r.source},

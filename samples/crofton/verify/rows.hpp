@@ -1,9 +1,10 @@
 // What `crofton verify` is made of: one row a claim, with what was predicted, what was measured, and the verdict.
 #pragma once
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "json/json.hpp"
 
 namespace crofton::cli {
 
@@ -54,6 +55,6 @@ struct Share {
 // An aligned table for people, and an array of {claim, source, predicted, measured, standard_error, z, holds}, and
 // cases where they were counted; z is null where it is not finite.
 [[nodiscard]] std::string table_of(const std::vector<VerifyRow>& rows);
-[[nodiscard]] nlohmann::json json_of(const std::vector<VerifyRow>& rows);
+[[nodiscard]] Json json_of(const std::vector<VerifyRow>& rows);
 
 }  // namespace crofton::cli

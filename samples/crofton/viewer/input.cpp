@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "assets/file.hpp"
+#include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "session.hpp"
 
@@ -154,7 +154,7 @@ void Session::perform(const Action& action) {
             eye_.look(action.camera);
             break;
         case Action::Kind::set:
-            for (const auto& [name, value] : action.set.items())
+            for (const auto& [name, value] : action.set.members())
                 if (auto set = set_switch(settings_, name, value); !set) report(set.error());
             break;
         case Action::Kind::screenshot:
@@ -189,13 +189,13 @@ void Session::toggle_recording() {
         recording_ = {};
         return note("recording the camera's path: R stops and saves it");
     }
-    nlohmann::json cameras = nlohmann::json::array();
+    Json cameras = Json::array();
     for (std::size_t i = 0; i < recording_.cameras.size(); ++i) {
         cameras.push_back(pipeline::to_json(recording_.cameras[i]));
         cameras.back()["scene_frame"] = recording_.scene_frames[i];
     }
     const std::string file = options_.output_folder + "/camera_path.json";
-    const auto written = assets::write_file(file, nlohmann::json{{"cameras", std::move(cameras)}}.dump(1) + "\n");
+    const auto written = assets::write_file(file, Json{{"cameras", std::move(cameras)}}.dump(1) + "\n");
     if (!written) return report(written.error());
     note("saved " + file + ": " + std::to_string(recording_.cameras.size()) + " cameras");
     path_ = recording_;

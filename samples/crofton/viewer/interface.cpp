@@ -88,21 +88,20 @@ Result<void> Session::draw_interface() {
 
 Result<void> Session::finish() {
     if (options_.json.empty()) return {};
-    nlohmann::json document = journal_.json();
+    Json document = journal_.json();
     document["scene"] = {{"name", stage_->source().name},
                          {"nodes", stage_->scene().node_count()},
                          {"instances", stage_->scene().instance_count()},
                          {"triangles", stage_->triangle_count()}};
     document["device"] = device_->name();
     document["counts_exactly"] = device_->counts_exactly();
-    document["validation_messages"] = nlohmann::json::array();
+    document["validation_messages"] = Json::array();
     for (const std::string& message : lost_messages_) document["validation_messages"].push_back(message);
     for (const std::string& message : device_->validation_messages())
         document["validation_messages"].push_back(message);
     document["settings"] = to_json(settings_);
     document["pictures"] = pictures_;
-    return assets::write_file(options_.json,
-                              document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    return assets::write_file(options_.json, document.dump(1) + "\n");
 }
 
 }  // namespace crofton::viewer

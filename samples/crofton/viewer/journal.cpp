@@ -1,7 +1,8 @@
 #include "journal.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+
+#include "json/json.hpp"
 
 namespace crofton::viewer {
 
@@ -45,11 +46,11 @@ std::array<float, 20> Journal::frame_time_histogram() const {
     return bins;
 }
 
-nlohmann::json Journal::json() const {
-    nlohmann::json frames = nlohmann::json::array();
+Json Journal::json() const {
+    Json frames = Json::array();
     std::vector<pipeline::FrameStatistics> plain;
     for (const JournalEntry& entry : entries_) {
-        nlohmann::json row = pipeline::to_json(entry.frame, false);
+        Json row = pipeline::to_json(entry.frame, false);
         row["frame_us"] = entry.frame_us;
         row["ui_us"] = entry.ui_us;
         row["scene_frame"] = entry.scene_frame;
@@ -66,7 +67,7 @@ std::string Journal::csv() const {
 }
 
 std::string Journal::chrome_trace() const {
-    nlohmann::json events = nlohmann::json::array();
+    Json events = Json::array();
     double start = 0.0;
     for (const JournalEntry& entry : entries_) {
         const auto span = [&](const char* name, double begin, double length) {
@@ -90,7 +91,7 @@ std::string Journal::chrome_trace() const {
                           {"args", {{"visible", frame.visible}, {"triangles passed", frame.triangles_passed}}}});
         start += std::max(entry.frame_us, at - start);
     }
-    return nlohmann::json{{"traceEvents", std::move(events)}, {"displayTimeUnit", "ms"}}.dump();
+    return Json{{"traceEvents", std::move(events)}, {"displayTimeUnit", "ms"}}.dump();
 }
 
 }  // namespace crofton::viewer

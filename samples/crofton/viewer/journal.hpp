@@ -1,10 +1,10 @@
 // What happened, frame by frame: for the plots, and for files to take away.
 #pragma once
 #include <array>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "pipeline/frame_statistics.hpp"
 
 namespace crofton::viewer {
@@ -30,7 +30,7 @@ class Journal {
     // How many of the last kHistory frames took 0–5, 5–10, … ms; the last bin holds all beyond.
     [[nodiscard]] std::array<float, 20> frame_time_histogram() const;
 
-    [[nodiscard]] nlohmann::json json() const;  // {"frames": […], "summary": {…}}
+    [[nodiscard]] Json json() const;  // {"frames": […], "summary": {…}}
     [[nodiscard]] std::string csv() const;
     [[nodiscard]] std::string chrome_trace() const;  // for chrome://tracing and Perfetto
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "pipeline/camera_path.hpp"
-#include "pipeline/walk.hpp"
+#include "pipeline/pedestrian_path.hpp"
 #include "session.hpp"
 #include "shape_colors.hpp"
 
@@ -177,7 +177,7 @@ Result<void> Session::load_replay() {
     path.frames = options_.frames > 0 ? options_.frames : built_in ? 600 : 0;
     path.aspect = static_cast<double>(options_.width) / options_.height;
     std::vector<glm::dvec3> walk = stage_->source().walk;
-    if (walk.empty() && path.kind == "street") walk = pipeline::find_walk(stage_->scene(), stage_->focus());
+    if (walk.empty() && path.kind == "street") walk = pipeline::find_pedestrian_path(stage_->scene(), stage_->focus());
     auto made = pipeline::make_camera_path(path, stage_->focus(), walk);
     if (!made) return tl::unexpected(std::move(made.error()));
     path_ = std::move(*made);

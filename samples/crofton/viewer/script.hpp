@@ -1,10 +1,10 @@
 // What an unattended run does, and when: keys, cameras, switches, pictures.
 #pragma once
 #include <crofton/geometry/camera.hpp>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "json/json.hpp"
 #include "window.hpp"
 
 namespace crofton::viewer {
@@ -12,11 +12,11 @@ namespace crofton::viewer {
 struct Action {
     enum class Kind { event, camera, set, screenshot, click, resize, lose_device, quit } kind = Kind::event;
     std::uint32_t frame = 0;
-    Event event;         // event: a key, a dropped file or a display's scale
-    Camera camera;       // camera
-    nlohmann::json set;  // set: names to values, already tried on a copy of the settings
-    std::string file;    // screenshot
-    glm::ivec2 at{0};    // click: pixels from the top left; resize: the new size
+    Event event;       // event: a key, a dropped file or a display's scale
+    Camera camera;     // camera
+    Json set;          // set: names to values, already tried on a copy of the settings
+    std::string file;  // screenshot
+    glm::ivec2 at{0};  // click: pixels from the top left; resize: the new size
 };
 
 // {"events": [{"frame": 3, "key": "F"}, {"frame": 4, "set": {"coloring": "verdict"}}, {"frame": 5, "camera": {…}},

@@ -226,10 +226,10 @@ Result<void> Session::save_screenshots() {
             report(written.error());
             continue;
         }
-        nlohmann::json tints = nlohmann::json::array();
+        Json tints = Json::array();
         for (const Painter::Count& tint : painter_.counts())
             tints.push_back({{"name", tint.name}, {"instances", tint.instances}});
-        nlohmann::json views = nlohmann::json::array();
+        Json views = Json::array();
         for (const Cascade& cascade : cascades_) views.push_back(cascade.visible);
         pictures_.push_back({{"file", file},
                              {"frame", frame_index_},
@@ -249,7 +249,7 @@ Result<void> Session::save_screenshots() {
                              {"lines", lines_.vertices().size() / 2}});
         if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
         if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;
-        pictures_.back()["messages"] = nlohmann::json::array();
+        pictures_.back()["messages"] = Json::array();
         for (const Notice& notice : notices_) pictures_.back()["messages"].push_back(notice.text);
     }
     screenshots_.clear();

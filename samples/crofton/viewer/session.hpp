@@ -4,10 +4,10 @@
 #include <crofton/cull/visible_set.hpp>
 #include <deque>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "eye.hpp"
 #include "journal.hpp"
+#include "json/json.hpp"
 #include "overlay.hpp"
 #include "painter.hpp"
 #include "panels.hpp"
@@ -127,7 +127,7 @@ class Session {
     std::optional<bool> folded_;
     glm::dvec2 cursor_{0.0};
     std::vector<std::string> screenshots_;  // to be taken this turn
-    nlohmann::json pictures_ = nlohmann::json::array();
+    Json pictures_ = Json::array();
     render::Image image_;
 };
 

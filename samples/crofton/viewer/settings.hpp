@@ -2,9 +2,9 @@
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "json/json.hpp"
 #include "pipeline/bounds.hpp"
 #include "pipeline/pipeline.hpp"
 
@@ -59,7 +59,7 @@ struct Settings {
 // One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "other_bounds_kind",
 // "other_cull", "other_triangulation", "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or
 // range; nothing is changed then.
-[[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const nlohmann::json& value);
-[[nodiscard]] nlohmann::json to_json(const Settings& settings);
+[[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const Json& value);
+[[nodiscard]] Json to_json(const Settings& settings);
 
 }  // namespace crofton::viewer

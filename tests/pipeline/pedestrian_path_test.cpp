@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "pipeline/camera_path.hpp"
-#include "pipeline/walk.hpp"
+#include "pipeline/pedestrian_path.hpp"
 
 using namespace crofton;
 using namespace crofton::pipeline;
@@ -22,16 +22,16 @@ void add_floor(scene::Scene& scene, double height, float half = 10.0f) {
 
 }  // namespace
 
-TEST_SUITE("pipeline/walk") {
+TEST_SUITE("pipeline/pedestrian_path") {
     TEST_CASE("an empty scene has no walk") {
         scene::Scene scene;
-        CHECK(find_walk(scene, focus_of(scene)).empty());
+        CHECK(find_pedestrian_path(scene, focus_of(scene)).empty());
     }
 
     TEST_CASE("one walks on the lowest floor with room to stand, not in the crawl space below it") {
         scene::Scene scene;
         for (const double height : {0.0, 0.01, 6.0}) add_floor(scene, height);
-        const auto walk = find_walk(scene, focus_of(scene));
+        const auto walk = find_pedestrian_path(scene, focus_of(scene));
         REQUIRE(walk.size() > 10);
         for (const glm::dvec3& p : walk) {
             CHECK(p.y > 0.01);
@@ -42,7 +42,7 @@ TEST_SUITE("pipeline/walk") {
     TEST_CASE("where there is no floor there is no path") {
         scene::Scene scene;
         add_floor(scene, 0.0, 1.0f);
-        const auto walk = find_walk(scene, Aabb{{-10, 0, -1}, {10, 3, 1}});
+        const auto walk = find_pedestrian_path(scene, Aabb{{-10, 0, -1}, {10, 3, 1}});
         CHECK_FALSE(walk.empty());
         for (const glm::dvec3& p : walk) CHECK(std::abs(p.x) <= 1.0);
     }

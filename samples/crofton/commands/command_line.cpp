@@ -1,10 +1,9 @@
-#include "arguments.hpp"
+#include "command_line.hpp"
 
-#include <unistd.h>
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
-#include <filesystem>
+#include <iostream>
 
 #include "assets/file.hpp"
 
@@ -26,6 +25,21 @@ std::size_t distance(const std::string& a, const std::string& b) {
                 d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
         }
     return d[a.size()][b.size()];
+}
+
+// Of `known`, the word that `typed` was most likely meant to be: at most two letters added, left out, replaced or
+// swapped, and fewer than half of them. Empty where there is none.
+std::string nearest_word(const std::string& typed, const std::vector<std::string>& known) {
+    std::string best;
+    std::size_t least = 3;
+    for (const std::string& word : known) {
+        const std::size_t d = distance(typed, word);
+        if (d < least && 2 * d < word.size()) {
+            least = d;
+            best = word;
+        }
+    }
+    return best;
 }
 
 std::string did_you_mean(const std::string& word) {
@@ -94,29 +108,15 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, const std:
     return error.what();
 }
 
-}  // namespace
-
-std::string nearest_word(const std::string& typed, const std::vector<std::string>& known) {
-    std::string best;
-    std::size_t least = 3;
-    for (const std::string& word : known) {
-        const std::size_t d = distance(typed, word);
-        if (d < least && 2 * d < word.size()) {
-            least = d;
-            best = word;
-        }
-    }
-    return best;
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
+    const CLI::App& command = chosen(app);
+    const std::string name = &command == &app ? "crofton" : "crofton " + command.get_name();
+    return "crofton: " + reason(app, error, arguments) + "\n'" + name + " --help' lists " +
+           (&command == &app ? "the sub-commands.\n" : "its options, with examples.\n");
 }
 
-CLI::Validator writable_file() {
-    return {[](std::string& path) {
-                const auto checked = assets::check_writable(path);
-                return checked ? std::string{} : checked.error().message;
-            },
-            ""};
-}
-
+// After all sub-commands are added: options that take a number without sign refuse one with a minus, and one that has
+// too many digits. (CLI11 2.1 reads -1 as 2⁶⁴ − 1, and 10²⁰ as well.)
 void demand_whole_numbers(CLI::App& app) {
     const CLI::Validator whole(
         [](std::string& text) {
@@ -131,6 +131,7 @@ void demand_whole_numbers(CLI::App& app) {
             if (option->get_type_name().compare(0, 4, "UINT") == 0) option->check(whole);
 }
 
+// `crofton help` and `crofton help fit` are `crofton --help` and `crofton fit --help`.
 std::vector<std::string> with_help_as_option(int argc, char** argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
     if (!arguments.empty() && arguments.front() == "help") {
@@ -140,11 +141,122 @@ std::vector<std::string> with_help_as_option(int argc, char** argv) {
     return arguments;
 }
 
-std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
-    const CLI::App& command = chosen(app);
-    const std::string name = &command == &app ? "crofton" : "crofton " + command.get_name();
-    return "crofton: " + reason(app, error, arguments) + "\n'" + name + " --help' lists " +
-           (&command == &app ? "the sub-commands.\n" : "its options, with examples.\n");
+}  // namespace
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+
+Option& Option::show_default() {
+    option_->capture_default_str();
+    return *this;
+}
+
+Option& Option::whole_between(std::uint64_t low, std::uint64_t high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+
+Option& Option::between(double low, double high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+
+Option& Option::positive() {
+    option_->check(CLI::PositiveNumber);
+    return *this;
+}
+
+Option& Option::not_negative() {
+    option_->check(CLI::NonNegativeNumber);
+    return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& words) {
+    option_->check(CLI::IsMember(words));
+    return *this;
+}
+
+Option& Option::writable_file() {
+    option_->check(CLI::Validator(
+        [](std::string& path) {
+            const auto checked = assets::check_writable(path);
+            return checked ? std::string{} : checked.error().message;
+        },
+        ""));
+    return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+    option_->excludes(other.option_);
+    return *this;
+}
+
+bool Option::given() const {
+    return option_->count() > 0;
+}
+
+Option Command::option(const char* name, std::string& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::vector<std::string>& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::uint32_t& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::uint64_t& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::optional<std::uint32_t>& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, int& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, float& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, double& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::flag(const char* name, bool& target, const std::string& help) {
+    return Option(app_->add_flag(name, target, help));
+}
+
+void Command::footer(const std::string& text) {
+    app_->footer(text);
+}
+
+void Command::action(std::function<int()> action) {
+    app_->callback([action = std::move(action), status = status_] { *status = action(); });
+}
+
+CommandLine::CommandLine(const char* description, const std::string& version)
+    : app_(std::make_unique<CLI::App>(description, "crofton")) {
+    app_->set_version_flag("--version", "crofton " + version);
+    app_->require_subcommand(1);
+    app_->fallthrough(false);
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::command(const char* name, const char* description) {
+    return {app_->add_subcommand(name, description), &status_};
+}
+
+int CommandLine::run(int argc, char** argv) {
+    demand_whole_numbers(*app_);
+    const std::vector<std::string> arguments = with_help_as_option(argc, argv);
+    try {
+        app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app_->exit(error);
+        std::cerr << usage_error(*app_, error, arguments);
+        return kBadInput;
+    }
+    return status_;
 }
 
 }  // namespace crofton::cli

@@ -8,6 +8,6 @@ namespace crofton::pipeline {
 
 // A path through the middle of `focus` along its longer side, at eye height above the lowest floor with room to stand;
 // points without any floor are left out. y is up. Looks at every triangle once.
-[[nodiscard]] std::vector<glm::dvec3> find_walk(const scene::Scene& scene, const Aabb& focus);
+[[nodiscard]] std::vector<glm::dvec3> find_pedestrian_path(const scene::Scene& scene, const Aabb& focus);
 
 }  // namespace crofton::pipeline
