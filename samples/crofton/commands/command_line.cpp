@@ -212,9 +212,6 @@ Option Command::option(const char* name, std::uint64_t& target, const std::strin
 Option Command::option(const char* name, std::optional<std::uint32_t>& target, const std::string& help) {
     return Option(app_->add_option(name, target, help));
 }
-Option Command::option(const char* name, int& target, const std::string& help) {
-    return Option(app_->add_option(name, target, help));
-}
 Option Command::option(const char* name, float& target, const std::string& help) {
     return Option(app_->add_option(name, target, help));
 }

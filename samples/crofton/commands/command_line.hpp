@@ -50,7 +50,6 @@ class Command {
     Option option(const char* name, std::uint32_t& target, const std::string& help);
     Option option(const char* name, std::uint64_t& target, const std::string& help);
     Option option(const char* name, std::optional<std::uint32_t>& target, const std::string& help);
-    Option option(const char* name, int& target, const std::string& help);
     Option option(const char* name, float& target, const std::string& help);
     Option option(const char* name, double& target, const std::string& help);
     Option flag(const char* name, bool& target, const std::string& help);

@@ -20,7 +20,7 @@ using radiosity::LineMethod;
 struct Options {
     std::string scene = "town", map, json;
     std::uint64_t blocks = 32, seed = 1;
-    int repeats = 12;
+    std::uint32_t repeats = 12;
 };
 
 // Sums over the lines of one estimate.
@@ -68,8 +68,8 @@ Json compare(const char* method, sampling::Sequence sequence, double surface, co
     double squares = 0.0;
     Seen all;
     const auto start = std::chrono::steady_clock::now();
-    for (int r = 0; r < options.repeats; ++r) {
-        const Seen seen = look(options.seed + static_cast<std::uint64_t>(r));
+    for (std::uint32_t r = 0; r < options.repeats; ++r) {
+        const Seen seen = look(options.seed + r);
         squares += std::pow(seen.crossings * seen.surface_area / (2.0 * seen.lines) / surface - 1.0, 2.0);
         all.lines += seen.lines;
         all.crossings += seen.crossings;
