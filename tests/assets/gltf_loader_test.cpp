@@ -4,11 +4,14 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "messages.hpp"
 #include "test_files.hpp"
 
 using namespace crofton;
 using test_files::glb;
 using test_files::gltf_json;
+using test_files::message;
+using test_files::says;
 using test_files::TemporaryFile;
 
 namespace {
@@ -16,14 +19,6 @@ namespace {
 Result<assets::SceneSource> load_glb(const std::string& json) {
     const TemporaryFile file("scene.glb", glb(json));
     return assets::load_scene(file.path());
-}
-
-std::string message(const Result<assets::SceneSource>& source) {
-    return source ? "loaded" : source.error().message;
-}
-
-bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 const std::string kShared = std::string(CROFTON_SHARED_DATA) + "/scenes/";

@@ -302,7 +302,7 @@ TEST_SUITE("viewer/journal") {
     TEST_CASE("an empty journal has no history, and exports valid files all the same") {
         const Journal journal;
         CHECK(journal.history([](const JournalEntry& e) { return e.frame_us; }).empty());
-        CHECK(journal.json()["frames"].empty());
+        CHECK(journal.json().find("frames")->size() == 0);
         CHECK(nlohmann::json::parse(journal.chrome_trace())["traceEvents"].empty());
     }
     TEST_CASE("history keeps the last frames, bins count them, and the trace's spans do not overlap") {
