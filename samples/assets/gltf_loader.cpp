@@ -121,10 +121,7 @@ class GltfReader {
         const double length = glm::length(rotation);
         if (!(length > 1e-6) || !std::isfinite(length))
             return fail(ErrorCode::degenerate, kNoItem, "its rotation is no quaternion of length one");
-        const scene::Transform result =
-            scene::from_trs(vector(node.translation, 0.0), rotation / length, vector(node.scale, 1.0));
-        if (auto valid = scene::validate(result); !valid) return tl::unexpected(valid.error());
-        return result;
+        return scene::from_trs(vector(node.translation, 0.0), rotation / length, vector(node.scale, 1.0));
     }
 
     // One scene mesh per primitive, made when first used.

@@ -40,7 +40,7 @@ struct SceneSource {
 };
 
 // "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
-// item in it and the reason: missing or damaged file, unknown extension, unknown map, NaN or singular matrices, indices
+// item in it and the reason: missing or damaged file, unknown extension, unknown map, NaN or huge matrices, indices
 // out of range, nothing to draw.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 

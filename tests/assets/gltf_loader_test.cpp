@@ -31,17 +31,25 @@ const std::string kShared = std::string(CROFTON_SHARED_DATA) + "/scenes/";
 }  // namespace
 
 TEST_SUITE("assets/gltf_loader") {
-    TEST_CASE("nodes with NaN, singular, projective or damaged transforms are named") {
-        const std::string flat = message(load_glb(gltf_json("[{\"name\":\"flat\",\"mesh\":0,\"scale\":[1,0,1]}]")));
-        CHECK(says(flat, "scene.glb"));
-        CHECK(says(flat, "node 0 'flat'"));
-        CHECK(says(flat, "singular"));
+    TEST_CASE("nodes with NaN, projective or damaged transforms are named") {
+        const std::string huge = message(load_glb(gltf_json("[{\"name\":\"huge\",\"mesh\":0,\"scale\":[1,1e16,1]}]")));
+        CHECK(says(huge, "scene.glb"));
+        CHECK(says(huge, "node 0 'huge'"));
+        CHECK(says(huge, "more than 1e15"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"matrix\":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]}]"))),
                    "projective"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"rotation\":[0,0,0,0]}]"))), "quaternion"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[1e300,0,0]}]"))), "exceeds"));
         CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[1e999,0,0]}]")).has_value());
         CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[NaN,0,0]}]")).has_value());
+    }
+
+    TEST_CASE("a scale that flattens is data: flat things are flat, a zero scale hides") {
+        auto source = load_glb(gltf_json("[{\"mesh\":0,\"scale\":[1,0,1]},{\"mesh\":0,\"scale\":[0,0,0]}]"));
+        REQUIRE(source.has_value());
+        source->scene.update();
+        CHECK(source->scene.layer_masks()[0] == ~0u);
+        CHECK(source->scene.layer_masks()[1] == 0);
     }
 
     TEST_CASE("cycles, missing nodes, meshes and accessors are named") {
