@@ -45,11 +45,13 @@ TEST_SUITE("assets/gltf_loader") {
     }
 
     TEST_CASE("a scale that flattens is data: flat things are flat, a zero scale hides") {
-        auto source = load_glb(gltf_json("[{\"mesh\":0,\"scale\":[1,0,1]},{\"mesh\":0,\"scale\":[0,0,0]}]"));
-        REQUIRE(source.has_value());
-        source->scene.update();
-        CHECK(source->scene.layer_masks()[0] == ~0u);
-        CHECK(source->scene.layer_masks()[1] == 0);
+        for (const bool hidden : {false, true}) {
+            const std::string scale = hidden ? "[0,0,0]" : "[1,0,1]";
+            auto source = load_glb(gltf_json("[{\"mesh\":0,\"scale\":" + scale + "}]"));
+            REQUIRE(source.has_value());
+            source->scene.update();
+            CHECK(source->scene.layer_masks()[0] == (hidden ? 0 : ~0u));
+        }
     }
 
     TEST_CASE("cycles, missing nodes, meshes and accessors are named") {

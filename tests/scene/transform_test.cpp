@@ -1,12 +1,13 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/expansion.hpp>
 #include <crofton/scene/transform.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <random>
+
+#include "oracle/exact_images.hpp"
 
 using namespace crofton;
 using namespace crofton::scene;
@@ -14,30 +15,6 @@ using namespace crofton::scene;
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// Whether linear·v + translation, taken in reals, lies in the box: the exact image is the sum of doubles below, and the
-// box is the set of |det(d, a_i, a_j)| ≤ h_k·|det(a)|. Exact in expansions throughout.
-bool contains_exact_image(const Obb& box, const Transform& t, const glm::dvec3& v) {
-    const auto component = [&](int i) {
-        return exact_product(t.linear[0][i], v.x) + exact_product(t.linear[1][i], v.y) +
-               exact_product(t.linear[2][i], v.z) + (exact(t.translation[i]) - exact(box.center[i]));
-    };
-    const std::array<decltype(component(0)), 3> d = {component(0), component(1), component(2)};
-    const auto cross_component = [&](const glm::dvec3& a, const glm::dvec3& b, int i) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        return exact(a[j] * b[k]) - exact(a[k] * b[j]);
-    };
-    for (int k = 0; k < 3; ++k) {
-        const glm::dvec3 a(box.axes[(k + 1) % 3]), b(box.axes[(k + 2) % 3]), c(box.axes[k]);
-        const auto nx = cross_component(a, b, 0), ny = cross_component(a, b, 1), nz = cross_component(a, b, 2);
-        auto distance = d[0] * nx + d[1] * ny + d[2] * nz;
-        auto reach = (nx * c.x + ny * c.y + nz * c.z) * static_cast<double>(box.half_extents[k]);
-        if (distance.sign() < 0) distance = -distance;
-        if (reach.sign() < 0) reach = -reach;
-        if ((distance - reach).sign() > 0) return false;
-    }
-    return true;
-}
 
 struct Random {
     std::mt19937 engine;
@@ -160,7 +137,7 @@ TEST_SUITE("scene/transform") {
             t.linear = random.rotation() * flat * (trial % 2 == 0 ? glm::dmat3(1.0) : random.rotation());
             const auto image = transformed_box(t, box, measure::minimal_perimeter());
             REQUIRE(image.has_value());
-            for (int p = 0; p < 4; ++p) CHECK(contains_exact_image(*image, t, vertex_in(box, random, p < 3)));
+            for (int p = 0; p < 4; ++p) CHECK(testing::contains_exact_image(*image, t, vertex_in(box, random, p < 3)));
             glm::vec3 h = image->half_extents;
             std::sort(&h[0], &h[0] + 3);
             const float size = static_cast<float>(glm::length(box.half_extents)) * 2.0f;
@@ -195,7 +172,7 @@ TEST_SUITE("scene/transform") {
             const Transform t = random_transform(random, trial % 4);
             const auto image = transformed_box(t, box, measure::minimal_perimeter());
             REQUIRE(image.has_value());
-            for (int p = 0; p < 4; ++p) CHECK(contains_exact_image(*image, t, vertex_in(box, random, p < 3)));
+            for (int p = 0; p < 4; ++p) CHECK(testing::contains_exact_image(*image, t, vertex_in(box, random, p < 3)));
             CHECK(glm::determinant(image->axes) > 0.0f);
         }
     }

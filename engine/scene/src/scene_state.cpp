@@ -38,16 +38,26 @@ void Scene::State::link_to_parent(NodeId node, NodeId parent) {
     Node& n = nodes[node];
     n.parent = parent;
     if (parent == kNone) return;
-    n.next_sibling = std::exchange(nodes[parent].first_child, node);
-    if (n.next_sibling != kNone) nodes[n.next_sibling].previous_sibling = node;
+    NodeId& first = nodes[parent].first_child;
+    if (first == kNone) {
+        first = n.previous_sibling = node;
+        return;
+    }
+    NodeId& last = nodes[first].previous_sibling;
+    n.previous_sibling = last;
+    nodes[last].next_sibling = node;
+    last = node;
 }
 
 void Scene::State::unlink_from_parent(NodeId node) {
     Node& n = nodes[node];
     if (n.parent == kNone) return;
-    (n.previous_sibling == kNone ? nodes[n.parent].first_child : nodes[n.previous_sibling].next_sibling) =
-        n.next_sibling;
-    if (n.next_sibling != kNone) nodes[n.next_sibling].previous_sibling = n.previous_sibling;
+    NodeId& first = nodes[n.parent].first_child;
+    if (n.next_sibling != kNone)
+        nodes[n.next_sibling].previous_sibling = n.previous_sibling;
+    else
+        nodes[first].previous_sibling = n.previous_sibling;
+    (first == node ? first : nodes[n.previous_sibling].next_sibling) = n.next_sibling;
     n.parent = n.next_sibling = n.previous_sibling = kNone;
 }
 

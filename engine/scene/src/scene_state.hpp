@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bit_set.hpp"
+#include "box_kernel.hpp"
 #include "topological_order.hpp"
 
 namespace crofton::scene {
@@ -17,7 +18,8 @@ inline constexpr std::uint32_t kRemoved = kNone;
 struct Node {
     NodeId parent = kNone;
     NodeId first_child = kNone;
-    NodeId next_sibling = kNone, previous_sibling = kNone;
+    NodeId next_sibling = kNone;
+    NodeId previous_sibling = kNone;  // of the first child: the last one
     InstanceId first_instance = kNone;
     std::uint32_t own_mask = ~0u;
     std::uint32_t mask = 0;             // with the ancestors', as of the last update
@@ -49,6 +51,15 @@ struct MeshRecord {
 [[nodiscard]] Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name,
                                              const measure::Criterion& criterion);
 
+// What one thread of update() works with, and what it found.
+struct UpdateWorker {
+    BoxBlock block;
+    InstanceId waiting[kBoxesAtOnce];  // instances whose place is in the block
+    std::size_t waiting_count = 0;
+    Vector<InstanceId> moved, relayered;
+    std::uint32_t updated = 0, invalid = 0;
+};
+
 struct Scene::State {
     SceneOptions options;
     Vector<MeshRecord> meshes;
@@ -71,8 +82,10 @@ struct Scene::State {
     // Scratch of update() and of what walks subtrees.
     Vector<NodeId> nodes_scratch, by_level;
     Vector<std::uint32_t> level, level_begin;
+    BitSet updated;
     Vector<InstanceId> instances_scratch;
-    Vector<std::uint8_t> changes;
+    Vector<UpdateWorker> workers;
+    BitSet sorter;
 
     void mark_dirty(NodeId node) { dirty.insert(nodes[node].position); }
     void append_to_order(NodeId node);
@@ -87,9 +100,16 @@ struct Scene::State {
     void release_node(NodeId node);
 
     void update_nodes(Executor& executor, UpdateStatistics& statistics);
-    void update_node(NodeId node);
+    template <class Visit>
+    void for_each_updated_node(Visit visit);
     void update_levels(Executor& executor);
-    void update_instances(Executor& executor, UpdateStatistics& statistics);
+    void update_touched(Executor& executor);
+    void update_nodes(std::span<const NodeId> nodes, UpdateWorker& worker);
+    void update_instance(InstanceId instance, UpdateWorker& worker);
+    void set_boxes(UpdateWorker& worker);
+    void set_careful_box(InstanceId instance, UpdateWorker& worker);
+    void set_box(InstanceId instance, const Obb& box, bool shown, UpdateWorker& worker);
+    void gather(UpdateStatistics& statistics);
 };
 
 }  // namespace crofton::scene

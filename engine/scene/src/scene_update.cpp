@@ -1,26 +1,68 @@
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/core/log.hpp>
+#include <cstring>
 #include <string>
+#include <utility>
 
 #include "scene_state.hpp"
 
 namespace crofton::scene {
 namespace {
 
-constexpr std::size_t kNodeGrain = 512, kInstanceGrain = 256;
-constexpr std::uint8_t kMoved = 1, kRelayered = 2, kInvalid = 4;
+constexpr std::size_t kGrain = 256;
 
-bool same(const Obb& a, const Obb& b) {
-    return a.center == b.center && a.axes == b.axes && a.half_extents == b.half_extents;
+// outer ∘ inner, as operator* computes it.
+inline void compose(const Transform& outer, const Transform& inner, Transform& result) {
+    const auto image = [&](const glm::dvec3& v) {
+        return outer.linear[0] * v.x + outer.linear[1] * v.y + outer.linear[2] * v.z;
+    };
+    const glm::dvec3 x = image(inner.linear[0]), y = image(inner.linear[1]), z = image(inner.linear[2]);
+    const glm::dvec3 translation = image(inner.translation) + outer.translation;
+    result = {glm::dmat3(x, y, z), translation};
+}
+
+// A lane of the kernel's input, and its output as a box.
+inline void put(const Transform& world, const Obb& box, std::size_t lane, BoxBlock& block) {
+    static_assert(sizeof(Transform) == 96 && sizeof(Obb) == 72);
+    const auto* from = reinterpret_cast<const std::byte*>(&world);
+    for (std::size_t part = 0; part < 3; ++part) std::memcpy(block.world[part][lane], from + 32 * part, 32);
+    const auto* shape = reinterpret_cast<const std::byte*>(&box);
+    std::memcpy(block.center[lane], shape, 32);  // the fourth number is not read
+    for (std::size_t part = 0; part < 3; ++part) std::memcpy(block.shape[part][lane], shape + 24 + 16 * part, 16);
+}
+inline Obb take(const BoxBlock& block, std::size_t lane) {
+    Obb box;
+    auto* to = reinterpret_cast<std::byte*>(&box);
+    std::memcpy(to, block.image_center[lane], 24);
+    for (std::size_t part = 0; part < 3; ++part) std::memcpy(to + 24 + 16 * part, block.image_shape[part][lane], 16);
+    return box;
+}
+
+inline bool same_bits(const Obb& a, const Obb& b) {
+    std::uint64_t left[9], right[9], difference = 0;
+    std::memcpy(left, &a, sizeof a);
+    std::memcpy(right, &b, sizeof b);
+    for (int i = 0; i < 9; ++i) difference |= left[i] ^ right[i];
+    return difference == 0;
+}
+
+template <class T>
+void prefetch(const T& object) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(&object);
+    hwy::Prefetch(bytes);
+    hwy::Prefetch(bytes + sizeof object - 1);
 }
 
 }  // namespace
 
 UpdateStatistics Scene::update(Executor& executor) {
     State& s = *state_;
+    s.workers.resize(std::max<std::size_t>(s.workers.size(), executor.concurrency()));
     UpdateStatistics statistics;
     s.update_nodes(executor, statistics);
-    s.update_instances(executor, statistics);
+    s.update_touched(executor);
+    s.gather(statistics);
     s.removed.swap(s.removed_since_update);
     s.removed_since_update.clear();
     std::sort(s.removed.begin(), s.removed.end());
@@ -30,98 +72,171 @@ UpdateStatistics Scene::update(Executor& executor) {
     return statistics;
 }
 
-void Scene::State::update_node(NodeId id) {
-    Node& node = nodes[id];
-    if (node.parent == kNone) {
-        worlds[id] = locals[id];
-        node.mask = node.own_mask;
-    } else {
-        worlds[id] = worlds[node.parent] * locals[id];
-        node.mask = nodes[node.parent].mask & node.own_mask;
+// visit(id) for dirty nodes and all below them, in topological order. Few: each makes its children dirty, which come
+// later. Many: one pass over all nodes, each of which looks whether its parent was visited; this spares the walk along
+// lists of children, whose every step waits for memory.
+template <class Visit>
+void Scene::State::for_each_updated_node(Visit visit) {
+    if (dirty.count() < order.size() / 4) {
+        dirty.drain([&](std::size_t position) {
+            const NodeId id = order.node_at(position);
+            visit(id);
+            for (NodeId child = nodes[id].first_child; child != kNone; child = nodes[child].next_sibling)
+                dirty.insert(nodes[child].position);
+        });
+        return;
     }
+    updated.resize(order.size());
+    for (std::size_t position = 0; position < order.size(); ++position) {
+        const NodeId id = order.node_at(position);
+        if (id == kNone) continue;
+        const NodeId parent = nodes[id].parent;
+        if (!dirty.contains(position) && (parent == kNone || !updated.contains(nodes[parent].position))) continue;
+        updated.insert(position);
+        visit(id);
+    }
+    dirty.clear();
+    updated.clear();
 }
 
-// Dirty nodes in topological order. Each makes its children dirty, which come later: all below it follow, each once.
+// One thread computes nodes as they come, a few hundred at a time, so that boxes find their transforms in the cache.
 void Scene::State::update_nodes(Executor& executor, UpdateStatistics& statistics) {
     const bool parallel = executor.concurrency() > 1;
     nodes_scratch.clear();
     level.resize(nodes.size(), 0);
-    dirty.drain([&](std::size_t position) {
-        const NodeId id = order.node_at(position);
+    for_each_updated_node([&](NodeId id) {
         ++statistics.nodes_updated;
-        if (parallel)
-            nodes_scratch.push_back(id);
-        else
-            update_node(id);
-        const Node& node = nodes[id];
-        for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) touched.insert(i);
-        for (NodeId child = node.first_child; child != kNone; child = nodes[child].next_sibling) {
-            dirty.insert(nodes[child].position);
-            if (parallel) level[child] = level[id] + 1;
-        }
+        nodes_scratch.push_back(id);
+        if (touched.may_hold_any())
+            for (InstanceId i = nodes[id].first_instance; i != kNone; i = instances[i].next_on_node) touched.erase(i);
+        if (parallel || nodes_scratch.size() < kGrain) return;
+        update_nodes(nodes_scratch, workers[0]);
+        nodes_scratch.clear();
     });
-    if (parallel) update_levels(executor);
+    if (parallel)
+        update_levels(executor);
+    else
+        update_nodes(nodes_scratch, workers[0]);
 }
 
-// level[id] is the number of updated ancestors. A level's nodes depend on the one before, not on each other.
+// A node's level is one more than its parent's if that is updated too, else 1; level[] is 0 for others. The nodes of a
+// level depend on those of the levels before, not on each other.
 void Scene::State::update_levels(Executor& executor) {
-    level_begin.assign(2, 0);
+    level_begin.assign(3, 0);
     for (const NodeId id : nodes_scratch) {
-        if (level[id] + 2 > level_begin.size() - 1) level_begin.resize(level[id] + 3, 0);
-        ++level_begin[level[id] + 2];
+        const std::uint32_t own = nodes[id].parent == kNone ? 1 : level[nodes[id].parent] + 1;
+        level[id] = own;
+        if (own + 2 > level_begin.size()) level_begin.resize(own + 2, 0);
+        ++level_begin[own + 1];
     }
     for (std::size_t l = 2; l < level_begin.size(); ++l) level_begin[l] += level_begin[l - 1];
     by_level.resize(nodes_scratch.size());
     for (const NodeId id : nodes_scratch) {
-        by_level[level_begin[level[id] + 1]++] = id;
-        level[id] = 0;
+        by_level[level_begin[level[id]]++] = id;
     }
-    for (std::size_t l = 0; l + 2 < level_begin.size(); ++l) {
+    for (const NodeId id : nodes_scratch) level[id] = 0;
+    for (std::size_t l = 1; l + 1 < level_begin.size(); ++l) {  // filling has moved each begin to its level's end
         const std::span<const NodeId> peers =
-            std::span<const NodeId>(by_level).subspan(level_begin[l], level_begin[l + 1] - level_begin[l]);
-        const auto update = [&](std::size_t begin, std::size_t end, unsigned) {
-            for (const NodeId id : peers.subspan(begin, end - begin)) update_node(id);
-        };
-        if (peers.size() <= kNodeGrain)
-            update(0, peers.size(), 0);
+            std::span<const NodeId>(by_level).subspan(level_begin[l - 1], level_begin[l] - level_begin[l - 1]);
+        if (peers.size() <= kGrain)
+            update_nodes(peers, workers[0]);
         else
-            executor.parallel_for(peers.size(), kNodeGrain, update);
+            executor.parallel_for(peers.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
+                update_nodes(peers.subspan(begin, end - begin), workers[worker]);
+            });
     }
 }
 
-void Scene::State::update_instances(Executor& executor, UpdateStatistics& statistics) {
+// Instances that changed on nodes that did not.
+void Scene::State::update_touched(Executor& executor) {
     instances_scratch.clear();
     touched.drain([&](std::size_t i) { instances_scratch.push_back(static_cast<InstanceId>(i)); });
     const std::span<const InstanceId> ids = instances_scratch;
-    changes.resize(ids.size());
-    executor.parallel_for(ids.size(), kInstanceGrain, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const InstanceId id = ids[k];
-            Instance& instance = instances[id];
-            const Transform& world = worlds[instance.node];
-            const auto box = transformed_box(world, meshes[instance.mesh].box, options.criterion);
-            std::uint8_t change = instance.is_new ? kMoved | kRelayered : 0;
-            const std::uint32_t mask = box && !maps_to_point(world) ? nodes[instance.node].mask & instance.own_mask : 0;
-            if (!box) change |= kInvalid;
-            if (box && !same(*box, boxes[id])) {
-                boxes[id] = *box;
-                change |= kMoved;
-            }
-            if (mask != masks[id]) {
-                masks[id] = mask;
-                change |= kRelayered;
-            }
-            instance.is_new = false;
-            changes[k] = change;
-        }
+    executor.parallel_for(ids.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        for (const InstanceId id : ids.subspan(begin, end - begin)) update_instance(id, workers[worker]);
+        set_boxes(workers[worker]);
     });
-    statistics.instances_updated = static_cast<std::uint32_t>(ids.size());
-    moved.clear();
-    relayered.clear();
+}
+
+void Scene::State::update_nodes(std::span<const NodeId> ids, UpdateWorker& worker) {
+    constexpr std::size_t kAhead = 8;
     for (std::size_t k = 0; k < ids.size(); ++k) {
-        if (changes[k] & kMoved) moved.push_back(ids[k]);
-        if (changes[k] & kRelayered) relayered.push_back(ids[k]);
-        statistics.instances_invalid += changes[k] & kInvalid ? 1u : 0u;
+        const NodeId id = ids[k], later = ids[std::min(k + kAhead, ids.size() - 1)];
+        prefetch(locals[later]);
+        prefetch(worlds[later]);
+        Node& node = nodes[id];
+        if (node.parent == kNone) {
+            worlds[id] = locals[id];
+            node.mask = node.own_mask;
+        } else {
+            compose(worlds[node.parent], locals[id], worlds[id]);
+            node.mask = nodes[node.parent].mask & node.own_mask;
+        }
+        for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) update_instance(i, worker);
+    }
+    set_boxes(worker);
+}
+
+void Scene::State::update_instance(InstanceId id, UpdateWorker& worker) {
+    const Instance& instance = instances[id];
+    prefetch(boxes[id]);
+    put(worlds[instance.node], meshes[instance.mesh].box, worker.waiting_count, worker.block);
+    worker.waiting[worker.waiting_count++] = id;
+    if (worker.waiting_count == kBoxesAtOnce) set_boxes(worker);
+}
+
+// Of all instances that wait.
+void Scene::State::set_boxes(UpdateWorker& worker) {
+    if (worker.waiting_count == 0) return;
+    transform_boxes(worker.block, worker.waiting_count);
+    for (std::size_t k = 0; k < worker.waiting_count; ++k) {
+        if (worker.block.done[k] != 0.0)
+            set_box(worker.waiting[k], take(worker.block, k), true, worker);
+        else
+            set_careful_box(worker.waiting[k], worker);
+    }
+    worker.updated += static_cast<std::uint32_t>(worker.waiting_count);
+    worker.waiting_count = 0;
+}
+
+// Where the kernel does not know.
+void Scene::State::set_careful_box(InstanceId id, UpdateWorker& worker) {
+    const Instance& instance = instances[id];
+    const Transform& world = worlds[instance.node];
+    const auto box = transformed_box(world, meshes[instance.mesh].box, options.criterion);
+    set_box(id, box ? *box : boxes[id], box && !maps_to_point(world), worker);
+    if (!box) ++worker.invalid;
+}
+
+void Scene::State::set_box(InstanceId id, const Obb& box, bool shown, UpdateWorker& worker) {
+    Instance& instance = instances[id];
+    const std::uint32_t mask = shown ? nodes[instance.node].mask & instance.own_mask : 0;
+    if (instance.is_new || !same_bits(box, boxes[id])) worker.moved.push_back(id);
+    if (instance.is_new || mask != masks[id]) worker.relayered.push_back(id);
+    boxes[id] = box;
+    masks[id] = mask;
+    instance.is_new = false;
+}
+
+// The workers' findings as one, ascending.
+void Scene::State::gather(UpdateStatistics& statistics) {
+    sorter.resize(instances.size());
+    const auto collect = [&](Vector<InstanceId> UpdateWorker::*list, Vector<InstanceId>& all) {
+        all.clear();
+        for (UpdateWorker& worker : workers) {
+            all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
+            (worker.*list).clear();
+        }
+        if (std::is_sorted(all.begin(), all.end())) return;
+        for (const InstanceId id : all) sorter.insert(id);
+        all.clear();
+        sorter.drain([&](std::size_t id) { all.push_back(static_cast<InstanceId>(id)); });
+    };
+    collect(&UpdateWorker::moved, moved);
+    collect(&UpdateWorker::relayered, relayered);
+    for (UpdateWorker& worker : workers) {
+        statistics.instances_updated += std::exchange(worker.updated, 0u);
+        statistics.instances_invalid += std::exchange(worker.invalid, 0u);
     }
 }
 

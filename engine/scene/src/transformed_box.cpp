@@ -6,13 +6,10 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "box_image.hpp"
+
 namespace crofton::scene {
 namespace {
-
-// Directions whose cosine stays below this are perpendicular as far as a box's float axes can tell.
-constexpr double kPerpendicular = 1e-7;
-// Lengths below this, beside 1, give no direction.
-constexpr double kNothing = 1e-12;
 
 glm::dvec3 absolute(const glm::dvec3& v) {
     return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
@@ -27,43 +24,40 @@ float float_at_least(double value) {
                                                 : rounded;
 }
 
-// The image of a box, and how far rounding may have put it off: by `error_bound` along each axis of a box around it.
+// The image of a box, and how far rounding may have put it off: box_image.hpp.
 struct Image {
     glm::dvec3 center;
     std::array<glm::dvec3, 3> half_edges;
     double error_bound;
 };
 
-// With u = 2^-53. A box's half edge h·a is exact (a product of two floats); L·(h·a) is off by at most
-// 3u(1+3u)·|L||h·a| per component, so in the 1-norm by 4u·M, M the sum of |L||h·a|'s components. Likewise the centre
-// L·c + t by 4u·C, C the sum of |L||c| + |t|. For axes Q, float and orthonormal within 1e-6, let N = Q⁻¹: entries of N
-// are below 1.001 and the computed ones off by at most 32u (cofactors and their sum of three near 1). A point of the
-// image needs |u_j| ≤ Σ_k |N_j·e_k| + |N_j·(exact − computed centre)|, whose computed value is off by at most Σ_k
-// (1.001·4 + 32 + 4)u·M_k + 1.001·4u·C < 2^-47·Σ M_k + 2^-50·C. Products that underflow are off by 2^-1075 each, which
-// 2^-1000 covers. Sums of the bound round up by the factor at the end of box_with_axes.
 Image image_of(const Transform& transform, const Obb& box) {
-    const glm::dmat3 size(absolute(transform.linear[0]), absolute(transform.linear[1]), absolute(transform.linear[2]));
     Image image;
     image.center = transform * box.center;
-    double edges = 0.0;
-    for (int k = 0; k < 3; ++k) {
-        const glm::dvec3 edge = glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]);
-        image.half_edges[static_cast<std::size_t>(k)] = transform.linear * edge;
-        edges += sum(size * absolute(edge));
-    }
-    const double center = sum(size * absolute(box.center)) + sum(absolute(transform.translation));
-    image.error_bound = 0x1p-47 * edges + 0x1p-50 * center + 0x1p-1000;
+    for (int k = 0; k < 3; ++k)
+        image.half_edges[static_cast<std::size_t>(k)] =
+            (transform.linear * glm::dvec3(box.axes[k])) * static_cast<double>(box.half_extents[k]);
+    const double linear =
+        sum(absolute(transform.linear[0])) + sum(absolute(transform.linear[1])) + sum(absolute(transform.linear[2]));
+    const double edges = linear * sum(glm::dvec3(box.half_extents));
+    const double center = linear * sum(absolute(box.center)) + sum(absolute(transform.translation));
+    image.error_bound = kEdgeError * edges + kCenterError * center + kUnderflow;
     return image;
 }
 
+// The box with the float nearest to x, y and x × y as its axes.
 Obb box_with_axes(const Image& image, const glm::dvec3& x, const glm::dvec3& y) {
     Obb box;
     box.center = image.center;
     box.axes = glm::mat3(glm::vec3(x), glm::vec3(y), glm::vec3(glm::cross(x, y)));
-    const glm::dmat3 inverse = glm::inverse(glm::dmat3(box.axes));
-    glm::dvec3 half_extents(image.error_bound);
-    for (const glm::dvec3& edge : image.half_edges) half_extents += absolute(inverse * edge);
-    for (int k = 0; k < 3; ++k) box.half_extents[k] = float_at_least(half_extents[k] * (1.0 + 0x1p-50));
+    const glm::dmat3 axes(box.axes);
+    const glm::dmat3 normals(glm::cross(axes[1], axes[2]), glm::cross(axes[2], axes[0]), glm::cross(axes[0], axes[1]));
+    const double determinant = glm::dot(axes[0], normals[0]);
+    for (int k = 0; k < 3; ++k) {
+        const auto along = [&](std::size_t edge) { return std::abs(glm::dot(normals[k], image.half_edges[edge])); };
+        const double half_extent = (along(0) + along(1) + along(2)) / determinant + image.error_bound;
+        box.half_extents[k] = float_at_least(half_extent * kRoundUp);
+    }
     return box;
 }
 
