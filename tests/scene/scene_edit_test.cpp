@@ -442,6 +442,7 @@ TEST_SUITE("scene/edit") {
             scene.update();
         };
         frame(1.0);
+        frame(2.0);
         const std::size_t warm = memory.allocations();
         for (int i = 0; i < 10; ++i) frame(i);
         CHECK(memory.allocations() == warm);

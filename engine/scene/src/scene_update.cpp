@@ -167,11 +167,11 @@ void Scene::State::update_nodes(std::span<const NodeId> ids, UpdateWorker& worke
         Node& node = nodes[id];
         if (node.parent == kNone) {
             worlds[id] = locals[id];
-            node.mask = node.own_mask;
         } else {
             compose(worlds[node.parent], locals[id], worlds[id]);
-            node.mask = nodes[node.parent].mask & node.own_mask;
         }
+        const std::uint32_t mask = node.parent == kNone ? node.own_mask : nodes[node.parent].mask & node.own_mask;
+        if (mask != node.mask) node.mask = mask;  // what is not written need not go back to memory; likewise below
         for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) update_instance(i, worker);
     }
     set_boxes(worker);
@@ -212,10 +212,12 @@ void Scene::State::set_box(InstanceId id, const Obb& box, bool shown, UpdateWork
     Instance& instance = instances[id];
     const std::uint32_t mask = shown ? nodes[instance.node].mask & instance.own_mask : 0;
     if (instance.is_new || !same_bits(box, boxes[id])) worker.moved.push_back(id);
-    if (instance.is_new || mask != masks[id]) worker.relayered.push_back(id);
+    if (instance.is_new || mask != masks[id]) {
+        worker.relayered.push_back(id);
+        masks[id] = mask;
+        instance.is_new = false;
+    }
     boxes[id] = box;
-    masks[id] = mask;
-    instance.is_new = false;
 }
 
 // The workers' findings as one, ascending.
@@ -223,9 +225,10 @@ void Scene::State::gather(UpdateStatistics& statistics) {
     sorter.resize(instances.size());
     const auto collect = [&](Vector<InstanceId> UpdateWorker::*list, Vector<InstanceId>& all) {
         all.clear();
-        for (UpdateWorker& worker : workers) {
-            all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
-            (worker.*list).clear();
+        all.swap(workers[0].*list);
+        for (std::size_t w = 1; w < workers.size(); ++w) {
+            all.insert(all.end(), (workers[w].*list).begin(), (workers[w].*list).end());
+            (workers[w].*list).clear();
         }
         if (std::is_sorted(all.begin(), all.end())) return;
         for (const InstanceId id : all) sorter.insert(id);
