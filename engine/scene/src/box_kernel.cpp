@@ -5,6 +5,8 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>
+#include <limits>
+#include <numbers>
 
 #include "box_image.hpp"
 
@@ -119,55 +121,136 @@ HWY_ATTR inline void store_shape(float* to, V a, V b, V c, V d) {
     hn::StoreInterleaved4(to_float(a), to_float(b), to_float(c), to_float(d), F(), to);
 }
 
-HWY_ATTR inline void transform_lanes(BoxBlock& block, std::size_t first) {
-    const D d;
-    const Instances in = load(block, first);
-    const V3 moved = in.linear * in.center;
-    const V3 center{hn::Add(moved.x, in.translation.x), hn::Add(moved.y, in.translation.y),
-                    hn::Add(moved.z, in.translation.z)};
-    const V bound = error_bound(in);
+// The steps of transformed_box.cpp, under its names.
+struct Image {
+    V3 center;
+    V3 half_edges[3];
+    V3 edges[3];  // unit
+    V error_bound;
+    hn::Mask<D> in_range;       // far from underflow and overflow, and no edge next to nothing beside the longest
+    hn::Mask<D> perpendicular;  // all edges
+};
 
-    V3 half_edges[3], edges[3];
+HWY_ATTR inline Image image_of(const Instances& in) {
+    const D d;
+    Image image;
+    const V3 moved = in.linear * in.center;
+    image.center = {hn::Add(moved.x, in.translation.x), hn::Add(moved.y, in.translation.y),
+                    hn::Add(moved.z, in.translation.z)};
+    image.error_bound = error_bound(in);
     V squared[3];
     for (int k = 0; k < 3; ++k) {
         const V3 edge = in.linear * in.axes[k];
-        half_edges[k] = edge * in.half_extents[k];
+        image.half_edges[k] = edge * in.half_extents[k];
         squared[k] = dot(edge, edge);
-        edges[k] = normalised(edge, squared[k]);
+        image.edges[k] = normalised(edge, squared[k]);
     }
-    // Far from underflow and overflow, and none beside the longest nothing: transformed_box() takes these steps then.
     const V least = hn::Min(hn::Min(squared[0], squared[1]), squared[2]);
     const V most = hn::Max(hn::Max(squared[0], squared[1]), squared[2]);
-    auto done = hn::And(hn::Gt(least, hn::Set(d, 1e-160)), hn::Lt(most, hn::Set(d, 1e160)));
-    done = hn::And(done, hn::Gt(least, hn::Mul(hn::Set(d, 2.0 * kNothing * kNothing), most)));
-    const V perpendicular = hn::Set(d, kPerpendicular);
-    for (int k = 0; k < 3; ++k) done = hn::And(done, hn::Lt(hn::Abs(dot(edges[k], edges[(k + 1) % 3])), perpendicular));
+    image.in_range = hn::And(hn::And(hn::Gt(least, hn::Set(d, 1e-160)), hn::Lt(most, hn::Set(d, 1e160))),
+                             hn::Gt(least, hn::Mul(hn::Set(d, 2.0 * kNothing * kNothing), most)));
+    const auto small_cosine = [&](int i, int j) HWY_ATTR {
+        return hn::Lt(hn::Abs(dot(image.edges[i], image.edges[j])), hn::Set(d, kPerpendicular));
+    };
+    image.perpendicular = hn::And(hn::And(small_cosine(0, 1), small_cosine(1, 2)), small_cosine(0, 2));
+    return image;
+}
 
-    const V3& x = edges[0];
-    const V3 part = edges[1] - x * dot(edges[1], x);
-    const V3 y = normalised(part, dot(part, part));
-    const V3 axes[3] = {rounded(x), rounded(y), rounded(cross(x, y))};
+struct Box {
+    V3 axes[3];
+    V half_extents[3];
+};
+
+HWY_ATTR inline Box box_with_axes(const Image& image, const V3& x, const V3& y) {
+    const D d;
+    Box box{{rounded(x), rounded(y), rounded(cross(x, y))}, {}};
+    const V3* const axes = box.axes;
     const V3 normals[3] = {cross(axes[1], axes[2]), cross(axes[2], axes[0]), cross(axes[0], axes[1])};
     const V determinant = dot(axes[0], normals[0]);
-    V half_extents[3];
     for (int k = 0; k < 3; ++k) {
-        const V along = add(hn::Abs(dot(normals[k], half_edges[0])), hn::Abs(dot(normals[k], half_edges[1])),
-                            hn::Abs(dot(normals[k], half_edges[2])));
-        const V exact = hn::Add(hn::Div(along, determinant), bound);
-        half_extents[k] = float_at_least(hn::Mul(exact, hn::Set(d, kRoundUp)));
-        done = hn::And(done, hn::Lt(half_extents[k], hn::Set(d, 1e29)));
+        const V along =
+            add(hn::Abs(dot(normals[k], image.half_edges[0])), hn::Abs(dot(normals[k], image.half_edges[1])),
+                hn::Abs(dot(normals[k], image.half_edges[2])));
+        const V half_extent = hn::Add(hn::Div(along, determinant), image.error_bound);
+        box.half_extents[k] = float_at_least(hn::Mul(half_extent, hn::Set(d, kRoundUp)));
     }
-    done = hn::And(done, hn::Lt(size(center), hn::Set(d, 1e29)));
+    return box;
+}
 
-    hn::StoreInterleaved4(center.x, center.y, center.z, center.z, d, block.image_center[first]);
+HWY_ATTR inline V3 perpendicular_part(const V3& v, const V3& unit) {
+    return v - unit * dot(v, unit);
+}
+HWY_ATTR inline V3 normalised(const V3& v) {
+    return normalised(v, dot(v, v));
+}
+
+HWY_ATTR inline void store(const Image& image, const Box& box, hn::Mask<D> done, BoxBlock& block, std::size_t first) {
+    const D d;
+    const V limit = hn::Set(d, 1e29);  // well below kMaxCoordinate
+    done = hn::And(done, hn::Lt(size(image.center), limit));
+    for (int k = 0; k < 3; ++k) done = hn::And(done, hn::Lt(box.half_extents[k], limit));
+    const V3* const axes = box.axes;
+    hn::StoreInterleaved4(image.center.x, image.center.y, image.center.z, image.center.z, d, block.image_center[first]);
     store_shape(block.image_shape[0][first], axes[0].x, axes[0].y, axes[0].z, axes[1].x);
     store_shape(block.image_shape[1][first], axes[1].y, axes[1].z, axes[2].x, axes[2].y);
-    store_shape(block.image_shape[2][first], axes[2].z, half_extents[0], half_extents[1], half_extents[2]);
+    store_shape(block.image_shape[2][first], axes[2].z, box.half_extents[0], box.half_extents[1], box.half_extents[2]);
     hn::StoreU(hn::IfThenElseZero(done, hn::Set(d, 1.0)), d, block.done + first);
 }
 
 HWY_ATTR void run_boxes(BoxBlock& block, std::size_t count) {
-    for (std::size_t first = 0; first < count; first += hn::Lanes(D())) transform_lanes(block, first);
+    for (std::size_t first = 0; first < count; first += hn::Lanes(D())) {
+        const Image image = image_of(load(block, first));
+        const V3 y = normalised(perpendicular_part(image.edges[1], image.edges[0]));
+        store(image, box_with_axes(image, image.edges[0], y), hn::And(image.in_range, image.perpendicular), block,
+              first);
+    }
+}
+
+HWY_ATTR inline V cost_of(const Box& box, const double (&weights)[3]) {
+    const D d;
+    const V a = box.half_extents[0], b = box.half_extents[1], c = box.half_extents[2];
+    const V eight = hn::Set(d, 8.0);
+    const V volume = hn::Mul(hn::Mul(hn::Mul(eight, a), b), c);
+    const V area = hn::Mul(eight, add(hn::Mul(a, b), hn::Mul(b, c), hn::Mul(c, a)));
+    const V curvature = hn::Mul(hn::Set(d, std::numbers::pi), hn::Mul(hn::Set(d, 2.0), add(a, b, c)));
+    return add(hn::Mul(hn::Set(d, weights[0]), volume), hn::Mul(hn::Set(d, weights[1]), area),
+               hn::Mul(hn::Set(d, weights[2]), curvature));
+}
+
+// In each lane the box if it costs less than what was found before.
+HWY_ATTR inline void keep_better(const Box& box, V cost, Box& best, V& least) {
+    const auto better = hn::Lt(cost, least);
+    const auto keep = [&](V& old, V fresh) HWY_ATTR { old = hn::IfThenElse(better, fresh, old); };
+    keep(least, cost);
+    for (int k = 0; k < 3; ++k) {
+        keep(best.axes[k].x, box.axes[k].x);
+        keep(best.axes[k].y, box.axes[k].y);
+        keep(best.axes[k].z, box.axes[k].z);
+        keep(best.half_extents[k], box.half_extents[k]);
+    }
+}
+
+HWY_ATTR void run_sheared_boxes(BoxBlock& block, std::size_t count, const double (&weights)[3]) {
+    const D d;
+    const V infinity = hn::Set(d, std::numeric_limits<double>::infinity());
+    for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
+        const Image image = image_of(load(block, first));
+        auto done = hn::AndNot(image.perpendicular, image.in_range);
+        Box best{{image.edges[0], image.edges[1], image.edges[2]}, {infinity, infinity, infinity}};
+        V least = infinity;
+        for (int k = 0; k < 3; ++k) {
+            const V3 normal = cross(image.edges[(k + 1) % 3], image.edges[(k + 2) % 3]);
+            const V squared = dot(normal, normal);
+            done = hn::And(done, hn::Gt(squared, hn::Set(d, 2.0 * kNothing * kNothing)));
+            const V3 x = normalised(normal, squared);
+            for (int e = 1; e <= 2; ++e) {
+                const V3 y = normalised(perpendicular_part(image.edges[(k + e) % 3], x));
+                const Box box = box_with_axes(image, x, y);
+                keep_better(box, cost_of(box, weights), best, least);
+            }
+        }
+        store(image, best, done, block, first);
+    }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -178,9 +261,13 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::scene {
 
 HWY_EXPORT(run_boxes);
+HWY_EXPORT(run_sheared_boxes);
 
 void transform_boxes(BoxBlock& block, std::size_t count) {
     HWY_DYNAMIC_DISPATCH(run_boxes)(block, count);
+}
+void transform_sheared_boxes(BoxBlock& block, std::size_t count, const double (&weights)[3]) {
+    HWY_DYNAMIC_DISPATCH(run_sheared_boxes)(block, count, weights);
 }
 
 }  // namespace crofton::scene

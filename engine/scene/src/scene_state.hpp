@@ -51,11 +51,16 @@ struct MeshRecord {
 [[nodiscard]] Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name,
                                              const measure::Criterion& criterion);
 
+// Instances that wait for the kernel, with what it needs of them.
+struct BoxQueue {
+    BoxBlock block;
+    InstanceId instances[kBoxesAtOnce];
+    std::size_t count = 0;
+};
+
 // What one thread of update() works with, and what it found.
 struct UpdateWorker {
-    BoxBlock block;
-    InstanceId waiting[kBoxesAtOnce];  // instances whose place is in the block
-    std::size_t waiting_count = 0;
+    BoxQueue queue, sheared;  // the second: those that transform_boxes() left
     Vector<InstanceId> moved, relayered;
     std::uint32_t updated = 0, invalid = 0;
 };
@@ -106,7 +111,9 @@ struct Scene::State {
     void update_touched(Executor& executor);
     void update_nodes(std::span<const NodeId> nodes, UpdateWorker& worker);
     void update_instance(InstanceId instance, UpdateWorker& worker);
+    void enqueue(InstanceId instance, BoxQueue& queue) const;
     void set_boxes(UpdateWorker& worker);
+    void set_sheared_boxes(UpdateWorker& worker);
     void set_careful_box(InstanceId instance, UpdateWorker& worker);
     void set_box(InstanceId instance, const Obb& box, bool shown, UpdateWorker& worker);
     void gather(UpdateStatistics& statistics);

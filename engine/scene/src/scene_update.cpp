@@ -155,6 +155,7 @@ void Scene::State::update_touched(Executor& executor) {
     executor.parallel_for(ids.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (const InstanceId id : ids.subspan(begin, end - begin)) update_instance(id, workers[worker]);
         set_boxes(workers[worker]);
+        set_sheared_boxes(workers[worker]);
     });
 }
 
@@ -175,31 +176,52 @@ void Scene::State::update_nodes(std::span<const NodeId> ids, UpdateWorker& worke
         for (InstanceId i = node.first_instance; i != kNone; i = instances[i].next_on_node) update_instance(i, worker);
     }
     set_boxes(worker);
+    set_sheared_boxes(worker);
 }
 
 void Scene::State::update_instance(InstanceId id, UpdateWorker& worker) {
-    const Instance& instance = instances[id];
     prefetch(boxes[id]);
-    put(worlds[instance.node], meshes[instance.mesh].box, worker.waiting_count, worker.block);
-    worker.waiting[worker.waiting_count++] = id;
-    if (worker.waiting_count == kBoxesAtOnce) set_boxes(worker);
+    enqueue(id, worker.queue);
+    if (worker.queue.count == kBoxesAtOnce) set_boxes(worker);
 }
 
-// Of all instances that wait.
+void Scene::State::enqueue(InstanceId id, BoxQueue& queue) const {
+    put(worlds[instances[id].node], meshes[instances[id].mesh].box, queue.count, queue.block);
+    queue.instances[queue.count++] = id;
+}
+
+// Of the instances in the queue; those that the kernel leaves go to the second queue.
 void Scene::State::set_boxes(UpdateWorker& worker) {
-    if (worker.waiting_count == 0) return;
-    transform_boxes(worker.block, worker.waiting_count);
-    for (std::size_t k = 0; k < worker.waiting_count; ++k) {
-        if (worker.block.done[k] != 0.0)
-            set_box(worker.waiting[k], take(worker.block, k), true, worker);
-        else
-            set_careful_box(worker.waiting[k], worker);
+    BoxQueue& queue = worker.queue;
+    if (queue.count == 0) return;
+    transform_boxes(queue.block, queue.count);
+    for (std::size_t k = 0; k < queue.count; ++k) {
+        if (queue.block.done[k] != 0.0) {
+            set_box(queue.instances[k], take(queue.block, k), true, worker);
+        } else {
+            enqueue(queue.instances[k], worker.sheared);
+            if (worker.sheared.count == kBoxesAtOnce) set_sheared_boxes(worker);
+        }
     }
-    worker.updated += static_cast<std::uint32_t>(worker.waiting_count);
-    worker.waiting_count = 0;
+    worker.updated += static_cast<std::uint32_t>(queue.count);
+    queue.count = 0;
 }
 
-// Where the kernel does not know.
+void Scene::State::set_sheared_boxes(UpdateWorker& worker) {
+    BoxQueue& queue = worker.sheared;
+    if (queue.count == 0) return;
+    const measure::Criterion& c = options.criterion;
+    transform_sheared_boxes(queue.block, queue.count, {c.volume_weight, c.area_weight, c.mean_curvature_weight});
+    for (std::size_t k = 0; k < queue.count; ++k) {
+        if (queue.block.done[k] != 0.0)
+            set_box(queue.instances[k], take(queue.block, k), true, worker);
+        else
+            set_careful_box(queue.instances[k], worker);
+    }
+    queue.count = 0;
+}
+
+// Where the kernels do not know: flat images, and numbers near the limits.
 void Scene::State::set_careful_box(InstanceId id, UpdateWorker& worker) {
     const Instance& instance = instances[id];
     const Transform& world = worlds[instance.node];
