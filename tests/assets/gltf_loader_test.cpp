@@ -44,6 +44,19 @@ TEST_SUITE("assets/gltf_loader") {
         CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[NaN,0,0]}]")).has_value());
     }
 
+    TEST_CASE("one bad object is left out with a warning that names it, and the rest is loaded") {
+        const auto source =
+            load_glb(gltf_json("[{\"children\":[1,2,3]},{\"mesh\":0,\"translation\":[1,0,0]},"
+                               "{\"name\":\"bad\",\"mesh\":0,\"rotation\":[0,0,0,0],\"children\":[4]},"
+                               "{\"mesh\":0,\"translation\":[3,0,0]},{\"mesh\":0}]"));
+        REQUIRE(source.has_value());
+        CHECK(source->scene.node_count() == 3);
+        CHECK(source->scene.instance_count() == 2);
+        REQUIRE(source->warnings.size() == 1);
+        CHECK(says(source->warnings[0], "node 2 'bad'"));
+        CHECK(says(source->warnings[0], "quaternion"));
+    }
+
     TEST_CASE("a scale that flattens is data: flat things are flat, a zero scale hides") {
         for (const bool hidden : {false, true}) {
             const std::string scale = hidden ? "[0,0,0]" : "[1,0,1]";
