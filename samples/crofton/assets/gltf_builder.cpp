@@ -59,7 +59,7 @@ GltfDocument gltf_from_scene(const scene::Scene& scene) {
         const std::size_t indices = append_indices(document, mesh.indices);
         Json primitives = Json::array();
         primitives.push_back({{"attributes", std::move(attributes)}, {"indices", indices}});
-        meshes.push_back({{"name", scene.mesh_name(m)}, {"primitives", std::move(primitives)}});
+        meshes.push_back({{"name", std::string(scene.mesh_name(m))}, {"primitives", std::move(primitives)}});
     }
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i)) continue;

@@ -39,7 +39,9 @@ class GltfReader {
     Result<SceneSource> read() {
         if (auto walked = add_nodes(); !walked) return tl::unexpected(walked.error());
         if (source_.scene.instance_count() == 0)
-            return fail(ErrorCode::empty, kNoItem, "its scene shows no triangles, so there is nothing to draw");
+            return fail(ErrorCode::empty, kNoItem,
+                        "its scene shows no triangles, so there is nothing to draw" +
+                            (source_.warnings.empty() ? "" : ": " + source_.warnings.front()));
         for (std::string& warning : colors_.warnings) source_.warnings.push_back(std::move(warning));
         return std::move(source_);
     }
@@ -82,7 +84,12 @@ class GltfReader {
                 return fail(ErrorCode::parse, static_cast<std::uint64_t>(todo.node),
                             label("node", todo.node, node.name) + ": has two parents, or is its own ancestor");
             seen[static_cast<std::size_t>(todo.node)] = true;
-            const auto added = add_node(todo.node, node, todo.parent);
+            const auto local = transform_of(node);
+            if (!local) {
+                leave_out(label("node", todo.node, node.name) + " and all below it", local.error());
+                continue;
+            }
+            const auto added = add_node(todo.node, node, *local, todo.parent);
             if (!added) return in_file(label("node", todo.node, node.name), "", added.error());
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
                 stack.push_back({*child, *added});
@@ -90,17 +97,18 @@ class GltfReader {
         return {};
     }
 
-    Result<scene::NodeId> add_node(int index, const tinygltf::Node& node, scene::NodeId parent) {
-        const auto local = transform_of(node);
-        if (!local) return tl::unexpected(local.error());
-        const auto id = source_.scene.add_node(parent, *local, ~0u, node.name);
+    void leave_out(const std::string& what, const Error& why) {
+        source_.warnings.push_back(what + ": left out: " + why.message);
+    }
+
+    Result<scene::NodeId> add_node(int index, const tinygltf::Node& node, const scene::Transform& local,
+                                   scene::NodeId parent) {
+        const auto id = source_.scene.add_node(parent, local, ~0u, node.name);
         if (!id || node.mesh < 0) return id;
         if (!exists(node.mesh, model_.meshes.size()))
             return fail(ErrorCode::out_of_range, static_cast<std::uint64_t>(index),
                         "mesh " + std::to_string(node.mesh) + " does not exist");
-        const auto meshes = meshes_of(node.mesh);
-        if (!meshes) return tl::unexpected(meshes.error());
-        for (const scene::MeshId mesh : **meshes)
+        for (const scene::MeshId mesh : meshes_of(node.mesh))
             if (auto added = source_.scene.add_instance(*id, mesh); !added) return tl::unexpected(added.error());
         return id;
     }
@@ -121,25 +129,28 @@ class GltfReader {
         const double length = glm::length(rotation);
         if (!(length > 1e-6) || !std::isfinite(length))
             return fail(ErrorCode::degenerate, kNoItem, "its rotation is no quaternion of length one");
-        const scene::Transform result =
-            scene::from_trs(vector(node.translation, 0.0), rotation / length, vector(node.scale, 1.0));
-        if (auto valid = scene::validate(result); !valid) return tl::unexpected(valid.error());
-        return result;
+        return scene::from_trs(vector(node.translation, 0.0), rotation / length, vector(node.scale, 1.0));
     }
 
-    // One scene mesh per primitive, made when first used.
-    Result<const std::vector<scene::MeshId>*> meshes_of(int index) {
+    // One scene mesh per primitive, made when first used. Damaged primitives are left out.
+    const std::vector<scene::MeshId>& meshes_of(int index) {
         const auto known = meshes_.find(index);
-        if (known != meshes_.end()) return &known->second;
+        if (known != meshes_.end()) return known->second;
         const auto& mesh = model_.meshes[static_cast<std::size_t>(index)];
         std::vector<scene::MeshId> ids;
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
             const std::string name = label("mesh", index, mesh.name) + ": primitive " + std::to_string(p);
             auto made = mesh_of(mesh.primitives[p], mesh.name, name);
-            if (!made) return in_file(name, "", made.error());
+            if (!made) {
+                leave_out(name, made.error());
+                continue;
+            }
             if (made->indices.empty()) continue;
             const auto id = source_.scene.add_mesh(std::move(*made), mesh.name);
-            if (!id) return in_file(name, "", id.error());
+            if (!id) {
+                leave_out(name, id.error());
+                continue;
+            }
             ids.push_back(*id);
             note_unlit(*id, mesh.primitives[p].material);
             note_sides(*id, mesh.primitives[p].material);
@@ -148,7 +159,7 @@ class GltfReader {
             source_.emission.resize(*id + 1);
             source_.emission[*id].assign(source_.scene.mesh(*id).triangle_count(), emission);
         }
-        return &meshes_.emplace(index, std::move(ids)).first->second;
+        return meshes_.emplace(index, std::move(ids)).first->second;
     }
 
     // emissiveFactor · KHR_materials_emissive_strength; textures of it are not read.

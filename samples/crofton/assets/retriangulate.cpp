@@ -27,6 +27,7 @@ class Retriangulation {
         options_.seconds = kSecondsPerPolygon;
     }
 
+    // From a scene as loaded: nothing was removed from it, and parents have lower ids than their children.
     Result<scene::Scene> run(const LoadOptions& load) {
         scene::Scene made({load.criterion});
         for (scene::NodeId n = 0; n < from_.node_count(); ++n)
@@ -41,8 +42,6 @@ class Retriangulation {
         for (scene::InstanceId i = 0; i < from_.instance_count(); ++i) {
             const auto added = made.add_instance(from_.node_of(i), from_.mesh_of(i));
             if (!added) return tl::unexpected(added.error());
-            if (!from_.is_removed(i)) continue;
-            if (auto removed = made.remove_instance(*added); !removed) return tl::unexpected(removed.error());
         }
         return made;
     }

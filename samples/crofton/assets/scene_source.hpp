@@ -40,8 +40,8 @@ struct SceneSource {
 };
 
 // "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
-// item in it and the reason: missing or damaged file, unknown extension, unknown map, NaN or singular matrices, indices
-// out of range, nothing to draw.
+// item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw. Of a glTF file,
+// nodes with NaN or huge transforms and primitives with bad vertices or indices are left out, with a warning each.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 
 [[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);

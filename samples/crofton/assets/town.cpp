@@ -115,7 +115,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
     if (wanted > kMaxInstances)
         return fail(ErrorCode::out_of_range, wanted, "town: at most 1000000 instances, not " + std::to_string(wanted));
     SceneSource source{"town", scene::Scene({options.criterion}), {}, {}, {}, {}};
-    const scene::Transform turn = scene::from_trs({}, glm::angleAxis(kTurn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
+    const scene::Transform turn = *scene::from_trs({}, glm::angleAxis(kTurn, glm::dvec3(0, 1, 0)), glm::dvec3(1.0));
     const auto root = source.scene.add_node(scene::kNone, turn, ~0u, "town");
     if (!root) return tl::unexpected(root.error());
     const double blocks = std::max(1.0, std::round(wanted / kInstancesPerBlock));
@@ -158,7 +158,7 @@ Result<SceneSource> make_town(const LoadOptions& options) {
         }
         for (const Crane& crane : cranes)
             (void)scene.set_local(crane.node,
-                                  crane.start * scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
+                                  crane.start * *scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
                                                                 glm::dvec3(1.0)));
     };
     source.one_sided.assign(source.scene.mesh_count(), 1);  // where both sides show, both are built

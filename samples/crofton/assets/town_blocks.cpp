@@ -11,7 +11,7 @@ constexpr double kCraneHeight = 30.0;
 constexpr double kCableLength = 14.0;
 
 scene::Transform turned(double x, double y, double z, double turn, double scale = 1.0) {
-    return scene::from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale));
+    return *scene::from_trs({x, y, z}, glm::angleAxis(turn, glm::dvec3(0, 1, 0)), glm::dvec3(scale));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ void show_node(const PanelInput& input, PanelWish& wish, scene::NodeId node, int
     const scene::Scene& scene = input.stage.scene();
     const auto instances = input.nodes.instances(node);
     const bool leaf = input.nodes.children(node).empty() && instances.empty();
-    const std::string& name = scene.node_name(node);
+    const std::string name(scene.node_name(node));
     ImGui::PushID(static_cast<int>(node));
     const bool open = ImGui::TreeNodeEx("node", leaf ? ImGuiTreeNodeFlags_Leaf : 0, "%s #%u",
                                         name.empty() ? "node" : name.c_str(), node);
@@ -32,7 +32,7 @@ void show_node(const PanelInput& input, PanelWish& wish, scene::NodeId node, int
         for (const scene::InstanceId instance : instances) {
             ImGui::PushID(static_cast<int>(instance));
             const std::string label =
-                "mesh " + scene.mesh_name(scene.mesh_of(instance)) + " (instance " + std::to_string(instance) + ")";
+                "mesh " + std::string(scene.mesh_name(scene.mesh_of(instance))) + " (instance " + std::to_string(instance) + ")";
             if (ImGui::Selectable(label.c_str(), instance == input.selected)) wish.select = instance;
             ImGui::PopID();
         }
@@ -64,7 +64,7 @@ void show_selection(const PanelInput& input) {
     const Obb& box = scene.world_boxes()[instance];
     ImGui::PushTextWrapPos(0.0f);
     ImGui::Text("instance %u of node %u, mesh %u %s", instance, scene.node_of(instance), mesh,
-                scene.mesh_name(mesh).c_str());
+                std::string(scene.mesh_name(mesh)).c_str());
     ImGui::Text("%s triangles, bound %s", with_thousands(scene.mesh(mesh).triangle_count()).c_str(),
                 verdict_name(input.stage.pipeline().verdicts()[instance]));
     const glm::vec3 edge = 2.0f * box.half_extents;
