@@ -83,11 +83,11 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
                                     kErrorOfChiSquare));
     };
     right(
-        "(a) two sphere points", [](Random& r) { return line_through_two_sphere_points(kUnitSphere, r.point<4>()); },
-        trials);
+        "(a) two sphere points",
+        [](Random& r) { return sampling::line_through_two_sphere_points(kUnitSphere, r.point<4>()); }, trials);
     right(
-        "(b) a direction and a disc point", [](Random& r) { return line_through_disc(kUnitSphere, r.point<4>()); },
-        trials);
+        "(b) a direction and a disc point",
+        [](Random& r) { return sampling::line_through_disc(kUnitSphere, r.point<4>()); }, trials);
     right(
         "(d) cosine-weighted from a box", [](Random& r) { return sampling::line_from_box(kBox, r.point<5>()); },
         trials);
@@ -99,7 +99,7 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
     const auto number_in_bundle = [](Random& r, Vector<Line>& bundle) {
         constexpr double cell = 0.5, most = 36.0;  // 6 × 6 cells of side 0.71 can reach the unit disc
         bundle.clear();
-        append_line_bundle(kUnitSphere, cell, r, bundle);
+        sampling::append_line_bundle(kUnitSphere, cell, r, bundle);
         return static_cast<std::size_t>(most * r.uniform());
     };
     Vector<Line> bundle;
@@ -119,9 +119,9 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
                                  kErrorOfChiSquare));
     };
     wrong("lines through two uniform points of a box",
-          [](Random& r) { return measure::wrong::line_through_two_box_points(kBox, r.point<6>()); });
+          [](Random& r) { return study::wrong::line_through_two_box_points(kBox, r.point<6>()); });
     wrong("lines from a sphere point in uniform directions",
-          [](Random& r) { return measure::wrong::line_from_sphere_uniform_direction(kUnitSphere, r.point<4>()); });
+          [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kUnitSphere, r.point<4>()); });
 }
 
 // In the plane: distances from the centre are uniform on [0, R].
@@ -142,7 +142,7 @@ void plane_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const double mean = cells - 1.0, error = std::sqrt(2.0 * mean);
     rows.push_back(wrong_row("in the plane, lines through two points of a circle are uniform", "theory.md section 6",
                              mean, chi([](Random& r) {
-                                 const auto line = measure::wrong::line_through_two_circle_points(1.0, r.point<2>());
+                                 const auto line = study::wrong::line_through_two_circle_points(1.0, r.point<2>());
                                  return std::abs(line.point.x * line.direction.y - line.point.y * line.direction.x);
                              }),
                              error));
@@ -187,8 +187,9 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                                     2.0 * Patch::kArea / surface, mean.value(), mean.standard_error()));
     };
     const glm::dvec3 size = kBox.max - kBox.min;
-    row("(a), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_two_sphere_points(kUnitSphere, r.point<4>()); });
-    row("(b), A/(2πR²)", 4.0 * pi, [](Random& r) { return line_through_disc(kUnitSphere, r.point<4>()); });
+    row("(a), A/(2πR²)", 4.0 * pi,
+        [](Random& r) { return sampling::line_through_two_sphere_points(kUnitSphere, r.point<4>()); });
+    row("(b), A/(2πR²)", 4.0 * pi, [](Random& r) { return sampling::line_through_disc(kUnitSphere, r.point<4>()); });
     row("(d) from a box, 2A/F", 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x),
         [](Random& r) { return sampling::line_from_box(kBox, r.point<5>()); });
     const auto hull = sampling::LinesFromHull::make(octahedron(2.0f));
@@ -200,7 +201,7 @@ void patch_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     Mean mean, lines_per_bundle;
     for (std::uint64_t i = 0; i < std::max<std::uint64_t>(options.trials / 50, 400); ++i) {
         lines.clear();
-        append_line_bundle(kUnitSphere, cell, random, lines);
+        sampling::append_line_bundle(kUnitSphere, cell, random, lines);
         double hits = 0.0;
         for (const Line& line : lines) hits += patch.crossings(line);
         mean.add(hits);
