@@ -211,8 +211,7 @@ Result<void> Session::finish_drawing() {
     auto counters = rasterizer_->finish();
     if (!counters) return tl::unexpected(std::move(counters.error()));
     frame_.draw_us = microseconds_since(draw_start_);
-    frame_.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
-                                     counters->clipping_primitives, counters->samples_passed};
+    frame_.gpu = *counters;
     return {};
 }
 
