@@ -15,7 +15,7 @@
 namespace crofton::cli {
 namespace {
 
-using measure::Disc;
+using study::Disc;
 using measure::PlanarMeasures;
 using std::numbers::pi;
 using study::PlanarSupport;
@@ -47,7 +47,7 @@ void line_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     std::vector<PlanarSupport> circles;
     for (const Disc& d : discs) circles.emplace_back(d);
     const std::vector<PlanarSupport> mixed = {circles[0], polygon,
-                                              PlanarSupport(measure::Rectangle{{0.5, 0.2}, {0.8, 0.6}, {1.5, 0.3}})};
+                                              PlanarSupport(study::Rectangle{{0.5, 0.2}, {0.8, 0.6}, {1.5, 0.3}})};
     const std::vector<PlanarSupport> two = {circles[0], circles[1]},
                                      apart = {circles[1], PlanarSupport(Disc{{-3.0, 0.0}, 0.7})};
 
