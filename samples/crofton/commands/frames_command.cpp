@@ -195,8 +195,7 @@ class FramesRun {
         picture.environment.haze_distance = static_cast<float>(haze);
         const auto counters = drawing_->rasterizer.draw(picture);
         if (!counters) return tl::unexpected(counters.error());
-        frame.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
-                                        counters->clipping_primitives, counters->samples_passed};
+        frame.gpu = *counters;
         return {};
     }
 

@@ -1,6 +1,7 @@
 // What one frame cost and found; the rows of `crofton frames` and of the viewer's panel.
 #pragma once
 #include <crofton/geometry/camera.hpp>
+#include <crofton/render/rasterizer.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,14 +13,6 @@
 
 namespace crofton::pipeline {
 
-// As the GPU counted them (docs/render.md says what each counts on lavapipe).
-struct GpuCounts {
-    std::uint64_t input_assembly_primitives = 0;
-    std::uint64_t clipping_invocations = 0;
-    std::uint64_t clipping_primitives = 0;
-    std::uint64_t samples_passed = 0;
-};
-
 struct FrameStatistics {
     std::uint32_t index = 0;
     Camera camera;
@@ -29,10 +22,10 @@ struct FrameStatistics {
     std::uint64_t straddling = 0;  // the bound meets the frustum's boundary
     std::uint64_t improper = 0;    // the bound straddles, the object itself does not
     std::uint64_t nodes_tested = 0;
-    std::uint64_t triangles_submitted = 0;  // of the visible instances
-    std::uint64_t triangles_passed = 0;     // that meet the frustum
-    std::uint64_t triangles_clipped = 0;    // predicted Σ (vertices of the clipped polygon − 2)
-    std::optional<GpuCounts> gpu;           // absent without drawing
+    std::uint64_t triangles_submitted = 0;   // of the visible instances
+    std::uint64_t triangles_passed = 0;      // that meet the frustum
+    std::uint64_t triangles_clipped = 0;     // predicted Σ (vertices of the clipped polygon − 2)
+    std::optional<render::GpuCounters> gpu;  // absent without drawing; docs/render.md: what each counts on lavapipe
     std::uint64_t colliding_pairs = 0;
     // Pairs whose axis-aligned bounds meet, and what told their boxes apart: early outs, by group of axes. The first
     // equals the sum of the next three and colliding_pairs.

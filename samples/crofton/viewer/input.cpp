@@ -39,13 +39,13 @@ void Session::handle(const Event& event) {
         request.source = event.text;
         if (auto loaded = load(request); !loaded) {
             report(loaded.error());
-            note("the scene stays: " + stage_->source().name);
+            note("the scene stays: " + loaded_->source().name);
         }
         return;
     }
     if (event.kind == Event::Kind::key_down && handle_key(event.text)) return;
     if (event.kind == Event::Kind::button_down && event.button == 0) click(event.at);
-    eye_.handle(event);
+    controller_.handle(event);
 }
 
 // The switches that a key flips.
@@ -87,7 +87,7 @@ bool Session::cycle_setting(const std::string& key) {
     } else if (key == "Y") {
         next(s.method.triangulation, std::size(kTriangulationNames));
     } else if (key == "T") {
-        const int height = static_cast<int>(stage_->pipeline().tree().height());
+        const int height = static_cast<int>(loaded_->pipeline().tree().height());
         s.tree_level = s.tree_level + 1 >= height ? -1 : s.tree_level + 1;
     } else if (key == "V") {
         s.cascades = s.cascades % 8 + 1;
@@ -103,20 +103,20 @@ bool Session::handle_bookmark(const std::string& key) {
     const char last = key.empty() ? '0' : key.back();
     if (last < '1' || last > '9') return false;
     if (key == std::string("Ctrl+") + last) {
-        eye_.store_bookmark(last - '0');
+        controller_.store_bookmark(last - '0');
         note("bookmark " + std::string(1, last) + " set");
         return true;
     }
     if (key.size() != 1) return false;
-    if (!eye_.recall_bookmark(last - '0')) note("bookmark " + key + " is not set: Ctrl+" + key + " sets it");
+    if (!controller_.recall_bookmark(last - '0')) note("bookmark " + key + " is not set: Ctrl+" + key + " sets it");
     return true;
 }
 
 bool Session::handle_command(const std::string& key) {
     if (key == "Tab") {
-        eye_.mode = eye_.mode == EyeMode::fly ? EyeMode::orbit : EyeMode::fly;
+        controller_.mode = controller_.mode == CameraMode::fly ? CameraMode::orbit : CameraMode::fly;
     } else if (key == "Home") {
-        eye_.frame_all(stage_->focus(), stage_->extent());
+        controller_.frame_all(loaded_->focus(), loaded_->extent());
     } else if (key == ".") {
         step_ = true;
     } else if (key == "R") {
@@ -151,7 +151,7 @@ void Session::perform(const Action& action) {
             break;
         case Action::Kind::camera:
             replaying_ = false;
-            eye_.look(action.camera);
+            controller_.look(action.camera);
             break;
         case Action::Kind::set:
             for (const auto& [name, value] : action.set.members())
@@ -179,7 +179,7 @@ void Session::perform(const Action& action) {
 void Session::click(const glm::dvec2& pixel) {
     const glm::dvec2 size(wanted_size_.width, wanted_size_.height);
     const glm::dvec2 place(2.0 * (pixel.x + 0.5) / size.x - 1.0, 1.0 - 2.0 * (pixel.y + 0.5) / size.y);
-    pick_ = pick(stage_->scene(), frame_.visible_ids, eye_.camera, place);
+    pick_ = pick(loaded_->scene(), frame_.visible_ids, controller_.camera, place);
     selected_ = pick_ ? pick_->instance : scene::kNone;
 }
 
@@ -204,9 +204,9 @@ void Session::toggle_recording() {
 void Session::export_files() {
     const std::string base = options_.output_folder + "/statistics";
     for (const auto& [file, text] :
-         {std::pair<std::string, std::string>{base + ".json", journal_.json().dump(1) + "\n"},
-          {base + ".csv", journal_.csv()},
-          {base + "_trace.json", journal_.chrome_trace()}})
+         {std::pair<std::string, std::string>{base + ".json", frame_history_.json().dump(1) + "\n"},
+          {base + ".csv", frame_history_.csv()},
+          {base + "_trace.json", frame_history_.chrome_trace()}})
         if (auto written = assets::write_file(file, text); !written) return report(written.error());
     note("saved " + base + ".json, .csv and _trace.json");
 }
@@ -224,7 +224,7 @@ bool Session::on_panel(const glm::dvec2& at) const {
 }
 
 void Session::grant(const PanelWish& wish) {
-    if (wish.frame_all) eye_.frame_all(stage_->focus(), stage_->extent());
+    if (wish.frame_all) controller_.frame_all(loaded_->focus(), loaded_->extent());
     if (wish.record) toggle_recording();
     if (wish.replay) toggle_replay();
     if (wish.export_files) export_files();

@@ -50,16 +50,17 @@ Result<void> Session::build_interface() {
     const ImVec2 inset_size =
         inset != nullptr ? ImVec2(static_cast<float>(rasterizer_->width(1)), static_cast<float>(rasterizer_->height(1)))
                          : ImVec2(0.0f, 0.0f);
-    const pipeline::FrameStatistics* drawn = journal_.entries().empty() ? nullptr : &journal_.entries().back().frame;
+    const pipeline::FrameStatistics* drawn =
+        frame_history_.entries().empty() ? nullptr : &frame_history_.entries().back().frame;
     wish_ = draw_panels({settings_,
-                         eye_,
-                         *stage_,
+                         controller_,
+                         *loaded_,
                          nodes_,
                          frame_,
                          drawn,
                          other_ ? &other_frame_ : nullptr,
-                         journal_,
-                         painter_,
+                         frame_history_,
+                         instance_coloring_,
                          overlay_,
                          cascades_,
                          pick_,
@@ -88,11 +89,11 @@ Result<void> Session::draw_interface() {
 
 Result<void> Session::finish() {
     if (options_.json.empty()) return {};
-    Json document = journal_.json();
-    document["scene"] = {{"name", stage_->source().name},
-                         {"nodes", stage_->scene().node_count()},
-                         {"instances", stage_->scene().instance_count()},
-                         {"triangles", stage_->triangle_count()}};
+    Json document = frame_history_.json();
+    document["scene"] = {{"name", loaded_->source().name},
+                         {"nodes", loaded_->scene().node_count()},
+                         {"instances", loaded_->scene().instance_count()},
+                         {"triangles", loaded_->triangle_count()}};
     document["device"] = device_->name();
     document["counts_exactly"] = device_->counts_exactly();
     document["validation_messages"] = Json::array();

@@ -18,8 +18,8 @@ void edges(LineList& lines, const std::array<glm::dvec3, 8>& corner, std::uint32
 }  // namespace
 
 void LineList::segment(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t color) {
-    vertices_.push_back({glm::vec3(a - eye_), color});
-    vertices_.push_back({glm::vec3(b - eye_), color});
+    vertices_.push_back({glm::vec3(a - controller_), color});
+    vertices_.push_back({glm::vec3(b - controller_), color});
 }
 
 void LineList::box(const Obb& box, std::uint32_t color) {

@@ -16,7 +16,7 @@ constexpr std::uint32_t rgba(std::uint32_t r, std::uint32_t g, std::uint32_t b, 
 class LineList {
   public:
     void clear(const glm::dvec3& eye) {
-        eye_ = eye;
+        controller_ = eye;
         vertices_.clear();
     }
     void segment(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t color);
@@ -29,7 +29,7 @@ class LineList {
     [[nodiscard]] std::span<const render::LineVertex> vertices() const { return vertices_; }
 
   private:
-    glm::dvec3 eye_{0.0};
+    glm::dvec3 controller_{0.0};
     std::vector<render::LineVertex> vertices_;
 };
 

@@ -102,9 +102,9 @@ Result<void> Session::recover() {
 }
 
 Result<void> Session::load(const SceneRequest& request) {
-    auto stage = Stage::load(request, settings_.method, settings_);
-    if (!stage) return tl::unexpected(std::move(stage.error()));
-    const bool same_scene = stage_ && request.source == request_.source && request.map == request_.map;
+    auto loaded = LoadedScene::load(request, settings_.method, settings_);
+    if (!loaded) return tl::unexpected(std::move(loaded.error()));
+    const bool same_scene = loaded_ && request.source == request_.source && request.map == request_.map;
     // What refers to the old scene goes first.
     list_.reset();
     overlay_.clear();
@@ -115,22 +115,22 @@ Result<void> Session::load(const SceneRequest& request) {
         scene_time_ = 0.0;
         replaying_ = false;
     }
-    stage_ = std::move(*stage);
+    loaded_ = std::move(*loaded);
     request_ = request;
-    nodes_.rebuild(stage_->scene());
-    for (const std::string& warning : stage_->source().warnings) report({ErrorCode::unsupported, kNoItem, warning});
+    nodes_.rebuild(loaded_->scene());
+    for (const std::string& warning : loaded_->source().warnings) report({ErrorCode::unsupported, kNoItem, warning});
     if (!same_scene) {
-        eye_.frame_all(stage_->focus(), stage_->extent());
-        const std::vector<glm::dvec3>& walk = stage_->source().walk;
-        if (walk.size() > 1) eye_.stand(walk[0], walk[1]);
-        culling_camera_ = eye_.camera;
-        if (window_) window_->set_title("Crofton: " + stage_->source().name + " (F1: help)");
+        controller_.frame_all(loaded_->focus(), loaded_->extent());
+        const std::vector<glm::dvec3>& walk = loaded_->source().walk;
+        if (walk.size() > 1) controller_.stand(walk[0], walk[1]);
+        culling_camera_ = controller_.camera;
+        if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
-    std::vector<std::uint8_t> is_mover(stage_->scene().instance_count(), 0);
-    for (const scene::InstanceId mover : stage_->source().movers) is_mover[mover] = 1;
+    std::vector<std::uint8_t> is_mover(loaded_->scene().instance_count(), 0);
+    for (const scene::InstanceId mover : loaded_->source().movers) is_mover[mover] = 1;
     list_ = std::make_unique<pipeline::DrawList>(
-        stage_->scene(), stage_->pipeline().spatial_order(), is_mover,
-        pipeline::DrawList::Looks{stage_->source().unlit, stage_->source().one_sided});
+        loaded_->scene(), loaded_->pipeline().spatial_order(), is_mover,
+        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided});
     return upload_geometry();
 }
 
@@ -142,19 +142,19 @@ Result<void> Session::upload_geometry() {
 }
 
 Result<void> Session::follow_settings() {
-    // A file may have gone or changed since: what is on stage stays, with the method that it has.
-    if (stage_->needs_reload(settings_.method)) {
+    // A file may have gone or changed since: the scene on show stays, with the method that it has.
+    if (loaded_->needs_reload(settings_.method)) {
         if (auto loaded = load(request_); !loaded) {
             report(loaded.error());
-            settings_.method = stage_->method();
+            settings_.method = loaded_->method();
         }
-    } else if (auto configured = stage_->configure(settings_.method, settings_); !configured) {
+    } else if (auto configured = loaded_->configure(settings_.method, settings_); !configured) {
         return configured;
     }
     if (!settings_.compare) {
         other_.reset();
     } else if (!other_ || other_->needs_reload(settings_.other)) {
-        auto other = Stage::load(request_, settings_.other, settings_);
+        auto other = LoadedScene::load(request_, settings_.other, settings_);
         if (other) {
             other_ = std::move(*other);
         } else {
@@ -175,9 +175,10 @@ Result<void> Session::load_replay() {
     const bool built_in = !std::filesystem::exists(path.kind);
     path.frames = options_.frames > 0 ? options_.frames : built_in ? 600 : 0;
     path.aspect = static_cast<double>(options_.width) / options_.height;
-    std::vector<glm::dvec3> walk = stage_->source().walk;
-    if (walk.empty() && path.kind == "street") walk = pipeline::find_pedestrian_path(stage_->scene(), stage_->focus());
-    auto made = pipeline::make_camera_path(path, stage_->focus(), walk);
+    std::vector<glm::dvec3> walk = loaded_->source().walk;
+    if (walk.empty() && path.kind == "street")
+        walk = pipeline::find_pedestrian_path(loaded_->scene(), loaded_->focus());
+    auto made = pipeline::make_camera_path(path, loaded_->focus(), walk);
     if (!made) return tl::unexpected(std::move(made.error()));
     path_ = std::move(*made);
     replaying_ = true;

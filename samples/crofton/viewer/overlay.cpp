@@ -37,27 +37,27 @@ std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
     return result;
 }
 
-void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage,
+void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene& loaded,
                    const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades,
                    scene::InstanceId selected, bool show_frustum) {
-    const scene::Scene& scene = stage.scene();
+    const scene::Scene& scene = loaded.scene();
     legend_.clear();
-    draw_bounds(lines, settings, stage, frame);
-    if (settings.tree_level >= 0) draw_tree_level(lines, stage.pipeline().tree(), settings.tree_level);
+    draw_bounds(lines, settings, loaded, frame);
+    if (settings.tree_level >= 0) draw_tree_level(lines, loaded.pipeline().tree(), settings.tree_level);
     contacts_ = separations_ = 0;
     if (settings.coloring == Coloring::collision && settings.collisions) {
         legend_.push_back({"boxes that meet, and their centres", kPair});
-        draw_pairs(lines, stage, frame);
+        draw_pairs(lines, loaded, frame);
         legend_.push_back({"contacts between triangles", kContact, contacts_});
-        draw_separations(lines, stage, frame);
+        draw_separations(lines, loaded, frame);
         legend_.push_back({"near misses, separating axis", kSeparation, separations_});
     }
     if (selected < scene.instance_count() && !scene.is_removed(selected)) {
         legend_.push_back({"its bound and its own axes", kSelection});
-        lines.box(stage.pipeline().bounds().boxes()[selected], kSelection);
+        lines.box(loaded.pipeline().bounds().boxes()[selected], kSelection);
         lines.axes(scene.world_boxes()[selected]);
     }
-    const double reach = 1.5 * glm::length(stage.extent().half_extents());
+    const double reach = 1.5 * glm::length(loaded.extent().half_extents());
     if (show_frustum && cascades.size() < 2) {
         legend_.push_back({"view that culls", kFrustum});
         lines.frustum(frame.camera, reach, kFrustum);
@@ -67,11 +67,11 @@ void Overlay::draw(LineList& lines, const Settings& settings, const Stage& stage
             if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far, cascade.color);
 }
 
-void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Stage& stage,
+void Overlay::draw_bounds(LineList& lines, const Settings& settings, const LoadedScene& loaded,
                           const pipeline::FrameStatistics& frame) {
-    const scene::Scene& scene = stage.scene();
-    const auto verdicts = stage.pipeline().verdicts();
-    const auto boxes = stage.pipeline().bounds().boxes();
+    const scene::Scene& scene = loaded.scene();
+    const auto verdicts = loaded.pipeline().verdicts();
+    const auto boxes = loaded.pipeline().bounds().boxes();
     if (settings.outside) {
         legend_.push_back({"bounds of what is culled", kOutside});
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
@@ -106,8 +106,8 @@ void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int
         }
 }
 
-void Overlay::draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame) {
-    const auto boxes = stage.scene().world_boxes();
+void Overlay::draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
+    const auto boxes = loaded.scene().world_boxes();
     const std::size_t count = std::min(frame.colliding_ids.size(), kMaxPairs);
     for (std::size_t i = 0; i < count; ++i) {
         const auto [a, b] = frame.colliding_ids[i];
@@ -116,7 +116,7 @@ void Overlay::draw_pairs(LineList& lines, const Stage& stage, const pipeline::Fr
             lines.axes(boxes[instance]);
         }
         lines.segment(boxes[a].center, boxes[b].center, kPair);
-        draw_contacts(lines, stage.scene(), a, b);
+        draw_contacts(lines, loaded.scene(), a, b);
     }
 }
 
@@ -131,11 +131,11 @@ void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, scene::I
 }
 
 // Between moving bodies in view that come close.
-void Overlay::draw_separations(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame) {
-    const auto boxes = stage.scene().world_boxes();
+void Overlay::draw_separations(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
+    const auto boxes = loaded.scene().world_boxes();
     std::vector<scene::InstanceId> movers;
-    std::set_intersection(frame.visible_ids.begin(), frame.visible_ids.end(), stage.pipeline().movers().begin(),
-                          stage.pipeline().movers().end(), std::back_inserter(movers));
+    std::set_intersection(frame.visible_ids.begin(), frame.visible_ids.end(), loaded.pipeline().movers().begin(),
+                          loaded.pipeline().movers().end(), std::back_inserter(movers));
     for (const auto& [a, b] : near_pairs(boxes, movers, kMaxPairs)) {
         const auto gap = separation(boxes[a], boxes[b]);
         if (!gap) continue;

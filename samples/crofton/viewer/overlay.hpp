@@ -4,8 +4,8 @@
 
 #include "contact_finder.hpp"
 #include "line_list.hpp"
+#include "loaded_scene.hpp"
 #include "settings.hpp"
-#include "stage.hpp"
 
 namespace crofton::viewer {
 
@@ -28,8 +28,9 @@ struct LineMeaning {
 class Overlay {
   public:
     // All lines that the settings ask for, for an eye at `eye`. `frame` is what culling said; its camera culled.
-    void draw(LineList& lines, const Settings& settings, const Stage& stage, const pipeline::FrameStatistics& frame,
-              std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum);
+    void draw(LineList& lines, const Settings& settings, const LoadedScene& loaded,
+              const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades, scene::InstanceId selected,
+              bool show_frustum);
     // Forgets what belongs to a scene that is gone.
     void clear() { finder_.clear(); }
     // Of the lines last drawn.
@@ -38,13 +39,13 @@ class Overlay {
     [[nodiscard]] std::uint64_t separation_count() const { return separations_; }
 
   private:
-    void draw_bounds(LineList& lines, const Settings& settings, const Stage& stage,
+    void draw_bounds(LineList& lines, const Settings& settings, const LoadedScene& loaded,
                      const pipeline::FrameStatistics& frame);
     // The root is level 0.
     void draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level);
-    void draw_pairs(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
+    void draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
     void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);
-    void draw_separations(LineList& lines, const Stage& stage, const pipeline::FrameStatistics& frame);
+    void draw_separations(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
     ContactFinder finder_;
     std::vector<Segment> found_;

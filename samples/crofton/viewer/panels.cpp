@@ -53,7 +53,7 @@ void shape_legend() {
 }
 
 void legend(const PanelInput& input) {
-    for (const Painter::Count& tint : input.painter.counts()) {
+    for (const InstanceColoring::Count& tint : input.instance_coloring.counts()) {
         if (tint.instances == 0 && input.settings.coloring == Coloring::depth) continue;
         sample(display_color(tint.color), 1.0f);
         ImGui::Text("%s: %s", tint.name, with_thousands(tint.instances).c_str());
@@ -76,12 +76,12 @@ void legend(const PanelInput& input) {
 }
 
 void heading(const PanelInput& input) {
-    const double ms = input.journal.mean([](const JournalEntry& e) { return e.frame_us * 1e-3; }, 30);
-    ImGui::Text("%s: %.1f frames/s", input.stage.source().name.c_str(), ms > 0.0 ? 1000.0 / ms : 0.0);
+    const double ms = input.frame_history.mean([](const HistoryEntry& e) { return e.frame_us * 1e-3; }, 30);
+    ImGui::Text("%s: %.1f frames/s", input.loaded.source().name.c_str(), ms > 0.0 ? 1000.0 / ms : 0.0);
     ImGui::TextDisabled("%s", input.device.c_str());
     const glm::dvec3& eye = input.eye.camera.position;
     ImGui::Text("eye %.1f %.1f %.1f m, %s %.3g m/s", eye.x, eye.y, eye.z,
-                input.eye.mode == EyeMode::orbit ? "in orbit," : "flying at", input.eye.speed);
+                input.eye.mode == CameraMode::orbit ? "in orbit," : "flying at", input.eye.speed);
     // One line, always there: nothing below it jumps.
     std::string state;
     for (const auto& [is, name] : {std::pair<bool, const char*>{input.settings.freeze, "FROZEN"},
@@ -120,7 +120,7 @@ void main_panel(const PanelInput& input, PanelWish& wish) {
         legend(input);
         if (ImGui::CollapsingHeader("Switches", ImGuiTreeNodeFlags_DefaultOpen)) switches_panel(input, wish);
         if (unfolded("More statistics", input.settings.more)) more_statistics(input);
-        if (unfolded("History", input.settings.history)) history_plots(input.journal);
+        if (unfolded("History", input.settings.history)) history_plots(input.frame_history);
     }
     cover(wish);
     ImGui::End();

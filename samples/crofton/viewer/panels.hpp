@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "eye.hpp"
-#include "journal.hpp"
+#include "camera_controller.hpp"
+#include "frame_history.hpp"
+#include "instance_coloring.hpp"
+#include "loaded_scene.hpp"
 #include "overlay.hpp"
-#include "painter.hpp"
 #include "picking.hpp"
 #include "settings.hpp"
-#include "stage.hpp"
 
 namespace crofton::viewer {
 
@@ -41,14 +41,14 @@ struct Notice {
 // What the panels show, and what they may change.
 struct PanelInput {
     Settings& settings;
-    Eye& eye;
-    const Stage& stage;
+    CameraController& eye;
+    const LoadedScene& loaded;
     const NodeTree& nodes;
     const pipeline::FrameStatistics& frame;
     const pipeline::FrameStatistics* drawn;  // the last frame that the device has counted, or null
     const pipeline::FrameStatistics* other;  // of the comparison's B, or null
-    const Journal& journal;
-    const Painter& painter;
+    const FrameHistory& frame_history;
+    const InstanceColoring& instance_coloring;
     const Overlay& overlay;
     std::span<const Cascade> cascades;
     std::optional<Pick> pick;

@@ -21,7 +21,7 @@ void show_children(const PanelInput& input, PanelWish& wish, scene::NodeId paren
 }
 
 void show_node(const PanelInput& input, PanelWish& wish, scene::NodeId node, int depth) {
-    const scene::Scene& scene = input.stage.scene();
+    const scene::Scene& scene = input.loaded.scene();
     const auto instances = input.nodes.instances(node);
     const bool leaf = input.nodes.children(node).empty() && instances.empty();
     const std::string name(scene.node_name(node));
@@ -54,7 +54,7 @@ const char* verdict_name(cull::Verdict verdict) {
 }
 
 void show_selection(const PanelInput& input) {
-    const scene::Scene& scene = input.stage.scene();
+    const scene::Scene& scene = input.loaded.scene();
     const scene::InstanceId instance = input.selected;
     if (instance >= scene.instance_count() || scene.is_removed(instance)) {
         ImGui::TextDisabled("left click picks an instance");
@@ -66,7 +66,7 @@ void show_selection(const PanelInput& input) {
     ImGui::Text("instance %u of node %u, mesh %u %s", instance, scene.node_of(instance), mesh,
                 std::string(scene.mesh_name(mesh)).c_str());
     ImGui::Text("%s triangles, bound %s", with_thousands(scene.mesh(mesh).triangle_count()).c_str(),
-                verdict_name(input.stage.pipeline().verdicts()[instance]));
+                verdict_name(input.loaded.pipeline().verdicts()[instance]));
     const glm::vec3 edge = 2.0f * box.half_extents;
     ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m", static_cast<double>(edge.x), static_cast<double>(edge.y),
                 static_cast<double>(edge.z));
@@ -120,9 +120,9 @@ void scene_panel(const PanelInput& input, PanelWish& wish) {
     ImGui::SetNextWindowSize(ImVec2(width, std::min(18.0f * font, 0.45f * display.y)), when);
     if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
     if (ImGui::Begin("Scene")) {
-        ImGui::TextWrapped("%s nodes, %s instances", with_thousands(input.stage.scene().node_count()).c_str(),
-                           with_thousands(input.stage.scene().instance_count()).c_str());
-        ImGui::Text("%s triangles", with_thousands(input.stage.triangle_count()).c_str());
+        ImGui::TextWrapped("%s nodes, %s instances", with_thousands(input.loaded.scene().node_count()).c_str(),
+                           with_thousands(input.loaded.scene().instance_count()).c_str());
+        ImGui::Text("%s triangles", with_thousands(input.loaded.triangle_count()).c_str());
         show_selection(input);
         ImGui::Separator();
         if (ImGui::BeginChild("nodes")) show_children(input, wish, scene::kNone, 0);

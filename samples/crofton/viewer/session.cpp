@@ -50,7 +50,7 @@ bool Session::running() const {
     return options_.script.empty() ? window_ != nullptr : !script_.empty();
 }
 
-Result<void> Session::turn() {
+Result<void> Session::run_frame() {
     auto turned = try_turn();
     if (turned || turned.error().code != ErrorCode::unavailable) return turned;
     if (recoveries_++ == kMaxRecoveries) return turned;
@@ -89,7 +89,7 @@ Result<void> Session::try_turn() {
         if (auto shown = window_->present(rasterizer_->native_image()->handle, size); !shown) return shown;
     }
     frame_.index = frame_index_++;
-    journal_.add({frame_, microseconds_since(start), ui_us_, static_cast<std::uint32_t>(scene_time_)});
+    frame_history_.add({frame_, microseconds_since(start), ui_us_, static_cast<std::uint32_t>(scene_time_)});
     // Presenting does not pace on every device: no more than 60 pictures a second.
     if (window_ && !unattended()) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
     return {};
@@ -108,7 +108,7 @@ Result<void> Session::resize() {
         rasterizer_->resize(wanted_size_.width, wanted_size_.height, 0, static_cast<float>(drawn_resolution_));
     if (!resized) return resized;
     stale_size_ = false;
-    eye_.camera.aspect = static_cast<double>(wanted_size_.width) / wanted_size_.height;
+    controller_.camera.aspect = static_cast<double>(wanted_size_.width) / wanted_size_.height;
     return ui_->set_target(rasterizer_->native_image()->view, wanted_size_);
 }
 
@@ -129,22 +129,22 @@ void Session::advance(double seconds) {
     if (std::exchange(step_, false)) scene_time_ += 1.0;
     if (replaying_ && !path_.cameras.empty()) {
         const std::size_t now = replayed_++ % path_.cameras.size();
-        eye_.look(path_.cameras[now]);
+        controller_.look(path_.cameras[now]);
         if (!settings_.paused) scene_time_ = path_.scene_frames[now];
     }
-    eye_.advance(seconds);
-    if (!settings_.freeze) culling_camera_ = eye_.camera;
+    controller_.advance(seconds);
+    if (!settings_.freeze) culling_camera_ = controller_.camera;
     const auto scene_frame = static_cast<std::uint32_t>(scene_time_);
     if (is_recording_) {
-        recording_.cameras.push_back(eye_.camera);
+        recording_.cameras.push_back(controller_.camera);
         recording_.scene_frames.push_back(scene_frame);
     }
-    stage_->animate(scene_frame);
+    loaded_->animate(scene_frame);
     if (other_) other_->animate(scene_frame);
 }
 
 Result<void> Session::cull() {
-    auto frame = stage_->run(culling_camera_);
+    auto frame = loaded_->run(culling_camera_);
     if (!frame) return tl::unexpected(std::move(frame.error()));
     frame_ = std::move(*frame);
     if (other_) {
@@ -154,27 +154,28 @@ Result<void> Session::cull() {
     }
     cascades_.clear();
     if (settings_.cascades > 1)
-        cascades_ = split_view(culling_camera_, settings_.cascades, 1.5 * glm::length(stage_->extent().half_extents()));
+        cascades_ =
+            split_view(culling_camera_, settings_.cascades, 1.5 * glm::length(loaded_->extent().half_extents()));
     for (Cascade& cascade : cascades_) {
         const auto frustum = frustum_of(cascade.camera);
         if (!frustum) return tl::unexpected(frustum.error());
-        cull::find_visible(stage_->pipeline().tree(), {*frustum}, cascade_visible_);
+        cull::find_visible(loaded_->pipeline().tree(), {*frustum}, cascade_visible_);
         cascade.visible = cascade_visible_.size();
     }
-    painter_.classify(*stage_, frame_, settings_.coloring, selected_);
+    instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_);
     return {};
 }
 
 Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
     list_->select(frame_.visible_ids, camera);
-    painter_.paint(*list_, settings_.wireframe);
+    instance_coloring_.paint(*list_, settings_.wireframe);
     lines_.clear(camera.position);
-    overlay_.draw(lines_, settings_, *stage_, frame_, cascades_, selected_, show_frustum);
+    overlay_.draw(lines_, settings_, *loaded_, frame_, cascades_, selected_, show_frustum);
     render::Frame frame;
     frame.camera = camera;
-    frame.transforms = painter_.transforms();
-    frame.ranges = painter_.ranges();
-    frame.wire_ranges = painter_.wire_ranges();
+    frame.transforms = instance_coloring_.transforms();
+    frame.ranges = instance_coloring_.ranges();
+    frame.wire_ranges = instance_coloring_.wire_ranges();
     frame.lines = lines_.vertices();
     // Colours that mean something are not hazed, nor is light that has been computed.
     if (settings_.coloring != Coloring::lit) {
@@ -182,8 +183,8 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
         frame.environment.sky = false;
         frame.environment.horizon = glm::vec3(0.012f, 0.014f, 0.02f);
     } else {
-        const bool hazy = stage_->source().unlit.empty() && picture == 0;
-        const double distance = hazy ? 2.5 * glm::length(stage_->extent().half_extents()) : 0.0;
+        const bool hazy = loaded_->source().unlit.empty() && picture == 0;
+        const double distance = hazy ? 2.5 * glm::length(loaded_->extent().half_extents()) : 0.0;
         frame.environment.haze_distance = static_cast<float>(distance);
     }
     return rasterizer_->submit(frame, picture);
@@ -197,20 +198,19 @@ Result<void> Session::start_drawing() {
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
         if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
         // What most triangles are in; the far landscape would make it a speck.
-        const double reach = glm::length(stage_->focus().half_extents());
+        const double reach = glm::length(loaded_->focus().half_extents());
         if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }
     draw_start_ = Clock::now();
-    return submit_view(eye_.camera, 0, settings_.freeze);
+    return submit_view(controller_.camera, 0, settings_.freeze);
 }
 
 Result<void> Session::finish_drawing() {
     auto counters = rasterizer_->finish();
     if (!counters) return tl::unexpected(std::move(counters.error()));
     frame_.draw_us = microseconds_since(draw_start_);
-    frame_.gpu = pipeline::GpuCounts{counters->input_assembly_primitives, counters->clipping_invocations,
-                                     counters->clipping_primitives, counters->samples_passed};
+    frame_.gpu = *counters;
     return {};
 }
 
@@ -226,7 +226,7 @@ Result<void> Session::save_screenshots() {
             continue;
         }
         Json tints = Json::array();
-        for (const Painter::Count& tint : painter_.counts())
+        for (const InstanceColoring::Count& tint : instance_coloring_.counts())
             tints.push_back({{"name", tint.name}, {"instances", tint.instances}});
         Json views = Json::array();
         for (const Cascade& cascade : cascades_) views.push_back(cascade.visible);
@@ -234,13 +234,13 @@ Result<void> Session::save_screenshots() {
                              {"frame", frame_index_},
                              {"width", image_.width},
                              {"height", image_.height},
-                             {"scene", stage_->source().name},
+                             {"scene", loaded_->source().name},
                              {"settings", to_json(settings_)},
                              {"statistics", pipeline::to_json(frame_, false)},
                              {"scene_frame", static_cast<std::uint32_t>(scene_time_)},
-                             {"eye", pipeline::to_json(eye_.camera)},
-                             {"speed", eye_.speed},
-                             {"orbit", eye_.mode == EyeMode::orbit},
+                             {"eye", pipeline::to_json(controller_.camera)},
+                             {"speed", controller_.speed},
+                             {"orbit", controller_.mode == CameraMode::orbit},
                              {"tints", std::move(tints)},
                              {"views", std::move(views)},
                              {"contacts", overlay_.contact_count()},

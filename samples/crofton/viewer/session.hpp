@@ -1,15 +1,15 @@
-// The viewer's state and its turn: events, motion, culling, drawing, user interface, picture.
+// The viewer's state and one frame of it: events, motion, culling, drawing, user interface, picture.
 #pragma once
 #include <chrono>
 #include <crofton/cull/visible_set.hpp>
 #include <deque>
 #include <memory>
 
-#include "eye.hpp"
-#include "journal.hpp"
+#include "camera_controller.hpp"
+#include "frame_history.hpp"
+#include "instance_coloring.hpp"
 #include "json/json.hpp"
 #include "overlay.hpp"
-#include "painter.hpp"
 #include "panels.hpp"
 #include "pipeline/camera_path.hpp"
 #include "script.hpp"
@@ -28,7 +28,7 @@ class Session {
 
     [[nodiscard]] Result<void> start();
     [[nodiscard]] bool running() const;
-    [[nodiscard]] Result<void> turn();
+    [[nodiscard]] Result<void> run_frame();
     // The last screenshot and the statistics.
     [[nodiscard]] Result<void> finish();
 
@@ -62,7 +62,7 @@ class Session {
     void export_files();
     void grant(const PanelWish& wish);
 
-    // One turn (session.cpp)
+    // One frame (session.cpp)
     [[nodiscard]] bool unattended() const { return options_.frames > 0 || !options_.script.empty(); }
     [[nodiscard]] Result<void> try_turn();
     [[nodiscard]] Result<void> resize();
@@ -82,7 +82,7 @@ class Session {
 
     ViewerOptions options_;
     Settings settings_;
-    SceneRequest request_;  // what is on stage
+    SceneRequest request_;  // the scene on show
     std::unique_ptr<Window> window_;
     std::unique_ptr<render::Device> device_;
     std::unique_ptr<render::Rasterizer> rasterizer_;
@@ -90,19 +90,19 @@ class Session {
     render::Commands ui_commands_;
     bool imgui_ = false, imgui_window_ = false;
 
-    std::unique_ptr<Stage> stage_, other_;
+    std::unique_ptr<LoadedScene> loaded_, other_;
     std::unique_ptr<pipeline::DrawList> list_;
     bool shape_uploaded_ = false;
     NodeTree nodes_;
-    Eye eye_;
+    CameraController controller_;
     Camera culling_camera_;
     pipeline::FrameStatistics frame_, other_frame_;
     std::vector<Cascade> cascades_;
     cull::VisibleSet cascade_visible_;
-    Painter painter_;
+    InstanceColoring instance_coloring_;
     Overlay overlay_;
     LineList lines_;
-    Journal journal_;
+    FrameHistory frame_history_;
     std::optional<Pick> pick_;
     scene::InstanceId selected_ = scene::kNone;
 
@@ -126,7 +126,7 @@ class Session {
     glm::uvec2 laid_out_{0};  // the picture's size that the panels lie in
     std::optional<bool> folded_;
     glm::dvec2 cursor_{0.0};
-    std::vector<std::string> screenshots_;  // to be taken this turn
+    std::vector<std::string> screenshots_;  // to be taken this frame
     Json pictures_ = Json::array();
     render::Image image_;
 };

@@ -98,7 +98,7 @@ void table(const char* id, const PanelInput& input, std::span<const StatisticsRo
             number(value(*input.drawn));
         ImGui::TableNextColumn();
         if (!compare)
-            number(input.journal.mean_of_frames(value, kMeanOf));
+            number(input.frame_history.mean_of_frames(value, kMeanOf));
         else if (!later)
             number(value(*input.other));
     }
@@ -144,27 +144,27 @@ void more_statistics(const PanelInput& input) {
     table("more", input, kMoreRows);
 }
 
-void history_plots(const Journal& journal) {
+void history_plots(const FrameHistory& frame_history) {
     const float unit = ImGui::GetFontSize();
     ImGui::PushItemWidth(-6.0f * unit);
-    const auto plot = [&](const char* name, const char* format, double (*value)(const JournalEntry&)) {
-        const auto history = journal.history(value);
+    const auto plot = [&](const char* name, const char* format, double (*value)(const HistoryEntry&)) {
+        const auto history = frame_history.history(value);
         if (history.empty()) return;
         char now[64];
         std::snprintf(now, sizeof now, format, static_cast<double>(history.back()));
         ImGui::PlotLines(name, history.data(), static_cast<int>(history.size()), 0, now, 0.0f, FLT_MAX,
                          ImVec2(0.0f, 3.0f * unit));
     };
-    ImGui::TextDisabled("last %zu frames, each from 0 up", Journal::kHistory);
-    plot("frame", "%.1f ms", [](const JournalEntry& e) { return e.frame_us * 1e-3; });
-    plot("draw", "%.1f ms", [](const JournalEntry& e) { return e.frame.draw_us * 1e-3; });
-    plot("cull", "%.0f \u00b5s", [](const JournalEntry& e) { return e.frame.cull_us; });
-    plot("collide", "%.0f \u00b5s", [](const JournalEntry& e) { return e.frame.collide_us; });
-    plot("visible", "%.0f instances", [](const JournalEntry& e) { return static_cast<double>(e.frame.visible); });
+    ImGui::TextDisabled("last %zu frames, each from 0 up", FrameHistory::kHistory);
+    plot("frame", "%.1f ms", [](const HistoryEntry& e) { return e.frame_us * 1e-3; });
+    plot("draw", "%.1f ms", [](const HistoryEntry& e) { return e.frame.draw_us * 1e-3; });
+    plot("cull", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.cull_us; });
+    plot("collide", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.collide_us; });
+    plot("visible", "%.0f instances", [](const HistoryEntry& e) { return static_cast<double>(e.frame.visible); });
     plot("in view", "%.0f triangles",
-         [](const JournalEntry& e) { return static_cast<double>(e.frame.triangles_passed); });
-    plot("pairs", "%.0f colliding", [](const JournalEntry& e) { return static_cast<double>(e.frame.colliding_pairs); });
-    const auto bins = journal.frame_time_histogram();
+         [](const HistoryEntry& e) { return static_cast<double>(e.frame.triangles_passed); });
+    plot("pairs", "%.0f colliding", [](const HistoryEntry& e) { return static_cast<double>(e.frame.colliding_pairs); });
+    const auto bins = frame_history.frame_time_histogram();
     ImGui::PlotHistogram("frame ms", bins.data(), static_cast<int>(bins.size()), 0, "0 to 100 ms in steps of 5", 0.0f,
                          FLT_MAX, ImVec2(0.0f, 4.0f * unit));
     ImGui::PopItemWidth();

@@ -19,6 +19,6 @@ struct StatisticsRow {
 // The main rows: this frame and the mean of the last 60; or A and B where two methods are compared.
 void statistics_panel(const PanelInput& input);
 void more_statistics(const PanelInput& input);
-void history_plots(const Journal& journal);
+void history_plots(const FrameHistory& frame_history);
 
 }  // namespace crofton::viewer

@@ -67,7 +67,7 @@ void flags(Settings& s) {
 
 void sliders(const PanelInput& input) {
     Settings& s = input.settings;
-    const int height = static_cast<int>(input.stage.pipeline().tree().height());
+    const int height = static_cast<int>(input.loaded.pipeline().tree().height());
     ImGui::SliderInt("tree level (T)", &s.tree_level, -1, height - 1, s.tree_level < 0 ? "off" : "%d");
     hint("T");
     ImGui::SliderInt("views (V)", &s.cascades, 1, 8);
@@ -103,8 +103,8 @@ void switches_panel(const PanelInput& input, PanelWish& wish) {
     ImGui::Checkbox("pause (P)", &s.paused);
     hint("P");
     ImGui::SameLine();
-    bool orbit = input.eye.mode == EyeMode::orbit;
-    if (ImGui::Checkbox("orbit (Tab)", &orbit)) input.eye.mode = orbit ? EyeMode::orbit : EyeMode::fly;
+    bool orbit = input.eye.mode == CameraMode::orbit;
+    if (ImGui::Checkbox("orbit (Tab)", &orbit)) input.eye.mode = orbit ? CameraMode::orbit : CameraMode::fly;
     hint("Tab");
     wish.frame_all = button("frame all (Home)", "Home", false);
     wish.record = button(input.recording ? "stop (R)" : "record (R)", "R", true);

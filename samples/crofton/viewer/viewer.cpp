@@ -8,7 +8,7 @@ Result<void> run_viewer(const ViewerOptions& options) {
     Session session(options);
     if (auto started = session.start(); !started) return started;
     while (session.running())
-        if (auto turned = session.turn(); !turned) return turned;
+        if (auto turned = session.run_frame(); !turned) return turned;
     return session.finish();
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "loaded_scene.hpp"
 #include "settings.hpp"
-#include "stage.hpp"
 
 namespace crofton::viewer {
 
@@ -25,8 +25,8 @@ struct ViewerOptions {
     std::string output_folder = ".";  // for recorded paths, exports and the screenshot key
 };
 
-// Runs until closed. Errors: as Stage::load for the first scene (one that is dropped in later is only reported); no
-// display, device or driver; files that cannot be read or written.
+// Runs until closed. Errors: as LoadedScene::load for the first scene (one that is dropped in later is only reported);
+// no display, device or driver; files that cannot be read or written.
 [[nodiscard]] Result<void> run_viewer(const ViewerOptions& options);
 
 }  // namespace crofton::viewer

@@ -1,4 +1,4 @@
-#include "stage.hpp"
+#include "loaded_scene.hpp"
 
 #include <chrono>
 #include <crofton/geometry/aabb.hpp>
@@ -48,8 +48,8 @@ bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b
 
 }  // namespace
 
-Result<std::unique_ptr<Stage>> Stage::load(const SceneRequest& request, const Method& method,
-                                           const Settings& settings) {
+Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& request, const Method& method,
+                                                       const Settings& settings) {
     const auto criterion = pipeline::criterion_for(method.bounds, typical_camera());
     if (!criterion) return tl::unexpected(criterion.error());
     assets::LoadOptions options;
@@ -62,27 +62,27 @@ Result<std::unique_ptr<Stage>> Stage::load(const SceneRequest& request, const Me
     if (method.triangulation != Triangulation::loaded)
         if (auto cut = assets::retriangulate(*source, options, triangulation_method(method.triangulation)); !cut)
             return tl::unexpected(std::move(cut.error()));
-    std::unique_ptr<Stage> stage(new Stage(std::move(*source)));
-    stage->source_.scene.update();
-    const scene::Scene& scene = stage->source_.scene;
+    std::unique_ptr<LoadedScene> loaded(new LoadedScene(std::move(*source)));
+    loaded->source_.scene.update();
+    const scene::Scene& scene = loaded->source_.scene;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i)) continue;
-        stage->extent_.include(aabb_of(scene.world_boxes()[i]));
-        stage->triangle_count_ += scene.mesh(scene.mesh_of(i)).triangle_count();
+        loaded->extent_.include(aabb_of(scene.world_boxes()[i]));
+        loaded->triangle_count_ += scene.mesh(scene.mesh_of(i)).triangle_count();
     }
-    stage->focus_ = pipeline::focus_of(scene);
-    if (auto configured = stage->configure(method, settings); !configured)
+    loaded->focus_ = pipeline::focus_of(scene);
+    if (auto configured = loaded->configure(method, settings); !configured)
         return tl::unexpected(std::move(configured.error()));
-    return stage;
+    return loaded;
 }
 
-bool Stage::needs_reload(const Method& method) const {
+bool LoadedScene::needs_reload(const Method& method) const {
     if (method.triangulation != method_.triangulation) return true;
     if (!uses_own_boxes(method.bounds) && !uses_own_boxes(method_.bounds)) return false;
     return method.bounds != method_.bounds;
 }
 
-Result<void> Stage::configure(const Method& method, const Settings& settings) {
+Result<void> LoadedScene::configure(const Method& method, const Settings& settings) {
     const pipeline::PipelineOptions wanted = options_of(method, settings);
     if (pipeline_ && same(wanted, options_)) return {};
     auto made = pipeline::Pipeline::create(source_.scene, source_.movers, wanted, serial_executor());
@@ -93,14 +93,14 @@ Result<void> Stage::configure(const Method& method, const Settings& settings) {
     return {};
 }
 
-void Stage::animate(std::uint32_t frame) {
+void LoadedScene::animate(std::uint32_t frame) {
     const auto start = std::chrono::steady_clock::now();
     source_.animate(frame);
     source_.scene.update();
     update_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-Result<pipeline::FrameStatistics> Stage::run(const Camera& camera) {
+Result<pipeline::FrameStatistics> LoadedScene::run(const Camera& camera) {
     auto frame = pipeline_->run(camera);
     if (frame) frame->update_us += update_us_;
     return frame;

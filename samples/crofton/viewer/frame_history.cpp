@@ -1,4 +1,4 @@
-#include "journal.hpp"
+#include "frame_history.hpp"
 
 #include <algorithm>
 
@@ -6,13 +6,13 @@
 
 namespace crofton::viewer {
 
-void Journal::add(JournalEntry entry) {
+void FrameHistory::add(HistoryEntry entry) {
     entry.frame.visible_ids = {};
     entry.frame.colliding_ids = {};
     entries_.push_back(std::move(entry));
 }
 
-std::vector<float> Journal::history(double (*value)(const JournalEntry&)) const {
+std::vector<float> FrameHistory::history(double (*value)(const HistoryEntry&)) const {
     std::vector<float> result;
     for (std::size_t i = entries_.size() - std::min(entries_.size(), kHistory); i < entries_.size(); ++i)
         result.push_back(static_cast<float>(value(entries_[i])));
@@ -22,7 +22,7 @@ std::vector<float> Journal::history(double (*value)(const JournalEntry&)) const 
 namespace {
 
 template <class Value>
-double mean_of_last(const std::vector<JournalEntry>& entries, std::size_t last, Value value) {
+double mean_of_last(const std::vector<HistoryEntry>& entries, std::size_t last, Value value) {
     const std::size_t count = std::min(entries.size(), last);
     double sum = 0.0;
     for (std::size_t i = entries.size() - count; i < entries.size(); ++i) sum += value(entries[i]);
@@ -31,25 +31,25 @@ double mean_of_last(const std::vector<JournalEntry>& entries, std::size_t last, 
 
 }  // namespace
 
-double Journal::mean(double (*value)(const JournalEntry&), std::size_t last) const {
+double FrameHistory::mean(double (*value)(const HistoryEntry&), std::size_t last) const {
     return mean_of_last(entries_, last, value);
 }
 
-double Journal::mean_of_frames(double (*value)(const pipeline::FrameStatistics&), std::size_t last) const {
-    return mean_of_last(entries_, last, [value](const JournalEntry& entry) { return value(entry.frame); });
+double FrameHistory::mean_of_frames(double (*value)(const pipeline::FrameStatistics&), std::size_t last) const {
+    return mean_of_last(entries_, last, [value](const HistoryEntry& entry) { return value(entry.frame); });
 }
 
-std::array<float, 20> Journal::frame_time_histogram() const {
+std::array<float, 20> FrameHistory::frame_time_histogram() const {
     std::array<float, 20> bins{};
-    for (const float ms : history([](const JournalEntry& e) { return e.frame_us * 1e-3; }))
+    for (const float ms : history([](const HistoryEntry& e) { return e.frame_us * 1e-3; }))
         ++bins[std::min(static_cast<std::size_t>(std::max(ms, 0.0f) / 5.0f), bins.size() - 1)];
     return bins;
 }
 
-Json Journal::json() const {
+Json FrameHistory::json() const {
     Json frames = Json::array();
     std::vector<pipeline::FrameStatistics> plain;
-    for (const JournalEntry& entry : entries_) {
+    for (const HistoryEntry& entry : entries_) {
         Json row = pipeline::to_json(entry.frame, false);
         row["frame_us"] = entry.frame_us;
         row["ui_us"] = entry.ui_us;
@@ -60,16 +60,16 @@ Json Journal::json() const {
     return {{"frames", std::move(frames)}, {"summary", pipeline::summary_json(plain, std::nullopt)}};
 }
 
-std::string Journal::csv() const {
+std::string FrameHistory::csv() const {
     std::vector<pipeline::FrameStatistics> plain;
-    for (const JournalEntry& entry : entries_) plain.push_back(entry.frame);
+    for (const HistoryEntry& entry : entries_) plain.push_back(entry.frame);
     return pipeline::to_csv(plain);
 }
 
-std::string Journal::chrome_trace() const {
+std::string FrameHistory::chrome_trace() const {
     Json events = Json::array();
     double start = 0.0;
-    for (const JournalEntry& entry : entries_) {
+    for (const HistoryEntry& entry : entries_) {
         const auto span = [&](const char* name, double begin, double length) {
             events.push_back({{"name", name}, {"ph", "X"}, {"pid", 1}, {"tid", 1}, {"ts", begin}, {"dur", length}});
         };

@@ -1,4 +1,4 @@
-#include "eye.hpp"
+#include "camera_controller.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,14 +32,14 @@ double distance_for_all(const Camera& camera, const Aabb& box) {
 
 }  // namespace
 
-void Eye::look(const Camera& view) {
+void CameraController::look(const Camera& view) {
     const double aspect = camera.aspect;
     camera = view;
     camera.aspect = aspect;
     target_ = camera.position + glm::normalize(camera.forward) * distance_;
 }
 
-void Eye::frame_all(const Aabb& focus, const Aabb& extent) {
+void CameraController::frame_all(const Aabb& focus, const Aabb& extent) {
     if (focus.is_empty()) return;
     const double radius = std::max(glm::length(focus.half_extents()), 1e-3);
     target_ = focus.center();
@@ -52,7 +52,7 @@ void Eye::frame_all(const Aabb& focus, const Aabb& extent) {
     speed = radius / 6.0;
 }
 
-void Eye::stand(const glm::dvec3& place, const glm::dvec3& next) {
+void CameraController::stand(const glm::dvec3& place, const glm::dvec3& next) {
     const glm::dvec3 along(next.x - place.x, 0.0, next.z - place.z);
     if (!(glm::length(along) > 0.0)) return;
     camera.position = place;
@@ -61,27 +61,27 @@ void Eye::stand(const glm::dvec3& place, const glm::dvec3& next) {
     target_ = place + camera.forward * distance_;
 }
 
-bool Eye::recall_bookmark(int slot) {
+bool CameraController::recall_bookmark(int slot) {
     const auto& stored = bookmarks_[static_cast<std::size_t>(slot)];
     if (stored) look(*stored);
     return stored.has_value();
 }
 
-bool Eye::held(const char* key) const {
+bool CameraController::held(const char* key) const {
     return std::find(keys_.begin(), keys_.end(), key) != keys_.end();
 }
 
-void Eye::turn(double yaw_change, double pitch_change) {
+void CameraController::turn(double yaw_change, double pitch_change) {
     const glm::dvec3 forward = glm::normalize(camera.forward);
     const double yaw = std::atan2(forward.x, -forward.z) + yaw_change;
     const double limit = 0.5 * std::numbers::pi - 0.01;
     const double pitch = std::clamp(std::asin(std::clamp(forward.y, -1.0, 1.0)) + pitch_change, -limit, limit);
     camera.forward = direction(yaw, pitch);
     camera.up = kUp;
-    if (mode == EyeMode::orbit) camera.position = target_ - camera.forward * distance_;
+    if (mode == CameraMode::orbit) camera.position = target_ - camera.forward * distance_;
 }
 
-void Eye::handle(const Event& event) {
+void CameraController::handle(const Event& event) {
     switch (event.kind) {
         case Event::Kind::key_down:
             if (!held(event.text.c_str())) keys_.push_back(event.text);
@@ -97,12 +97,12 @@ void Eye::handle(const Event& event) {
         case Event::Kind::cursor: {
             const glm::dvec2 change = event.at - cursor_;
             cursor_ = event.at;
-            const double sign = mode == EyeMode::orbit ? -1.0 : 1.0;
+            const double sign = mode == CameraMode::orbit ? -1.0 : 1.0;
             if (turning_) turn(sign * change.x * kRadiansPerPixel, -change.y * kRadiansPerPixel);
             break;
         }
         case Event::Kind::scroll:
-            if (mode == EyeMode::fly) {
+            if (mode == CameraMode::fly) {
                 speed = std::clamp(speed * std::pow(1.25, event.at.y), 1e-3, 1e6);
             } else {
                 distance_ = std::clamp(distance_ * std::pow(0.87, event.at.y), 1e-3, 1e9);
@@ -115,7 +115,7 @@ void Eye::handle(const Event& event) {
     }
 }
 
-void Eye::advance(double seconds) {
+void CameraController::advance(double seconds) {
     const glm::dvec3 forward = glm::normalize(camera.forward);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
     glm::dvec3 step(0.0);

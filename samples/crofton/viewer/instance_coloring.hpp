@@ -4,10 +4,10 @@
 #include <crofton/render/rasterizer.hpp>
 #include <vector>
 
+#include "loaded_scene.hpp"
 #include "pipeline/draw_list.hpp"
 #include "pipeline/object_counts.hpp"
 #include "settings.hpp"
-#include "stage.hpp"
 
 namespace crofton::viewer {
 
@@ -23,10 +23,10 @@ inline constexpr glm::vec3 kSelected{0.05f, 0.45f, 0.95f};
 
 // Turns a draw list's selection into ranges and transforms with tints, and into wires over them. Ranges that share a
 // colour and lie side by side still become one draw.
-class Painter {
+class InstanceColoring {
   public:
-    // Decides the colours for this frame. `frame` is what the stage's run() said for the camera that culls.
-    void classify(const Stage& stage, const pipeline::FrameStatistics& frame, Coloring coloring,
+    // Decides the colours for this frame. `frame` is what the scene's run() said for the camera that culls.
+    void classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
                   scene::InstanceId selected);
     // Lays out the selection of `list`, which has been made for the camera that looks.
     void paint(const pipeline::DrawList& list, bool wireframe);

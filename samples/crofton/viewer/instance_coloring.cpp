@@ -1,4 +1,4 @@
-#include "painter.hpp"
+#include "instance_coloring.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,13 +29,13 @@ constexpr std::array<glm::vec3, 6> kDepthColors{{{0.60f, 0.05f, 0.05f},
 
 }  // namespace
 
-void Painter::count(const char* name, const glm::vec3& color) {
+void InstanceColoring::count(const char* name, const glm::vec3& color) {
     counts_.push_back({name, color, 0});
 }
 
-void Painter::classify(const Stage& stage, const pipeline::FrameStatistics& frame, Coloring coloring,
-                       scene::InstanceId selected) {
-    const auto verdicts = stage.pipeline().verdicts();
+void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
+                                scene::InstanceId selected) {
+    const auto verdicts = loaded.pipeline().verdicts();
     counts_.clear();
     tint_of_.assign(verdicts.size(), kPlain);
     switch (coloring) {
@@ -56,7 +56,7 @@ void Painter::classify(const Stage& stage, const pipeline::FrameStatistics& fram
             for (const scene::InstanceId i : frame.visible_ids) {
                 tint_of_[i] = verdicts[i] == cull::Verdict::inside ? 0 : 1;
                 if (tint_of_[i] == 1 && frustum &&
-                    counter_.count(stage.scene(), *frustum, std::span(&i, 1), verdicts).improper > 0)
+                    counter_.count(loaded.scene(), *frustum, std::span(&i, 1), verdicts).improper > 0)
                     tint_of_[i] = 2;
             }
             break;
@@ -73,7 +73,7 @@ void Painter::classify(const Stage& stage, const pipeline::FrameStatistics& fram
             for (std::size_t d = 0; d < kDepthNames.size(); ++d) count(kDepthNames[d], kDepthColors[d]);
             for (const scene::InstanceId i : frame.visible_ids)
                 tint_of_[i] = static_cast<std::uint8_t>(
-                    std::min<std::size_t>(depth_of(stage.pipeline().tree(), i), kDepthNames.size()) - 1);
+                    std::min<std::size_t>(depth_of(loaded.pipeline().tree(), i), kDepthNames.size()) - 1);
             break;
     }
     for (const scene::InstanceId i : frame.visible_ids)
@@ -85,7 +85,7 @@ void Painter::classify(const Stage& stage, const pipeline::FrameStatistics& fram
     }
 }
 
-void Painter::paint(const pipeline::DrawList& list, bool wireframe) {
+void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {
     const auto ranges = list.ranges();
     const auto transforms = list.transforms();
     ranges_.assign(ranges.begin(), ranges.end());

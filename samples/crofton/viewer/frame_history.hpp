@@ -9,23 +9,23 @@
 
 namespace crofton::viewer {
 
-struct JournalEntry {
+struct HistoryEntry {
     pipeline::FrameStatistics frame;  // without ids
-    double frame_us = 0.0;            // the whole turn, drawing included
+    double frame_us = 0.0;            // the whole frame, drawing included
     double ui_us = 0.0;               // building and recording the user interface, CPU time
     std::uint32_t scene_frame = 0;    // where the movers were: what to replay this frame with
 };
 
-class Journal {
+class FrameHistory {
   public:
     static constexpr std::size_t kHistory = 240;
 
-    void add(JournalEntry entry);
-    [[nodiscard]] const std::vector<JournalEntry>& entries() const { return entries_; }
+    void add(HistoryEntry entry);
+    [[nodiscard]] const std::vector<HistoryEntry>& entries() const { return entries_; }
 
     // The last kHistory values of one quantity, oldest first, for a plot.
-    [[nodiscard]] std::vector<float> history(double (*value)(const JournalEntry&)) const;
-    [[nodiscard]] double mean(double (*value)(const JournalEntry&), std::size_t last) const;
+    [[nodiscard]] std::vector<float> history(double (*value)(const HistoryEntry&)) const;
+    [[nodiscard]] double mean(double (*value)(const HistoryEntry&), std::size_t last) const;
     [[nodiscard]] double mean_of_frames(double (*value)(const pipeline::FrameStatistics&), std::size_t last) const;
     // How many of the last kHistory frames took 0–5, 5–10, … ms; the last bin holds all beyond.
     [[nodiscard]] std::array<float, 20> frame_time_histogram() const;
@@ -35,7 +35,7 @@ class Journal {
     [[nodiscard]] std::string chrome_trace() const;  // for chrome://tracing and Perfetto
 
   private:
-    std::vector<JournalEntry> entries_;
+    std::vector<HistoryEntry> entries_;
 };
 
 }  // namespace crofton::viewer

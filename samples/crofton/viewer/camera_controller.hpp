@@ -10,9 +10,9 @@
 
 namespace crofton::viewer {
 
-enum class EyeMode : std::uint8_t { fly, orbit };
+enum class CameraMode : std::uint8_t { fly, orbit };
 
-class Eye {
+class CameraController {
   public:
     // Looks at `focus` from a corner above, as far as `extent` reaches; takes the speed from the focus.
     void frame_all(const Aabb& focus, const Aabb& extent);
@@ -30,7 +30,7 @@ class Eye {
 
     // How fast `advance` flies, in metres a second.
     double speed = 10.0;
-    EyeMode mode = EyeMode::fly;
+    CameraMode mode = CameraMode::fly;
     Camera camera;
 
   private:

@@ -17,11 +17,11 @@ struct SceneRequest {
     std::uint32_t instances = 0;
 };
 
-class Stage {
+class LoadedScene {
   public:
     // Loads the scene, fits its boxes and cuts its triangles as the method asks. Errors: as assets::load_scene.
-    [[nodiscard]] static Result<std::unique_ptr<Stage>> load(const SceneRequest& request, const Method& method,
-                                                             const Settings& settings);
+    [[nodiscard]] static Result<std::unique_ptr<LoadedScene>> load(const SceneRequest& request, const Method& method,
+                                                                   const Settings& settings);
     [[nodiscard]] const Method& method() const { return method_; }
     // True where `method` needs other boxes or triangles than the scene was loaded with: then load() anew.
     [[nodiscard]] bool needs_reload(const Method& method) const;
@@ -41,7 +41,7 @@ class Stage {
     [[nodiscard]] std::uint64_t triangle_count() const { return triangle_count_; }
 
   private:
-    explicit Stage(assets::SceneSource source) : source_(std::move(source)) {}
+    explicit LoadedScene(assets::SceneSource source) : source_(std::move(source)) {}
 
     assets::SceneSource source_;
     std::optional<pipeline::Pipeline> pipeline_;
