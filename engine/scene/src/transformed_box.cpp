@@ -72,9 +72,10 @@ using Edges = std::array<glm::dvec3, 3>;
 Edges edge_directions(const Transform& transform, const Obb& box) {
     double largest = 0.0;
     for (int k = 0; k < 3; ++k) largest = std::max(largest, sum(absolute(transform.linear[k])));
-    const double scale = largest >= 1e-100 && largest <= 1e100 ? 1.0 : std::exp2(-std::ilogb(largest));
     Edges edges{};
-    if (!(largest > 0.0) || !std::isfinite(scale)) return edges;
+    if (!(largest > 0.0) || !std::isfinite(largest)) return edges;
+    const double scale = largest >= 1e-100 && largest <= 1e100 ? 1.0 : std::exp2(-std::logb(largest));
+    if (!std::isfinite(scale)) return edges;
     std::array<double, 3> squared{};
     for (std::size_t k = 0; k < 3; ++k) {
         edges[k] = (scale * transform.linear) * glm::dvec3(box.axes[static_cast<int>(k)]);
