@@ -40,7 +40,7 @@ std::uint64_t in_space() {
 std::uint64_t in_the_plane() {
     Digest digest;
     Random random(62);
-    std::vector<measure::Disc> discs;
+    std::vector<Disc> discs;
     std::vector<study::PlanarSupport> figures;
     for (int i = 0; i < 4; ++i) {
         discs.push_back({0.5 * sampling::disc_point(random.point<2>()), random.uniform(0.6, 1.0)});
@@ -49,7 +49,7 @@ std::uint64_t in_the_plane() {
     digest.add(study::measure_of_lines_hitting_all(figures)).add(study::measure_of_lines_by_tangents(discs));
     std::vector<glm::dvec2> object;
     for (int i = 0; i < 20; ++i) object.push_back(0.5 * sampling::disc_point(random.point<2>()));
-    const study::PlanarSupport ancestor(measure::Disc{{0.0, 0.0}, 2.0});
+    const study::PlanarSupport ancestor(Disc{{0.0, 0.0}, 2.0});
     const auto disc = *study::optimal_disc(object, ancestor);
     const auto rectangle = *study::optimal_rectangle(object, ancestor);
     digest.add(disc.bound.center).add(disc.bound.radius).add(disc.measure);
