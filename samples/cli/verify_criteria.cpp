@@ -64,7 +64,7 @@ IntrinsicVolumes frustum_volumes(double depth) {
     Camera camera;
     camera.fov_y = 2.0 * std::atan(0.6);
     camera.aspect = 1.0 / 0.6;
-    camera.near = 0.01 * depth, camera.far = depth;
+    camera.near_distance = 0.01 * depth, camera.far_distance = depth;
     return *measure::of_frustum(camera);
 }
 
@@ -201,7 +201,7 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         4.0 * pi * reach, planes);
     row("lines that hit two boxes and a ball", "theory.md (5)",
         *measure_of_lines_hitting_all(bodies, {.tolerance = 1e-2, .max_cells = 40000}),
-        measure::measure_of_lines(4.0 * pi * reach * reach), lines);
+        sampling::measure_of_lines(4.0 * pi * reach * reach), lines);
 }
 
 // Formula (6) on an L of two triangulations, lighter and heavier.
@@ -232,7 +232,7 @@ void triangulation_rows(const VerifyOptions& options, std::vector<VerifyRow>& ro
             camera.projection = lens.perspective ? Projection::perspective : Projection::orthographic;
             camera.fov_y = 2.0 * std::atan(lens.tan_y), camera.height = 2.0 * lens.tan_y,
             camera.aspect = lens.tan_x / lens.tan_y;
-            camera.near = lens.near, camera.far = lens.far;
+            camera.near_distance = lens.near, camera.far_distance = lens.far;
             const IntrinsicVolumes b = *measure::of_frustum(camera);
             const Placements placements(frustum, flat_body(v));
             const sampling::UnitPoints points(seed++);
