@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -48,13 +49,23 @@ bool occurs_in(const Lines& block, Lines source) {
 
 TEST_SUITE("engines/documentation") {
     TEST_CASE("every code block of the pages is part of a source that is compiled") {
-        const Lines sources[] = {lines_of("tests/engines/integrate_test.cpp"), lines_of("samples/hello_cull/main.cpp"),
-                                 lines_of("samples/c_hello/main.c"), lines_of("samples/executors/tbb_executor.hpp")};
         struct Page {
-            const char* name;
+            std::string name;
             std::size_t least_blocks;
         };
-        for (const Page& page : {Page{"docs/integrate.md", 8}, Page{"README.md", 1}}) {
+        std::vector<Page> pages = {{"docs/integrate.md", 8}, {"README.md", 1}};
+        std::vector<Lines> sources = {lines_of("tests/engines/integrate_test.cpp"),
+                                      lines_of("samples/hello_cull/main.cpp"), lines_of("samples/c_hello/main.c"),
+                                      lines_of("samples/executors/tbb_executor.hpp")};
+        // The guide docs/<module>.md takes its examples from tests/<module>/guide_test.cpp.
+        for (const auto& folder : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/tests")) {
+            const std::string module = folder.path().filename().string();
+            if (!std::filesystem::exists(folder.path() / "guide_test.cpp")) continue;
+            sources.push_back(lines_of("tests/" + module + "/guide_test.cpp"));
+            pages.push_back({"docs/" + module + ".md", 1});
+        }
+        CHECK(pages.size() > 2);
+        for (const Page& page : pages) {
             const auto blocks = code_blocks(lines_of(page.name));
             CHECK(blocks.size() >= page.least_blocks);
             for (const Lines& block : blocks) {
