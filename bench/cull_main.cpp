@@ -1,6 +1,7 @@
 // Runs the culling benchmarks and ends with the ratios that matter, of times from the same run.
 #include <cstdio>
 
+#include "instruction_set.hpp"
 #include "least_times.hpp"
 
 namespace {
@@ -49,6 +50,7 @@ class Ratios : public crofton::bench::LeastTimes {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (!crofton::bench::choose_instruction_set(argc, argv)) return 1;
     Ratios reporter;
     return crofton::bench::run(argc, argv, reporter);
 }
