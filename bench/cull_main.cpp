@@ -1,8 +1,8 @@
 // Runs the culling benchmarks and ends with the ratios that matter, of times from the same run.
 #include <cstdio>
 
-#include "instruction_set.hpp"
 #include "least_times.hpp"
+#include "simd_target.hpp"
 
 namespace {
 
@@ -50,7 +50,9 @@ class Ratios : public crofton::bench::LeastTimes {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!crofton::bench::choose_instruction_set(argc, argv)) return 1;
+    if (!crofton::bench::take_target_option(argc, argv)) return 1;
+    std::printf("Instruction set: %s\n", crofton::bench::target_in_use());
     Ratios reporter;
+    benchmark::AddCustomContext("instruction_set", crofton::bench::target_in_use());  // for bench/results.py
     return crofton::bench::run(argc, argv, reporter);
 }

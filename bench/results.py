@@ -77,7 +77,7 @@ def measure(bench, arguments):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out.json"
             command = [str(ROOT / build / "bin" / f"bench_{bench}"), f"--benchmark_out={out}", "--benchmark_out_format=json"]
-            command += options + ([] if target == "best" else [f"--instruction_set={target}"])
+            command += options + ([] if target == "best" else [f"--target={target}"])
             subprocess.run(command, check=True, stdout=sys.stderr)
             report = json.loads(out.read_text(encoding="utf-8"))
         used = report["context"].get("instruction_set", target)
