@@ -34,7 +34,7 @@ inline cull::View view_of_share(const std::vector<Obb>& boxes, double share) {
     camera.position = side * glm::dvec3(0.47, 0.53, 1.0);
     camera.forward = {0.05, -0.04, -1.0};
     camera.aspect = 1.0;
-    camera.far = 2.0 * side;
+    camera.far_distance = 2.0 * side;
     double low = 0.01, high = 3.0;
     for (int step = 0; step < 24; ++step) {
         camera.fov_y = 0.5 * (low + high);

@@ -59,7 +59,7 @@ void flight(benchmark::State& state, cull::Mode mode) {
                                             0.5 + 0.3 * std::sin(angle));
         camera.forward = {-std::sin(angle), 0.1, std::cos(angle)};
         camera.aspect = 1.0;
-        camera.far = 0.31 * side;
+        camera.far_distance = 0.31 * side;
         views.push_back({*frustum_of(camera)});
     }
     cull::VisibleSet visible;

@@ -1,5 +1,5 @@
 // What a tree's criterion is worth: tests per query for trees built by every strategy, on real and random scenes. The
-// time is that of the build. docs/hierarchies.md quotes: bench_measure --benchmark_filter=hierarchy
+// time is that of the build. docs/notes/boxtree.md quotes: bench_measure --benchmark_filter=hierarchy
 #include <benchmark/benchmark.h>
 
 #include <assets/scene_source.hpp>
@@ -55,7 +55,7 @@ World random_world(const glm::dvec3& least, const glm::dvec3& most) {
     }
     enclose(world);
     Camera camera;
-    camera.far = 50.0;
+    camera.far_distance = 50.0;
     const Aabb inside{glm::dvec3(0.0), glm::dvec3(100.0)};
     for (int i = 0; i < 100; ++i) world.views.push_back(sampling::random_camera(camera, inside, random.point<6>()));
     return world;
@@ -97,7 +97,7 @@ const World& world_named(const std::string& name) {
 
 // The frustum in use, its far plane at the end of the world where it has none nearer.
 Camera finite(Camera camera, const World& world) {
-    camera.far = std::min(camera.far, 2.0 * world.region.radius);
+    camera.far_distance = std::min(camera.far_distance, 2.0 * world.region.radius);
     return camera;
 }
 
@@ -258,7 +258,7 @@ void bound_given_ancestors(benchmark::State& state, const study::QuerySample& qu
 const bool kRegistered = [] {
     const Sphere region{glm::dvec3(0.0), 2.5};
     Camera camera;
-    camera.far = 20.0;
+    camera.far_distance = 20.0;
     const std::pair<const char*, study::QuerySample> samples[] = {
         {"planes", *study::QuerySample::planes(region, 4096, 1)},
         {"lines", *study::QuerySample::lines(region, 4096, 1)},

@@ -162,7 +162,7 @@ std::vector<cull::View> flight(const Aabb& scene) {
         Camera camera;
         for (int j = 0; j < 3; ++j) camera.position[j] = number(scene.min[j], scene.max[j]);
         camera.forward = {number(-1, 1), number(-0.3, 0.3), number(-1, 1)};
-        camera.far = glm::length(scene.max - scene.min);
+        camera.far_distance = glm::length(scene.max - scene.min);
         views.push_back({*frustum_of(camera)});
     }
     return views;

@@ -36,7 +36,7 @@ Camera camera() {
     Camera result;
     result.position = {0.0, 10.0, 0.0};
     result.forward = {0.0, -0.05, -1.0};
-    result.far = 500.0;
+    result.far_distance = 500.0;
     return result;
 }
 
@@ -145,7 +145,7 @@ BENCHMARK(draw_visible_one_by_one_own_transforms)
 void predict(benchmark::State& state, float distance) {
     const TriangleMesh mesh = ball(50, 100, 10.0f);
     Camera view;
-    view.far = 100.0;
+    view.far_distance = 100.0;
     const glm::mat4 matrix = ModelToClip(view)(glm::dmat3(1.0), {0.0, 0.0, -static_cast<double>(distance)});
     ClipPredictor predictor;
     std::uint64_t count = 0;

@@ -30,7 +30,11 @@ else()
 endif()
 file(RELATIVE_PATH pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton.pc.in ${PROJECT_BINARY_DIR}/crofton.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/crofton.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# What C++ needs besides, -std=c++20, would be an error in C.
+configure_file(${CMAKE_CURRENT_LIST_DIR}/crofton-cxx.pc.in ${PROJECT_BINARY_DIR}/crofton-cxx.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/crofton.pc ${PROJECT_BINARY_DIR}/crofton-cxx.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+              ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md ${PROJECT_SOURCE_DIR}/SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/engine/crofton.natvis DESTINATION ${CMAKE_INSTALL_DATADIR}/crofton)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})  # where the README's links lead
 include(CroftonPackage)

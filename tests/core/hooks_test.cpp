@@ -24,4 +24,12 @@ TEST_SUITE("core/hooks") {
         CHECK(std::string(version_string()) ==
               std::to_string(v.major) + "." + std::to_string(v.minor) + "." + std::to_string(v.patch));
     }
+
+    TEST_CASE("headers and library are of one version") {
+        CHECK(version().major == CROFTON_VERSION_MAJOR);
+        CHECK(version().minor == CROFTON_VERSION_MINOR);
+        CHECK(version().patch == CROFTON_VERSION_PATCH);
+        static_assert(CROFTON_VERSION >= CROFTON_MAKE_VERSION(0, 2, 0));
+        static_assert(CROFTON_VERSION < CROFTON_MAKE_VERSION(CROFTON_VERSION_MAJOR + 1, 0, 0));
+    }
 }

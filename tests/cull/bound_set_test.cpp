@@ -56,7 +56,7 @@ TEST_SUITE("cull/bound_set") {
                 oracle::NearMisses random(3, offset);
                 for (int trial = 0; trial < 8; ++trial) {
                     Camera camera = random.camera();
-                    camera.far = camera.near + random.number(1.0, 60.0);
+                    camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                     const cull::View view{*frustum_of(camera)};
                     std::vector<std::uint32_t> moved;
                     for (std::uint32_t i = 0; i < count; i += 3) {
@@ -106,7 +106,7 @@ TEST_SUITE("cull/bound_set") {
                 cull::VerdictBits bits;
                 for (int trial = 0; trial < 6; ++trial) {
                     Camera camera = random.camera();
-                    camera.far = camera.near + random.number(1.0, 60.0);
+                    camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                     const cull::View view{*frustum_of(camera)};
                     std::vector<std::uint32_t> moved;
                     for (std::uint32_t i = 0; i < count; i += 3) {
@@ -193,7 +193,7 @@ TEST_SUITE("cull/bound_set") {
         for (int trial = 0; trial < 5; ++trial) {
             Camera camera = random.camera();
             camera.position.x += 1e6;
-            camera.far = 60.0;
+            camera.far_distance = 60.0;
             const cull::View view{*frustum_of(camera)};
             cull::find_visible(set, crowd.boxes, view, bits);
             for (std::size_t i = 0; i < 4096; ++i)
@@ -211,8 +211,8 @@ TEST_SUITE("cull/bound_set") {
         Camera camera;
         camera.position = {-200.0, 0.0, 0.0};
         camera.forward = {1.0, 0.0, 0.0};
-        camera.near = 150.0;
-        camera.far = 200.0;
+        camera.near_distance = 150.0;
+        camera.far_distance = 200.0;
         const cull::View view{*frustum_of(camera)};
         cull::VerdictBits bits;
         cull::find_visible(set, crowd.boxes, view, bits);
@@ -254,7 +254,7 @@ TEST_SUITE("cull/bound_set") {
             std::vector<cull::View> views;
             for (unsigned v = 0; v < 32; ++v) {
                 Camera camera = random.camera();
-                camera.far = camera.near + random.number(1.0, 60.0);
+                camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                 views.push_back({*frustum_of(camera), v % 3 ? ~0u : 1u << (v % 4)});
             }
             views[7].frustum.planes[0].offset = std::nan("");

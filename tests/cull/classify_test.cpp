@@ -20,8 +20,8 @@ Frustum unit_cube() {
     camera.projection = Projection::orthographic;
     camera.height = 2.0;
     camera.aspect = 1.0;
-    camera.near = -1.0;
-    camera.far = 1.0;
+    camera.near_distance = -1.0;
+    camera.far_distance = 1.0;
     return *frustum_of(camera);
 }
 

@@ -60,7 +60,7 @@ TEST_SUITE("cull/cull") {
                 cull::VisibleSet from_tree, from_list;
                 for (int trial = 0; trial < 25; ++trial) {
                     Camera camera = random.camera();
-                    camera.far = camera.near + random.number(1.0, 60.0);
+                    camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                     const cull::View view{*frustum_of(camera), trial % 3 ? ~0u : 5u};
                     cull::Options options;
                     options.mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
@@ -91,7 +91,7 @@ TEST_SUITE("cull/cull") {
         std::vector<Obb> boxes = oracle::random_crowd(20000, 0.0, 5).boxes;
         Camera camera;
         camera.position = {0.0, 0.0, 20.0};
-        camera.far = 60.0;
+        camera.far_distance = 60.0;
         const cull::View view{*frustum_of(camera)};
         for (int numbering = 0; numbering < 2; ++numbering) {
             const auto tree = *boxtree::BoxTree::build(boxes);
@@ -151,7 +151,7 @@ TEST_SUITE("cull/cull") {
             tree.refit();
             if (frame % 2) (void)tree.maintain(3000);
             Camera camera = random.camera();
-            camera.far = camera.near + random.number(1.0, 60.0);
+            camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
             const cull::View view{*frustum_of(camera)};
             ids.clear();
             for (std::size_t i = 0; i < boxes.size(); ++i)

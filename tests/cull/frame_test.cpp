@@ -21,7 +21,7 @@ std::vector<cull::View> flight(std::size_t frames) {
         const double angle = 0.1 * static_cast<double>(f);
         camera.position = {30.0 * std::cos(angle), 5.0 * std::sin(2.0 * angle), 30.0 * std::sin(angle)};
         camera.forward = {-std::cos(angle + 0.5), 0.1, -std::sin(angle + 0.5)};
-        camera.far = 70.0;
+        camera.far_distance = 70.0;
         views.push_back({*frustum_of(camera)});
     }
     return views;

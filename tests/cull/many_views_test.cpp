@@ -55,7 +55,7 @@ TEST_SUITE("cull/many_views") {
                 std::vector<cull::View> views;
                 for (unsigned v = 0; v < 32; ++v) {
                     Camera camera = random.camera();
-                    camera.far = camera.near + random.number(1.0, 60.0);
+                    camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                     cull::View view{*frustum_of(camera), v % 4 ? ~0u : 1u << (v % 5)};
                     if (v % 5 == 1) view.frustum.plane_count = 5;
                     if (v % 5 == 2) view.frustum = *cull::shadow_volume(view.frustum, random.direction());

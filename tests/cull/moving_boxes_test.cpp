@@ -56,7 +56,7 @@ struct Crowd {
 
 cull::View view_near(oracle::NearMisses& random, unsigned v) {
     Camera camera = random.camera();
-    camera.far = camera.near + random.number(1.0, 60.0);
+    camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
     return {*frustum_of(camera), v % 3 ? ~0u : 1u << (v % 4)};
 }
 

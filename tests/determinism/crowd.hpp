@@ -52,8 +52,8 @@ inline Camera random_camera(Random& random, double offset) {
     camera.fov_y = random.uniform(0.2, 2.2);
     camera.height = random.uniform(1.0, 20.0);
     camera.aspect = random.uniform(0.5, 2.0);
-    camera.near = random.uniform(0.05, 1.0);
-    camera.far = camera.near + random.uniform(1.0, 60.0);
+    camera.near_distance = random.uniform(0.05, 1.0);
+    camera.far_distance = camera.near_distance + random.uniform(1.0, 60.0);
     return camera;
 }
 

@@ -36,7 +36,7 @@ TEST_SUITE("geometry/frustum") {
         camera.position.y = std::nan("");
         CHECK(frustum_of(camera).error().code == ErrorCode::non_finite);
         camera = {};
-        camera.near = 0.0;
+        camera.near_distance = 0.0;
         CHECK(frustum_of(camera).error().code == ErrorCode::out_of_range);
         glm::dmat4 matrix(1.0);
         matrix[2][2] = 0.0;
@@ -57,8 +57,8 @@ TEST_SUITE("geometry/frustum") {
                     camera.projection = projection;
                     camera.position = {3.0, -2.0, 5.0};
                     camera.forward = {0.3, 0.2, -0.9};
-                    camera.near = 0.5;
-                    camera.far = far;
+                    camera.near_distance = 0.5;
+                    camera.far_distance = far;
                     const glm::dmat4 matrix = world_to_clip(camera, depth);
                     const auto from_camera = frustum_of(camera);
                     const auto from_matrix = frustum_of(matrix, depth);

@@ -84,7 +84,7 @@ TEST_SUITE("measure/intrinsic_volumes") {
               doctest::Approx(intrinsic_volumes_of_sphere(1.0).mean_curvature).epsilon(0.005));
         // Agrees with the frustum's own closed forms.
         Camera camera;
-        camera.near = 1.0, camera.far = 9.0;
+        camera.near_distance = 1.0, camera.far_distance = 9.0;
         const auto c = *frustum_corners(*frustum_of(camera));
         CHECK(intrinsic_volumes_of_hull(c)->mean_curvature ==
               doctest::Approx(intrinsic_volumes_of_frustum(camera)->mean_curvature));
@@ -124,8 +124,8 @@ TEST_SUITE("measure/intrinsic_volumes") {
         camera.projection = Projection::orthographic;
         camera.height = 2.0;
         camera.aspect = 1.5;
-        camera.near = 1.0;
-        camera.far = 5.0;
+        camera.near_distance = 1.0;
+        camera.far_distance = 5.0;
         const auto measures = intrinsic_volumes_of_frustum(camera);
         REQUIRE(measures.has_value());
         const IntrinsicVolumes box = intrinsic_volumes_of_box(3.0, 2.0, 4.0);
@@ -138,8 +138,8 @@ TEST_SUITE("measure/intrinsic_volumes") {
         Camera camera;
         camera.fov_y = 0.5 * pi;  // half-tangent 1
         camera.aspect = 0.6;
-        camera.near = 0.1;
-        camera.far = 10.0;
+        camera.near_distance = 0.1;
+        camera.far_distance = 10.0;
         const auto measures = intrinsic_volumes_of_frustum(camera);
         REQUIRE(measures.has_value());
         const auto face = [](double d) { return 4.0 * 0.6 * d * d; };

@@ -32,8 +32,8 @@ class NearMisses {
         camera.fov_y = number(0.2, 2.2);
         camera.height = number(1.0, 20.0);
         camera.aspect = number(0.5, 2.0);
-        camera.near = number(0.05, 1.0);
-        camera.far = camera.near + number(1.0, 30.0);
+        camera.near_distance = number(0.05, 1.0);
+        camera.far_distance = camera.near_distance + number(1.0, 30.0);
         return camera;
     }
 

@@ -30,12 +30,12 @@ TEST_SUITE("pipeline/camera_path") {
         Camera camera;
         camera.position = {1e7 + 0.1, -1.0 / 3.0, 2e-9};
         camera.forward = {0.1, 0.2, -0.7};
-        camera.far = INFINITY;
+        camera.far_distance = INFINITY;
         const auto again = camera_from_json(parsed(to_json(camera).dump()), 0);
         REQUIRE(again.has_value());
         CHECK(again->position == camera.position);
         CHECK(again->forward == camera.forward);
-        CHECK(std::isinf(again->far));
+        CHECK(std::isinf(again->far_distance));
     }
 
     TEST_CASE("every built-in path gives as many valid cameras as asked, the same for the same seed") {

@@ -79,7 +79,7 @@ glm::mat4 some_matrix(Projection projection = Projection::perspective, double fa
     camera.position = {1.0, 2.0, 3.0};
     camera.forward = {0.3, -0.2, -1.0};
     camera.projection = projection;
-    camera.far = far;
+    camera.far_distance = far;
     return ModelToClip(camera)(glm::dmat3(1.0), glm::dvec3(0.0));
 }
 
@@ -149,8 +149,8 @@ TEST_SUITE("geometry/clip_space") {
             Camera camera;
             camera.position = {1e7 * unit(random), 0.0, 0.0};
             camera.projection = i % 3 == 0 ? Projection::orthographic : Projection::perspective;
-            camera.far = i % 5 == 0 ? std::numeric_limits<double>::infinity() : 50.0;
-            if (camera.projection == Projection::orthographic) camera.far = 50.0;
+            camera.far_distance = i % 5 == 0 ? std::numeric_limits<double>::infinity() : 50.0;
+            if (camera.projection == Projection::orthographic) camera.far_distance = 50.0;
             const double reach = std::exp2(6.0 * unit(random));
             const glm::dvec3 place(60.0 * unit(random), 60.0 * unit(random), 40.0 * unit(random) - 25.0);
             const glm::mat4 matrix = ModelToClip(camera)(glm::dmat3(reach), camera.position + place);

@@ -24,8 +24,8 @@ Camera camera_at(double distance) {
     camera.projection = Projection::orthographic;
     camera.height = 2.0;
     camera.aspect = 1.0;
-    camera.near = 0.5;
-    camera.far = 100.0;
+    camera.near_distance = 0.5;
+    camera.far_distance = 100.0;
     return camera;
 }
 

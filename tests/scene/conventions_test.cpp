@@ -93,11 +93,11 @@ TEST_SUITE("scene/conventions") {
 
     TEST_CASE("a left-handed matrix gives the frustum that the mirrored camera has in the mirrored world") {
         Camera camera;  // looks along −z
-        camera.near = 0.5;
-        camera.far = 50.0;
+        camera.near_distance = 0.5;
+        camera.far_distance = 50.0;
         const Frustum right = frustum_of(camera).value();
         const Frustum left =
-            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near, camera.far), DepthRange::zero_to_one)
+            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near_distance, camera.far_distance), DepthRange::zero_to_one)
                 .value();
         Random random{std::mt19937(3)};
         int inside = 0;
@@ -113,11 +113,11 @@ TEST_SUITE("scene/conventions") {
     TEST_CASE("a Camera given left-handed vectors sees the same body; only its left and right change places") {
         Camera camera;
         camera.forward = {0.0, 0.0, 1.0};
-        camera.near = 0.5;
-        camera.far = 50.0;
+        camera.near_distance = 0.5;
+        camera.far_distance = 50.0;
         const Frustum ours = frustum_of(camera).value();
         const Frustum theirs =
-            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near, camera.far), DepthRange::zero_to_one)
+            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near_distance, camera.far_distance), DepthRange::zero_to_one)
                 .value();
         const std::size_t same_as[] = {1, 0, 2, 3, 4, 5};
         for (std::size_t i = 0; i < 6; ++i) {

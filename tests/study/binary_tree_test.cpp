@@ -107,7 +107,7 @@ TEST_SUITE("study/binary_tree") {
     TEST_CASE("every strategy contains every box in all bounds above it") {
         const std::vector<Obb> boxes = random_boxes(4, 500);
         Camera camera;
-        camera.far = 40.0;
+        camera.far_distance = 40.0;
         const auto queries = *study::QuerySample::frusta(camera, {glm::dvec3(25.0), 45.0}, 512, 1);
         for (const Split split : {Split::median, Split::nested, Split::sampled})
             for (const bool oriented : {false, true}) {
@@ -211,7 +211,7 @@ TEST_SUITE("study/binary_tree") {
                         boxes[id] = box;
                     }
                     Camera camera = random.camera();
-                    camera.far = camera.near + random.number(1.0, 60.0);
+                    camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                     const cull::View view{*frustum_of(camera)};
                     std::vector<ItemId> expected;
                     for (ItemId i = 0; i < boxes.size(); ++i)

@@ -18,7 +18,7 @@ TEST_SUITE("study/bound_given_ancestors") {
     TEST_CASE("it is never worse than the plain fit, and contains every point") {
         sampling::Random random(2);
         Camera camera;
-        camera.far = 10.0;
+        camera.far_distance = 10.0;
         const Sphere region{glm::dvec3(0.0), 3.0};
         const study::QuerySample samples[] = {*study::QuerySample::planes(region, 4096, 1),
                                               *study::QuerySample::lines(region, 4096, 1),

@@ -36,7 +36,7 @@ TEST_SUITE("study/query_sample") {
         CHECK(QuerySample::lines({glm::dvec3(std::nan("")), 1.0}, 10, 1).error().code == ErrorCode::invalid_argument);
         CHECK(QuerySample::lines({glm::dvec3(0.0), 1.0}, 0, 1).error().code == ErrorCode::out_of_range);
         Camera endless;
-        endless.far = std::numeric_limits<double>::infinity();
+        endless.far_distance = std::numeric_limits<double>::infinity();
         CHECK_FALSE(QuerySample::frusta(endless, {glm::dvec3(0.0), 1.0}, 10, 1).has_value());
     }
 
@@ -48,7 +48,7 @@ TEST_SUITE("study/query_sample") {
         check(*QuerySample::planes(region, n, 1), box, k.mean_curvature);
         check(*QuerySample::lines(region, n, 2), box, measure_of_lines(k.area));
         Camera camera;
-        camera.near = 0.5, camera.far = 8.0;
+        camera.near_distance = 0.5, camera.far_distance = 8.0;
         camera.position = glm::dvec3(100.0);  // where the prototype stands does not matter
         check(*QuerySample::frusta(camera, region, n, 3), box,
               kinematic_measure(*intrinsic_volumes_of_frustum(camera), k));
@@ -60,7 +60,7 @@ TEST_SUITE("study/query_sample") {
 
     TEST_CASE("a frustum straddles what it meets and does not contain, planes and lines contain nothing") {
         Camera camera;
-        camera.near = 0.5, camera.far = 8.0;
+        camera.near_distance = 0.5, camera.far_distance = 8.0;
         const Sphere region{glm::dvec3(0.0), 2.0};
         const auto frusta = *QuerySample::frusta(camera, region, 4096, 1);
         const auto planes = *QuerySample::planes(region, 4096, 1);

@@ -56,7 +56,7 @@ TEST_SUITE("study/spatial_lines") {
         check(m, 6.0 * pi);
         CHECK(m->error <= 1e-4 * 6.0 * pi);
         Camera camera;
-        camera.near = 1.0, camera.far = 20.0;
+        camera.near_distance = 1.0, camera.far_distance = 20.0;
         camera.forward = glm::dvec3(1.0, 0.3, -0.2);
         check(cauchy_mean_curvature(*ConvexBody::frustum(camera)),
               intrinsic_volumes_of_frustum(camera)->mean_curvature);
@@ -70,7 +70,7 @@ TEST_SUITE("study/spatial_lines") {
               doctest::Approx(2.0).epsilon(5e-3));
         check(cauchy_area(ConvexBody::ball(glm::dvec3(9.0), 2.0), {.tolerance = 3e-2}), 16.0 * pi);
         Camera camera;
-        camera.near = 1.0, camera.far = 5.0;
+        camera.near_distance = 1.0, camera.far_distance = 5.0;
         const auto f = cauchy_area(*ConvexBody::frustum(camera));
         check(f, intrinsic_volumes_of_frustum(camera)->area);
         CHECK(f->value == doctest::Approx(intrinsic_volumes_of_frustum(camera)->area).epsilon(2e-3));

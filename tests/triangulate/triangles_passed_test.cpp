@@ -49,14 +49,14 @@ TEST_SUITE("triangulate/triangles_passed") {
         Camera camera;
         camera.fov_y = 0.9;
         camera.aspect = 1.5;
-        camera.near = 0.5;
-        camera.far = 12.0;
+        camera.near_distance = 0.5;
+        camera.far_distance = 12.0;
         const auto b = measure::intrinsic_volumes_of_frustum(camera);
         REQUIRE(b.has_value());
         // Every camera whose frustum may reach the façade stands in this box.
-        const double half_far = camera.far * std::tan(camera.fov_y / 2);
-        const double reach =
-            std::sqrt(camera.far * camera.far + half_far * half_far * (1.0 + camera.aspect * camera.aspect));
+        const double half_far = camera.far_distance * std::tan(camera.fov_y / 2);
+        const double reach = std::sqrt(camera.far_distance * camera.far_distance +
+                                       half_far * half_far * (1.0 + camera.aspect * camera.aspect));
         const glm::dvec3 low(-reach, -reach, -reach), size(12.0 + 2 * reach, 8.0 + 2 * reach, 2 * reach);
         const double area = oracle::twice_polygon_area(polygon).get_d() / 2;
         struct Run {

@@ -15,7 +15,7 @@ Camera over_town(double turn) {
     Camera camera;
     camera.position = {60.0 * std::cos(turn), 40.0, 60.0 * std::sin(turn)};
     camera.forward = -camera.position;
-    camera.far = 2000.0;
+    camera.far_distance = 2000.0;
     return camera;
 }
 

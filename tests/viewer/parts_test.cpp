@@ -203,25 +203,26 @@ TEST_SUITE("viewer/contact_finder") {
 TEST_SUITE("viewer/overlay") {
     TEST_CASE("the views of a split cover the whole depth range without gaps") {
         Camera camera;
-        camera.far = 300.0;
+        camera.far_distance = 300.0;
         const auto views = split_view(camera, 4, 1e9);
         REQUIRE(views.size() == 4);
-        CHECK(views.front().camera.near == doctest::Approx(camera.near));
-        CHECK(views.back().camera.far == doctest::Approx(camera.far));
-        for (std::size_t i = 1; i < views.size(); ++i) CHECK(views[i].camera.near == views[i - 1].camera.far);
-        camera.far = std::numeric_limits<double>::infinity();
-        CHECK(split_view(camera, 3, 50.0).back().camera.far == doctest::Approx(50.0));
+        CHECK(views.front().camera.near_distance == doctest::Approx(camera.near_distance));
+        CHECK(views.back().camera.far_distance == doctest::Approx(camera.far_distance));
+        for (std::size_t i = 1; i < views.size(); ++i)
+            CHECK(views[i].camera.near_distance == views[i - 1].camera.far_distance);
+        camera.far_distance = std::numeric_limits<double>::infinity();
+        CHECK(split_view(camera, 3, 50.0).back().camera.far_distance == doctest::Approx(50.0));
     }
     TEST_CASE("a frustum's corners lie where its camera says") {
         Camera camera;
         camera.position = {1e6, 0.0, 0.0};
-        camera.far = 10.0;
+        camera.far_distance = 10.0;
         camera.aspect = 2.0;
         const auto corner = view_corners(camera, 1e9);
         CHECK(corner[7].z == doctest::Approx(-10.0));
         CHECK(corner[7].y == doctest::Approx(10.0 * std::tan(0.5 * camera.fov_y)));
         CHECK(corner[7].x - 1e6 == doctest::Approx(2.0 * corner[7].y));
-        CHECK(corner[0].z == doctest::Approx(-camera.near));
+        CHECK(corner[0].z == doctest::Approx(-camera.near_distance));
     }
 }
 
@@ -253,7 +254,7 @@ TEST_SUITE("viewer/eye") {
         eye.frame_all(box, box);
         const glm::dvec3 to_center = box.center() - eye.camera.position;
         CHECK(glm::length(glm::cross(glm::normalize(to_center), eye.camera.forward)) < 1e-12);
-        CHECK(eye.camera.far > glm::length(to_center));
+        CHECK(eye.camera.far_distance > glm::length(to_center));
         // All corners are in view, and one of them is near its edge.
         double widest = 0.0;
         for (int corner = 0; corner < 8; ++corner) {

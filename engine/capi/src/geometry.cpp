@@ -21,8 +21,8 @@ Camera to_camera(const crofton_camera& camera) {
             .fov_y = camera.fov_y,
             .height = camera.height,
             .aspect = camera.aspect,
-            .near = camera.near_distance,
-            .far = camera.far_distance};
+            .near_distance = camera.near_distance,
+            .far_distance = camera.far_distance};
 }
 
 }  // namespace crofton::capi
@@ -41,8 +41,8 @@ crofton_status crofton_camera_default(crofton_camera* camera) {
                           .fov_y = source.fov_y,
                           .height = source.height,
                           .aspect = source.aspect,
-                          .near_distance = source.near,
-                          .far_distance = source.far};
+                          .near_distance = source.near_distance,
+                          .far_distance = source.far_distance};
     for (int i = 0; i < 3; ++i) {
         result.forward[i] = source.forward[i];
         result.up[i] = source.up[i];

@@ -23,16 +23,18 @@ Result<void> validate(const Camera& camera) {
     if (camera.projection == Projection::perspective) {
         if (!(camera.fov_y > 1e-6 && camera.fov_y < std::numbers::pi - 1e-6))
             return bad(ErrorCode::out_of_range, "fov_y must lie in (1e-6, pi - 1e-6) radians");
-        if (!(camera.near > 0.0)) return bad(ErrorCode::out_of_range, "near must be positive");
+        if (!(camera.near_distance > 0.0)) return bad(ErrorCode::out_of_range, "near must be positive");
     } else {
         if (!(camera.height > 0.0 && std::isfinite(camera.height)))
             return bad(ErrorCode::out_of_range, "height must be positive");
-        if (!std::isfinite(camera.far)) return bad(ErrorCode::out_of_range, "an orthographic far must be finite");
+        if (!std::isfinite(camera.far_distance))
+            return bad(ErrorCode::out_of_range, "an orthographic far must be finite");
     }
     if (!(camera.aspect > 0.0 && std::isfinite(camera.aspect)))
         return bad(ErrorCode::out_of_range, "aspect must be positive");
-    if (!std::isfinite(camera.near)) return bad(ErrorCode::non_finite, "near is NaN or infinite");
-    if (!(camera.far > camera.near)) return bad(ErrorCode::out_of_range, "far must be greater than near");
+    if (!std::isfinite(camera.near_distance)) return bad(ErrorCode::non_finite, "near is NaN or infinite");
+    if (!(camera.far_distance > camera.near_distance))
+        return bad(ErrorCode::out_of_range, "far must be greater than near");
     return {};
 }
 
@@ -44,7 +46,7 @@ glm::dmat3 world_to_view_rotation(const Camera& camera) {
 }
 
 glm::dmat4 view_to_clip(const Camera& camera, DepthRange depth) {
-    const double n = camera.near, f = camera.far;
+    const double n = camera.near_distance, f = camera.far_distance;
     glm::dmat4 m(0.0);
     // Depth row for clip z in [0, w] with near at 0: z_clip = −(a·z + b) as a function of the view's z ≤ 0.
     double z_scale, z_offset;

@@ -50,8 +50,8 @@ Result<Frustum> frustum_of(const Camera& camera) {
         add(frustum, up, half_y);
         add(frustum, -up, half_y);
     }
-    add(frustum, forward, -camera.near);
-    if (std::isfinite(camera.far)) add(frustum, -forward, camera.far);
+    add(frustum, forward, -camera.near_distance);
+    if (std::isfinite(camera.far_distance)) add(frustum, -forward, camera.far_distance);
     return frustum;
 }
 

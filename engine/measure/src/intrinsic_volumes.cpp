@@ -31,7 +31,7 @@ IntrinsicVolumes intrinsic_volumes_of_flat_polygon(double area, double perimeter
 }
 
 Result<IntrinsicVolumes> intrinsic_volumes_of_frustum(const Camera& camera) {
-    if (!std::isfinite(camera.far))
+    if (!std::isfinite(camera.far_distance))
         return fail(ErrorCode::invalid_argument, kNoItem, "frustum: its measures need a finite far distance");
     auto frustum = frustum_of(camera);
     if (!frustum) return tl::unexpected(frustum.error());

@@ -79,8 +79,8 @@ Result<measure::Criterion> parse_criterion(const std::string& text) {
         Camera camera;
         camera.fov_y = v[0];
         camera.aspect = v[1];
-        camera.near = v[2];
-        camera.far = v[3];
+        camera.near_distance = v[2];
+        camera.far_distance = v[3];
         criterion = measure::for_frustum(camera);
     } else if (name == "weights") {
         const auto v = numbers(rest, 3);

@@ -125,7 +125,7 @@ class FramesRun {
         // obb-frustum fits the boxes to the frustum in use: 60° with this aspect, and a depth of the order of a street.
         Camera typical;
         typical.aspect = aspect;
-        typical.far = 200.0;
+        typical.far_distance = 200.0;
         const auto criterion = pipeline::criterion_for(*bounds, typical);
         if (!criterion) return tl::unexpected(criterion.error());
         auto source = assets::load_scene(

@@ -53,7 +53,7 @@ Result<Camera> camera_for(const assets::SceneSource& source, std::uint64_t seed)
         camera.position = {0.45, 1.6, 3.75};
         camera.forward = {3.2, -0.55, -2.2};
         camera.fov_y = 1.15;
-        camera.near = 0.05;
+        camera.near_distance = 0.05;
         return camera;
     }
     auto path =

@@ -116,11 +116,11 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
     Camera camera;
     camera.fov_y = 0.9;
     camera.aspect = 1.5;
-    camera.near = 0.05;
-    camera.far = 1.0;
+    camera.near_distance = 0.05;
+    camera.far_distance = 1.0;
     const auto b = *measure::intrinsic_volumes_of_frustum(camera);
     // Every camera whose frustum may reach the polygon stands in this box.
-    const double half = camera.far * std::tan(camera.fov_y / 2);
+    const double half = camera.far_distance * std::tan(camera.fov_y / 2);
     const double reach = std::sqrt(1.0 + half * half * (1.0 + camera.aspect * camera.aspect));
     const glm::dvec3 low(-reach), size(1.0 + 2.0 * reach, 1.0 + 2.0 * reach, 2.0 * reach);
     const double cell = size.x * size.y * size.z;
@@ -216,7 +216,7 @@ Result<std::vector<DrawCost>> draw_wall(std::span<const TriangulatedPolygon> pol
             Camera camera;
             camera.position = {random.uniform(0.0, side), random.uniform(0.0, side), random.uniform(4.0, 10.0)};
             camera.forward = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -1.0};
-            camera.far = 100.0;
+            camera.far_distance = 100.0;
             const render::DrawTransform transform =
                 render::draw_transform(render::ModelToClip(camera)(glm::dmat3(1.0), glm::dvec3(0.0)), glm::dmat3(1.0));
             const auto start = std::chrono::steady_clock::now();

@@ -33,8 +33,8 @@ Camera base_camera(const PathOptions& options, const Frame& frame) {
     Camera camera;
     camera.aspect = options.aspect;
     const double reach = std::max({frame.radius, frame.height, 1e-6});
-    camera.near = 2e-4 * reach;
-    camera.far = 8.0 * reach;
+    camera.near_distance = 2e-4 * reach;
+    camera.far_distance = 8.0 * reach;
     return camera;
 }
 
@@ -194,8 +194,8 @@ Json to_json(const Camera& camera) {
             {"up", vector(camera.up)},
             {"fov_y", camera.fov_y},
             {"aspect", camera.aspect},
-            {"near", camera.near},
-            {"far", std::isinf(camera.far) ? Json("infinity") : Json(camera.far)}};
+            {"near", camera.near_distance},
+            {"far", std::isinf(camera.far_distance) ? Json("infinity") : Json(camera.far_distance)}};
 }
 
 Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
@@ -208,7 +208,7 @@ Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
         *value = *read;
     }
     for (auto [field, value] : {std::pair{"fov_y", &camera.fov_y}, std::pair{"aspect", &camera.aspect},
-                                std::pair{"near", &camera.near}, std::pair{"far", &camera.far}}) {
+                                std::pair{"near", &camera.near_distance}, std::pair{"far", &camera.far_distance}}) {
         auto read = number_from(entry, field, *value, item);
         if (!read) return tl::unexpected(read.error());
         *value = *read;

@@ -19,8 +19,9 @@ class FrameVerifier {
           frame_(frame),
           verification_(verification),
           frustum_(*frustum_of(frame.camera)) {
-        const double depth = std::isfinite(frame.camera.far) ? 0.5 * (frame.camera.near + frame.camera.far)
-                                                             : 2.0 * frame.camera.near + 1.0;
+        const double depth = std::isfinite(frame.camera.far_distance)
+                                 ? 0.5 * (frame.camera.near_distance + frame.camera.far_distance)
+                                 : 2.0 * frame.camera.near_distance + 1.0;
         interior_ = frame.camera.position + depth * glm::normalize(frame.camera.forward);
     }
 

@@ -64,7 +64,7 @@ IntrinsicVolumes frustum_volumes(double depth) {
     Camera camera;
     camera.fov_y = 2.0 * std::atan(0.6);
     camera.aspect = 1.0 / 0.6;
-    camera.near = 0.01 * depth, camera.far = depth;
+    camera.near_distance = 0.01 * depth, camera.far_distance = depth;
     return *measure::intrinsic_volumes_of_frustum(camera);
 }
 
@@ -233,7 +233,7 @@ void triangulation_rows(const VerifyOptions& options, std::vector<VerifyRow>& ro
             camera.projection = lens.perspective ? Projection::perspective : Projection::orthographic;
             camera.fov_y = 2.0 * std::atan(lens.tan_y), camera.height = 2.0 * lens.tan_y,
             camera.aspect = lens.tan_x / lens.tan_y;
-            camera.near = lens.near, camera.far = lens.far;
+            camera.near_distance = lens.near, camera.far_distance = lens.far;
             const IntrinsicVolumes b = *measure::intrinsic_volumes_of_frustum(camera);
             const Placements placements(frustum, flat_body(v));
             const sampling::UnitPoints points(seed++);

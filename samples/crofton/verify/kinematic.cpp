@@ -26,7 +26,7 @@ IntrinsicVolumes frustum_volumes(double tan_x, double tan_y, double near, double
     camera.fov_y = 2.0 * std::atan(tan_y);
     camera.height = 2.0 * tan_y;
     camera.aspect = tan_x / tan_y;
-    camera.near = near, camera.far = far;
+    camera.near_distance = near, camera.far_distance = far;
     return *measure::intrinsic_volumes_of_frustum(camera);
 }
 

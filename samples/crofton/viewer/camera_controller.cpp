@@ -47,8 +47,8 @@ void CameraController::frame_all(const Aabb& focus, const Aabb& extent) {
     camera.up = kUp;
     distance_ = 1.04 * distance_for_all(camera, focus);
     camera.position = target_ - camera.forward * distance_;
-    camera.near = std::max(radius * 5e-4, 0.02);
-    camera.far = 2.0 * (glm::length(extent.half_extents()) + distance_);
+    camera.near_distance = std::max(radius * 5e-4, 0.02);
+    camera.far_distance = 2.0 * (glm::length(extent.half_extents()) + distance_);
     speed = radius / 6.0;
 }
 

@@ -46,7 +46,7 @@ std::array<glm::dvec3, 8> view_corners(const Camera& camera, double far) {
     const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
     std::array<glm::dvec3, 8> result;
     for (unsigned i = 0; i < 8; ++i) {
-        const double depth = (i & 4) != 0 ? std::min(camera.far, far) : camera.near;
+        const double depth = (i & 4) != 0 ? std::min(camera.far_distance, far) : camera.near_distance;
         const double half =
             camera.projection == Projection::perspective ? depth * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
         const glm::dvec3 in_view((i & 1) != 0 ? half * camera.aspect : -half * camera.aspect,

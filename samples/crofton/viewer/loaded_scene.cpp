@@ -18,7 +18,7 @@ bool uses_own_boxes(pipeline::BoundsKind kind) {
 
 Camera typical_camera() {
     Camera camera;
-    camera.far = 200.0;
+    camera.far_distance = 200.0;
     return camera;
 }
 

@@ -23,15 +23,15 @@ constexpr std::size_t kMaxContactsOfPair = 64;
 
 std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
     std::vector<Cascade> result;
-    const double near = camera.near, far = std::min(camera.far, std::max(reach, 2.0 * near));
+    const double near = camera.near_distance, far = std::min(camera.far_distance, std::max(reach, 2.0 * near));
     const auto depth_at = [&](int i) {
         const double share = static_cast<double>(i) / count;
         return 0.5 * (near + (far - near) * share) + 0.5 * near * std::pow(far / near, share);
     };
     for (int i = 0; i < count; ++i) {
         Cascade cascade{camera, 0, kCascades[static_cast<std::size_t>(i) % kCascades.size()]};
-        cascade.camera.near = depth_at(i);
-        cascade.camera.far = depth_at(i + 1);
+        cascade.camera.near_distance = depth_at(i);
+        cascade.camera.far_distance = depth_at(i + 1);
         result.push_back(cascade);
     }
     return result;
@@ -64,7 +64,7 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
     }
     if (show_frustum || settings.freeze)
         for (const Cascade& cascade : cascades)
-            if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far, cascade.color);
+            if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far_distance, cascade.color);
 }
 
 void Overlay::draw_bounds(LineList& lines, const Settings& settings, const LoadedScene& loaded,

@@ -69,8 +69,8 @@ void legend(const PanelInput& input) {
         for (std::size_t i = 0; i < input.cascades.size(); ++i) {
             const Cascade& cascade = input.cascades[i];
             sample(display_color(cascade.color), 0.2f);
-            ImGui::Text("view %zu: %.1f to %.1f m, %s visible", i + 1, cascade.camera.near, cascade.camera.far,
-                        with_thousands(cascade.visible).c_str());
+            ImGui::Text("view %zu: %.1f to %.1f m, %s visible", i + 1, cascade.camera.near_distance,
+                        cascade.camera.far_distance, with_thousands(cascade.visible).c_str());
         }
     if (input.settings.coloring == Coloring::shape) shape_legend();
 }

@@ -36,8 +36,8 @@ Camera from_outside(const Camera& camera, double reach) {
     Camera outside;
     outside.forward = glm::normalize(0.55 * forward - 0.45 * side - glm::dvec3(0.0, 0.7, 0.0));
     outside.position = bounds.center() - outside.forward * (radius / std::sin(0.5 * outside.fov_y));
-    outside.near = std::max(radius * 0.01, 1e-3);
-    outside.far = 20.0 * radius;
+    outside.near_distance = std::max(radius * 0.01, 1e-3);
+    outside.far_distance = 20.0 * radius;
     outside.aspect = kInsetAspect;
     return outside;
 }

@@ -1,5 +1,6 @@
 // Sixteen boxes side by side: plain arrays, which kernel files may read without any other header.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 // A caller's mistake (as opposed to bad data) goes to a hook; the host decides whether to stop.
 #pragma once
+#include <crofton/core/requirements.hpp>
 
 namespace crofton {
 

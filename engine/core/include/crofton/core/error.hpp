@@ -1,5 +1,6 @@
 // How bad data is reported: a value that names the item, never an exception.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstdint>
 #include <string>
 #include <tl/expected.hpp>

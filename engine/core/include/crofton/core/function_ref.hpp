@@ -1,5 +1,6 @@
 // A callable by reference: two words, no allocation; valid only while the callable lives.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <memory>
 #include <type_traits>
 #include <utility>

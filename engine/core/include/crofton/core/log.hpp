@@ -1,5 +1,6 @@
 // Messages for a person, to the host's own log.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstdint>
 #include <string_view>
 

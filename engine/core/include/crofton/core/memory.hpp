@@ -1,5 +1,6 @@
 // Where the engine's containers get their memory: the host's allocator, when it gives one.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstddef>
 #include <vector>
 

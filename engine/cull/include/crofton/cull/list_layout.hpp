@@ -1,5 +1,6 @@
 // How lists of bounds lie in memory: plain arrays that vector kernels read as they are (no GLM here).
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstddef>
 #include <cstdint>
 

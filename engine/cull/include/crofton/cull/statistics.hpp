@@ -1,5 +1,6 @@
 // What a query cost, and what of it was in vain.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstdint>
 
 namespace crofton::cull {

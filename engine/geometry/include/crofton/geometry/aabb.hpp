@@ -1,5 +1,6 @@
 // Axis-aligned bounding box.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -16,12 +17,12 @@ struct Aabb {
     [[nodiscard]] glm::dvec3 half_extents() const { return 0.5 * (max - min); }
 
     void include(const glm::dvec3& point) {
-        min = glm::min(min, point);
-        max = glm::max(max, point);
+        min = (glm::min)(min, point);
+        max = (glm::max)(max, point);
     }
     void include(const Aabb& other) {
-        min = glm::min(min, other.min);
-        max = glm::max(max, other.max);
+        min = (glm::min)(min, other.min);
+        max = (glm::max)(max, other.max);
     }
 };
 

@@ -26,11 +26,11 @@ struct Camera {
     double fov_y = 1.0471975511965976;  // full vertical angle in (0, π); perspective only
     double height = 10.0;               // full height of the view volume; orthographic only
     double aspect = 16.0 / 9.0;         // width / height
-    double near = 0.1;
-    double far = 1000.0;  // infinity allowed (perspective only)
+    double near_distance = 0.1;         // to the near plane, along `forward`
+    double far_distance = 1000.0;       // to the far plane; infinity allowed (perspective only)
 };
 
-// Errors: non-finite values, forward parallel to up, fov, aspect, height, near or far out of range.
+// Errors: non-finite values, forward parallel to up, fov, aspect, height, near or far distance out of range.
 [[nodiscard]] Result<void> validate(const Camera& camera);
 
 // Rotation only: world directions to view directions (x right, y up, −z forward).

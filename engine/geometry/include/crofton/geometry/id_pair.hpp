@@ -1,6 +1,7 @@
 // Two of many items, by index.
 #pragma once
 #include <compare>
+#include <crofton/core/requirements.hpp>
 #include <cstdint>
 
 namespace crofton {

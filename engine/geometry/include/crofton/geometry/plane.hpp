@@ -1,5 +1,6 @@
 // A half-space, by its boundary plane.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton {

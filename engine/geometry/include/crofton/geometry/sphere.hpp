@@ -1,5 +1,6 @@
 // Sphere, the solid ball: the cheapest bound.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton {

@@ -1,6 +1,7 @@
 // A triangle in space, by its vertices.
 #pragma once
 #include <array>
+#include <crofton/core/requirements.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton {

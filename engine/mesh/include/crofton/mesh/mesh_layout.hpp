@@ -1,5 +1,6 @@
 // How a mesh tree lies in memory: plain arrays, which kernel files may read without any other header.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <cstdint>
 
 namespace crofton::mesh {

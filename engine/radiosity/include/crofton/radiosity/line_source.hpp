@@ -56,7 +56,7 @@ struct VisibilityComplexity {
 // The way that wastes fewer lines on this scene: walls or disc, by a trial of 8 blocks each. A box always has
 // less surface than its circumscribed sphere (for a cube 2/π of it, for a flat square box 1/π), and the chance to meet
 // a scene inside goes with the reciprocal: so for boxes as bodies this is walls, and by how much is
-// docs/radiosity.md's.
+// docs/notes/radiosity.md's.
 [[nodiscard]] LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed);
 
 }  // namespace crofton::radiosity

@@ -25,15 +25,15 @@ enum class Transport : std::uint8_t {
 };
 
 struct SolverOptions {
-    std::uint64_t lines = 0;           // global lines of a run's first gathering; 0: 64 bundles
-    std::uint64_t first_shot = 0;      // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
-    std::optional<LineMethod> method;  // absent: bundles
+    std::uint64_t lines = 0;             // global lines of a run's first gathering; 0: 64 bundles
+    std::uint64_t first_shot = 0;        // rays from the lamps per run; 0: a quarter of the lines, within [2^12, 2^18]
+    std::optional<LineMethod> method{};  // absent: bundles
     Transport transport = Transport::global;
     sampling::Sequence sequence = sampling::Sequence::quasi_random;
     std::uint64_t seed = 1;
     double cutoff = 1e-3;  // a run ends when what still travels is below this share of all light
     std::uint32_t most_bounces = 200;
-    Outside outside;
+    Outside outside{};
 };
 
 // One run: lamps shoot local lines and patches look for the sun (first-shot improvement: what is small and bright is a

@@ -1,6 +1,7 @@
 // Random numbers that are the same bits on every machine, for any number of threads.
 #pragma once
 #include <array>
+#include <crofton/core/requirements.hpp>
 #include <cstddef>
 #include <cstdint>
 

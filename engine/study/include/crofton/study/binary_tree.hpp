@@ -1,6 +1,6 @@
 // A binary hierarchy of boxes built by the chance of a visit: for studying what a criterion is worth, and for items
 // that come and go. BoxTree is the one to cull with where speed counts; this is the one to compare by, and the one that
-// has oriented inner bounds (docs/hierarchies.md).
+// has oriented inner bounds (docs/notes/boxtree.md).
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
@@ -25,7 +25,7 @@ enum class Split : std::uint8_t {
 struct BinaryTreeOptions {
     Split split = Split::nested;
     // What Split::nested weighs sides by. The area wins there even for frusta: items(side) overrates what is below a
-    // side, and more so for M, which shrinks more slowly on the way down (docs/hierarchies.md).
+    // side, and more so for M, which shrinks more slowly on the way down (docs/notes/boxtree.md).
     measure::Criterion split_criterion = measure::minimal_area();
     // What chooses places for insertion, and among bounds: here the cost is the expected number of visits itself, and
     // with (2) for the frustum in use it is exact for nested boxes.

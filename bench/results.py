@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Measurements as CSV in bench/results/<processor>/, and the docs' tables made from them.
+
+  bench/results.py measure BENCH [--targets AVX2,AVX3_DL] [--build build/bench] [benchmark options …]
+      runs bench_<BENCH> once for each instruction set and writes bench/results/<processor>/<BENCH>.csv; "best" means the
+      processor's own. Benchmarks that a table names are run, where no --benchmark_filter is given.
+  bench/results.py tables
+      writes each table of bench/results/tables.json into its page, between the markers
+      <!-- table NAME --> and <!-- end -->.
+  bench/results.py check
+      as tables, but writes nothing and exits with 1 where a page would change: the test of the docs.
+
+A CSV begins with lines "# key: value" that say what was run where. Then a row for each benchmark and instruction set:
+benchmark, instruction_set, least_ns, median_ns, repetitions. Times are of one iteration, elapsed.
+"""
+import csv
+import datetime
+import json
+import pathlib
+import platform
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RESULTS = ROOT / "bench" / "results"
+NAMES = {"AVX3": "AVX-512", "AVX3_DL": "AVX-512", "AVX3_ZEN4": "AVX-512"}  # Highway's names to the world's
+FIELDS = ["benchmark", "instruction_set", "least_ns", "median_ns", "repetitions"]
+NANOSECONDS = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}
+
+
+def processor():
+    """The processor's name, fit for a folder."""
+    info = pathlib.Path("/proc/cpuinfo")
+    model = re.search(r"model name\s*:\s*(.*)", info.read_text(encoding="utf-8")) if info.exists() else None
+    return re.sub(r"[^a-z0-9]+", "-", (model[1] if model else platform.machine()).lower()).strip("-")
+
+
+def specifications():
+    return json.loads((RESULTS / "tables.json").read_text(encoding="utf-8"))
+
+
+def names_in(table):
+    """All benchmarks that a table needs."""
+    return {name for row in table["rows"] for name in (row["benchmark"], row.get("beside")) if name}
+
+
+def times_of(report):
+    """{benchmark: [nanoseconds of each repetition]} from Google Benchmark's JSON."""
+    times = {}
+    for run in report["benchmarks"]:
+        if run.get("run_type", "iteration") == "iteration":
+            name = re.sub(r"/(iterations|repeats):.*", "", run["run_name"])
+            times.setdefault(name, []).append(run["real_time"] * NANOSECONDS[run["time_unit"]])
+    return times
+
+
+def measure(bench, arguments):
+    targets, build, options = ["AVX2", "best"], "build/bench", []
+    while arguments:
+        argument = arguments.pop(0)
+        if argument == "--targets":
+            targets = arguments.pop(0).split(",")
+        elif argument == "--build":
+            build = arguments.pop(0)
+        else:
+            options.append(argument)
+    if not any(option.startswith("--benchmark_filter") for option in options):
+        wanted = {name for table in specifications().values() if table["csv"] == bench for name in names_in(table)}
+        options.append("--benchmark_filter=^(" + "|".join(sorted(re.escape(name) for name in wanted)) + ")$")
+    if not any(option.startswith("--benchmark_repetitions") for option in options):
+        options.append("--benchmark_repetitions=5")
+    rows = []
+    for target in targets:
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out.json"
+            command = [str(ROOT / build / "bin" / f"bench_{bench}"), f"--benchmark_out={out}", "--benchmark_out_format=json"]
+            command += options + ([] if target == "best" else [f"--target={target}"])
+            subprocess.run(command, check=True, stdout=sys.stderr)
+            report = json.loads(out.read_text(encoding="utf-8"))
+        used = report["context"].get("instruction_set", target)
+        for name, times in sorted(times_of(report).items()):
+            rows.append([name, NAMES.get(used, used), f"{min(times):.6g}", f"{statistics.median(times):.6g}", len(times)])
+    commit = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True, check=False)
+    path = RESULTS / processor() / f"{bench}.csv"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.write(f"# command: bench/results.py measure {bench} --targets {','.join(targets)}\n")
+        file.write(f"# commit: {commit.stdout.strip() or 'unknown'}\n")
+        file.write(f"# date: {datetime.date.today().isoformat()}\n")
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(FIELDS)
+        writer.writerows(rows)
+    print(path.relative_to(ROOT))
+
+
+def read(path):
+    """{(benchmark, instruction set): (least, median)} in nanoseconds."""
+    with path.open(encoding="utf-8") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        return {(row["benchmark"], row["instruction_set"]): (float(row["least_ns"]), float(row["median_ns"])) for row in rows}
+
+
+def number(value):
+    """Two digits, or all before the point."""
+    return f"{value:.0f}" if value >= 10 else f"{value:.1f}" if value >= 1 else f"{value:.2f}"
+
+
+def span(low, high):
+    return number(low) if number(low) == number(high) else f"{number(low)} to {number(high)}"
+
+
+def table_of(table, times):
+    """The lines of a table: least to median of each row, per instruction set, and how many times as long the other takes."""
+    sets = table["instruction_sets"]
+    others = any(row.get("beside") for row in table["rows"])
+    head = [table["title"]] + [f"{table['unit']}, {name}" for name in sets] + ([table["beside"]] if others else [])
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    for row in table["rows"]:
+        scale = 1.0 / row["divide_by"]
+        cells = [row["text"]] + [span(*(time * scale for time in times[row["benchmark"], name])) for name in sets]
+        if others:
+            beside = row.get("beside")
+            ratios = [times[beside, name][0] / times[row["benchmark"], name][0] for name in sets] if beside else []
+            cells.append(f"{' / '.join(number(ratio) for ratio in ratios)} ×" if ratios else "")
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
+def write_tables(check):
+    changed = []
+    for name, table in specifications().items():
+        path = ROOT / table["page"]
+        page = path.read_text(encoding="utf-8")
+        lines = table_of(table, read(RESULTS / table["processor"] / f"{table['csv']}.csv"))
+        marked = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.S)
+        if len(marked.findall(page)) != 1:
+            sys.exit(f"{table['page']} must have the markers of the table {name} once")
+        new = marked.sub(lambda match: match[1] + "\n".join(lines) + "\n" + match[2], page)
+        if new != page:
+            changed.append(f"{table['page']}: table {name}")
+            if not check:
+                path.write_text(new, encoding="utf-8")
+    print("\n".join(changed) or "all tables are as measured")
+    return 1 if check and changed else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 2 and sys.argv[1] == "measure":
+        measure(sys.argv[2], sys.argv[3:])
+    elif len(sys.argv) == 2 and sys.argv[1] in ("tables", "check"):
+        sys.exit(write_tables(sys.argv[1] == "check"))
+    else:
+        sys.exit(__doc__)

@@ -1,0 +1,9 @@
+// Compiled by refused.cmake with flags that must be refused, and with some that must not.
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/rigid_transform.hpp>
+
+#if CROFTON_CPLUSPLUS  // what the check itself defines does not stay
+#error
+#endif
