@@ -134,22 +134,30 @@ void BoxTree::vacate(ItemId item) {
     mark(slot);
 }
 
-Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
-    const ItemId item = free_items_.empty() ? static_cast<ItemId>(boxes_.size()) : free_items_.back();
-    if (boxes_.size() >= kMaxItems && free_items_.empty())
-        return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
-    if (auto valid = crofton::validate(box, item); !valid) return tl::unexpected(valid.error());
+// An id for it, that of a removed item if there is one.
+Result<ItemId> BoxTree::new_item(const Obb& box, std::uint32_t layer_mask) {
     if (free_items_.empty()) {
+        const auto item = static_cast<ItemId>(boxes_.size());
+        if (item >= kMaxItems) return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
         boxes_.push_back(box);
         layer_masks_.push_back(layer_mask);
         now_.item_slots.push_back(kNone);
-    } else {
-        free_items_.pop_back();
-        boxes_[item] = box;
-        layer_masks_[item] = layer_mask;
+        return item;
     }
-    note_change(item);
-    place(item);
+    const ItemId item = free_items_.back();
+    free_items_.pop_back();
+    boxes_[item] = box;
+    layer_masks_[item] = layer_mask;
+    return item;
+}
+
+Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
+    if (auto valid = crofton::validate(box, free_items_.empty() ? boxes_.size() : free_items_.back()); !valid)
+        return tl::unexpected(valid.error());
+    auto item = new_item(box, layer_mask);
+    if (!item) return item;
+    note_change(*item);
+    place(*item);
     return item;
 }
 
