@@ -1,0 +1,105 @@
+// The front door: objects in, what is seen and what touches out.
+#pragma once
+#include <crofton/collide/ray.hpp>
+#include <crofton/collide/shapes.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/cull/cull.hpp>
+#include <crofton/world/answers.hpp>
+#include <crofton/world/inputs.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace crofton {
+
+struct WorldOptions {
+    bool pairs = true;        // false: neither pairs nor contacts are looked for
+    bool contacts = true;     // false: pairs alone
+    bool containment = true;  // a closed mesh around another object touches it
+    bool mesh_depth = false;  // depth and direction of contacts between meshes, which cost more than finding them
+    std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
+    std::size_t rebuild_budget = 512;              // items' worth of work on the tree an update: BoxTree::rebuild_step
+    std::uint32_t updates_to_rest = 16;            // without moving, until an object counts as resting again
+};
+
+// As of the last update.
+struct WorldStatistics {
+    std::size_t objects = 0, resting = 0, moving = 0;  // shown ones: in the tree, in the list
+    std::uint32_t boxes_changed = 0;                   // in this update
+    bool tree_built = false;                           // all at once: much has come to rest
+    std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
+    std::uint32_t nodes_updated = 0;
+    std::uint32_t out_of_range = 0;  // objects that the product of transforms has put beyond it: hidden until they return
+};
+
+// Owns nodes, meshes, objects, the tree of what rests and the list of what moves; which is which it finds out.
+// Changes take effect in update(). Const calls answer as of the last update and may run on any number of threads; the
+// others need the World for themselves. An error names the item and leaves the rest as it was; calls that take many
+// handles do what they can and return the first error, whose item is the place among the handles.
+class World {
+  public:
+    explicit World(const WorldOptions& options = {});
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    // Objects. Errors: a stale handle; a bound or transform that is NaN, infinite or out of range.
+    Result<ObjectHandle> add(const ObjectDescription& description);
+    Result<void> remove(ObjectHandle object);
+    Result<void> set_bound(ObjectHandle object, const Bound& bound);
+    Result<void> set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes);
+    Result<void> set_hidden(ObjectHandle object, bool hidden);  // in no answer until shown again
+    Result<void> set_layers(ObjectHandle object, std::uint32_t layers);
+    Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
+    Result<void> set_user(ObjectHandle object, std::uint64_t user);
+
+    [[nodiscard]] bool contains(ObjectHandle object) const;
+    [[nodiscard]] std::size_t object_count() const;  // removed ones not counted
+    [[nodiscard]] Result<std::uint64_t> user_of(ObjectHandle object) const;
+    [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;  // as of the last update
+
+    // Once a frame. Error: more than max_pairs pairs; then there are none, and all else is as it should be.
+    Result<void> update(Executor& executor = serial_executor());
+    [[nodiscard]] const WorldStatistics& statistics() const;
+
+    // What a view sees, by the objects' boxes, exactly as the mode says.
+    Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::Options& options = {},
+                      Executor& executor = serial_executor()) const;  // errors: as validate(Camera)
+    void view(const cull::View& view, VisibleObjects& visible, const cull::Options& options = {},
+              Executor& executor = serial_executor()) const;
+    void view(std::span<const cull::View> views, VisibleInViews& visible,  // at most cull::kMaxViews
+              cull::Mode mode = cull::Mode::exact) const;
+
+    // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
+    // of the answers.
+    [[nodiscard]] std::optional<ObjectHit> raycast(const collide::Ray& ray, std::uint32_t layers = ~0u) const;
+    [[nodiscard]] bool raycast_any(const collide::Ray& ray, std::uint32_t layers = ~0u) const;
+    // Every object's nearest hit, by t, then by index.
+    void raycast_all(const collide::Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
+
+    // Whose box or ball meets the shape; by index. Meshes by their boxes.
+    void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    // The box or ball nearest to the shape, no farther than max_distance; of several the lowest index.
+    [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+    [[nodiscard]] std::optional<ClosestObject> closest(const Obb& shape, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+    [[nodiscard]] std::optional<ClosestObject> closest(const collide::Capsule& shape, double max_distance,
+                                                       std::uint32_t layers = ~0u) const;
+
+    // Found by update(): objects whose boxes or balls meet, in order; and of them those that touch, with those that no
+    // longer do.
+    [[nodiscard]] std::span<const ObjectPair> pairs() const;
+    [[nodiscard]] std::span<const Contact> contacts() const;
+
+  private:
+    struct State;
+    struct Deleter {
+        void operator()(State* state) const;
+    };
+    std::unique_ptr<State, Deleter> state_;
+};
+
+}  // namespace crofton

@@ -1,0 +1,172 @@
+#include "contact_finder.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace crofton::world {
+namespace {
+
+constexpr std::size_t kPairsATask = 16;
+
+// Of two whose boxes meet.
+bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
+    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
+    if (ball_a && ball_b) return glm::length(box_a.center - box_b.center) <= a.radius + b.radius;
+    if (ball_a) return collide::intersects(box_b, ball_of(a, box_a));
+    if (ball_b) return collide::intersects(box_a, ball_of(b, box_b));
+    return true;
+}
+
+bool is_before(const ObjectPair& a, const ObjectPair& b) {
+    if (a.first.object.index != b.first.object.index) return a.first.object.index < b.first.object.index;
+    return a.second.object.index < b.second.object.index;
+}
+
+bool are_same(const ObjectPair& a, const ObjectPair& b) {
+    return a.first.object == b.first.object && a.second.object == b.second.object;
+}
+
+// Appends part of a list and returns where it begins there.
+template <class T>
+std::uint32_t append(const Vector<T>& from, std::uint32_t first, std::uint32_t count, Vector<T>& to) {
+    const auto begin = static_cast<std::uint32_t>(to.size());
+    to.insert(to.end(), from.begin() + first, from.begin() + first + count);
+    return begin;
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(const WorldOptions& options)
+    : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
+
+void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex& index) {
+    colliders_.clear();
+    boxes_.clear();
+    filters_.clear();
+    for (std::uint32_t i = 0; i < table.objects.size(); ++i) {
+        const Object& object = table.objects[i];
+        if (!object.alive || object.collides_with == 0 || !index.is_placed(i)) continue;
+        const std::uint32_t layers = index.layers(i);
+        if (layers == 0) continue;
+        colliders_.push_back(i);
+        boxes_.push_back(index.box(i));
+        filters_.push_back({layers, object.collides_with});
+    }
+}
+
+// Colliders ascend, so that pairs of objects are in the order of pairs of boxes.
+void ContactFinder::list_pairs(const ObjectTable& table) {
+    pairs_.clear();
+    for (const collide::Pair& pair : broadphase_.pairs()) {
+        const std::uint32_t first = colliders_[pair.first], second = colliders_[pair.second];
+        if (!bounds_meet(table.objects[first], boxes_[pair.first], table.objects[second], boxes_[pair.second])) continue;
+        pairs_.push_back({table.ref(first), table.ref(second)});
+    }
+}
+
+void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair,
+                                 Worker& worker, Touch& touch) const {
+    const std::uint32_t i = pair.first.object.index, j = pair.second.object.index;
+    const Object &a = table.objects[i], &b = table.objects[j];
+    const Obb &box_a = index.box(i), &box_b = index.box(j);
+    const collide::Manifold manifold = a.kind == BoundKind::ball || b.kind == BoundKind::ball
+                                           ? collide::contact_manifold(convex_of(a, box_a), convex_of(b, box_b))
+                                           : collide::contact_manifold(box_a, box_b);
+    touch.hit = true;
+    touch.normal = manifold.normal;
+    touch.depth = manifold.depth;
+    touch.first_point = static_cast<std::uint32_t>(worker.points.size());
+    touch.point_count = static_cast<std::uint32_t>(manifold.count);
+    worker.points.insert(worker.points.end(), manifold.points, manifold.points + manifold.count);
+}
+
+void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, Executor& executor) {
+    workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
+    for (Worker& worker : workers_) {
+        worker.points.clear();
+        worker.triangles.clear();
+    }
+    touches_.resize(pairs_.size());
+    executor.parallel_for(pairs_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        for (std::size_t i = begin; i < end; ++i) {
+            touches_[i] = {};
+            touches_[i].worker = worker;
+            touch_bounds(table, index, pairs_[i], workers_[worker], touches_[i]);
+        }
+    });
+}
+
+void ContactFinder::add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase) {
+    Contact contact;
+    contact.first = pair.first;
+    contact.second = pair.second;
+    contact.phase = phase;
+    contact.inside = touch.inside;
+    contact.normal = touch.normal;
+    contact.depth = touch.depth;
+    contacts_.push_back(contact);
+    contact_touches_.push_back(touch);
+    if (phase == ContactPhase::ended) return;
+    Touch& kept = contact_touches_.back();
+    const Worker& worker = workers_[touch.worker];
+    kept.first_point = append(worker.points, touch.first_point, touch.point_count, points_);
+    kept.first_triangle = append(worker.triangles, touch.first_triangle, touch.triangle_count, triangles_);
+}
+
+// In the order of the pairs, whoever tested them.
+void ContactFinder::gather() {
+    before_.clear();
+    for (const Contact& contact : contacts_)
+        if (contact.phase != ContactPhase::ended) before_.push_back({contact.first, contact.second});
+    contacts_.clear();
+    contact_touches_.clear();
+    points_.clear();
+    triangles_.clear();
+    std::size_t old = 0;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!touches_[i].hit) continue;
+        for (; old < before_.size() && is_before(before_[old], pairs_[i]); ++old)
+            add_contact(before_[old], {}, ContactPhase::ended);
+        const bool met = old < before_.size() && !is_before(pairs_[i], before_[old]);
+        const bool stayed = met && are_same(before_[old], pairs_[i]);
+        if (met && !stayed) add_contact(before_[old], {}, ContactPhase::ended);
+        add_contact(pairs_[i], touches_[i], stayed ? ContactPhase::stayed : ContactPhase::began);
+        old += met;
+    }
+    for (; old < before_.size(); ++old) add_contact(before_[old], {}, ContactPhase::ended);
+    link_lists();
+}
+
+void ContactFinder::link_lists() {
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const Touch& touch = contact_touches_[i];
+        contacts_[i].points = std::span(points_).subspan(touch.first_point, touch.point_count);
+        contacts_[i].triangles = std::span(triangles_).subspan(touch.first_triangle, touch.triangle_count);
+    }
+}
+
+Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, Executor& executor) {
+    list_colliders(table, index);
+    auto found = broadphase_.update(boxes_, filters_, executor);
+    list_pairs(table);
+    if (options_.contacts) {
+        find_contacts(table, index, executor);
+        gather();
+    }
+    return found;
+}
+
+void ContactFinder::stay() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (contacts_[i].phase == ContactPhase::ended) continue;
+        contacts_[kept] = contacts_[i];
+        contacts_[kept].phase = ContactPhase::stayed;
+        contact_touches_[kept] = contact_touches_[i];
+        ++kept;
+    }
+    contacts_.resize(kept);
+    contact_touches_.resize(kept);
+}
+
+}  // namespace crofton::world

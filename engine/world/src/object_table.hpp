@@ -1,0 +1,59 @@
+// What a World knows of its objects beside their boxes. Indices are the spatial index's.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/world/answers.hpp>
+#include <crofton/world/inputs.hpp>
+
+namespace crofton::world {
+
+struct Object {
+    BoundKind kind = BoundKind::none;  // none: a mesh
+    bool alive = false;
+    bool shown = true;
+    std::uint32_t staged = kNoIndex;  // its entry among the changes that wait for update()
+    std::uint32_t layers = ~0u;       // as they will be after the next update
+    std::uint32_t collides_with = ~0u;
+    std::uint32_t instance = kNoIndex;  // of a mesh, in the scene
+    double radius = 0.0;                // of a ball
+};
+
+struct ObjectTable {
+    Vector<Object> objects;
+    ObjectNames names;
+    std::size_t count = 0;  // alive
+
+    void add(std::uint32_t index, const Object& object, std::uint64_t user) {
+        if (index >= objects.size()) {
+            objects.resize(index + std::size_t{1});
+            names.generations.resize(index + std::size_t{1}, 0);
+            names.users.resize(index + std::size_t{1});
+        }
+        objects[index] = object;
+        objects[index].alive = true;
+        names.users[index] = user;
+        ++count;
+    }
+    // Handles become stale at once; the index is free once the spatial index has removed it too.
+    void remove(std::uint32_t index) {
+        objects[index].alive = false;
+        ++names.generations[index];
+        --count;
+    }
+    [[nodiscard]] bool contains(ObjectHandle handle) const {
+        return handle.index < objects.size() && objects[handle.index].alive &&
+               names.generations[handle.index] == handle.generation;
+    }
+    [[nodiscard]] ObjectHandle handle(std::uint32_t index) const { return {index, names.generations[index]}; }
+    [[nodiscard]] ObjectRef ref(std::uint32_t index) const { return {handle(index), names.users[index]}; }
+};
+
+[[nodiscard]] inline Sphere ball_of(const Object& object, const Obb& box) {
+    return {box.center, object.radius};
+}
+
+// An object's bound: its ball or its box.
+[[nodiscard]] inline collide::Convex convex_of(const Object& object, const Obb& box) {
+    return object.kind == BoundKind::ball ? collide::convex(ball_of(object, box)) : collide::convex(box);
+}
+
+}  // namespace crofton::world
