@@ -218,7 +218,8 @@ TEST_SUITE("world/bounds") {
         std::vector<Thing> things(5);
         for (Thing& thing : things) thing.handle = world.add({.bound = box_at({})}).value();
         for (std::size_t i = 0; i < 5; ++i) things[i].box = box_at({0.0, double(i), 0.0});
-        REQUIRE(world.set_bounds({&things[0].handle, 5, sizeof(Thing)}, {&things[0].box, 5, sizeof(Thing)}).has_value());
+        REQUIRE(
+            world.set_bounds({&things[0].handle, 5, sizeof(Thing)}, {&things[0].box, 5, sizeof(Thing)}).has_value());
         REQUIRE(world.update().has_value());
         for (const Thing& thing : things) CHECK(world.box_of(thing.handle)->center == thing.box.center);
     }
@@ -388,10 +389,11 @@ TEST_SUITE("world/bounds") {
                         object.user = random.index(1u << 30);
                         object.layers = 1u << random.index(4) | 1u << random.index(4);
                         object.collides_with = random.index(2) ? ~0u : 1u << random.index(4);
-                        object.handle = world.add({.bound = object.bound,
-                                                   .user = object.user,
-                                                   .layers = object.layers,
-                                                   .collides_with = object.collides_with})
+                        object.handle = world
+                                            .add({.bound = object.bound,
+                                                  .user = object.user,
+                                                  .layers = object.layers,
+                                                  .collides_with = object.collides_with})
                                             .value();
                         CHECK(!model.objects.contains(object.handle.index));
                         model.objects[object.handle.index] = object;
@@ -443,7 +445,7 @@ TEST_SUITE("world/bounds") {
         std::vector<Obb> boxes;
         for (int i = 0; i < 3000; ++i) {
             boxes.push_back(oracle::random_box(random, {}, 40.0));
-                boxes.back().half_extents *= 6.0f;
+            boxes.back().half_extents *= 6.0f;
             objects.push_back(serial.add({.bound = boxes.back()}).value());
             CHECK(parallel.add({.bound = boxes.back()}).value() == objects.back());
         }
@@ -529,7 +531,6 @@ TEST_SUITE("world/bounds") {
                 }
                 REQUIRE(world.update().has_value());
                 for (int i = 0; i < 40; ++i) spawn();
-                if (frame % 50 == 0) MESSAGE(frame, " ", memory.bytes_in_use(), " ", most, " ", world.statistics().resting, " ", world.statistics().moving);
                 if (frame < 300) first = std::max(first, memory.bytes_in_use());
                 most = std::max(most, memory.bytes_in_use());
             }
@@ -537,6 +538,24 @@ TEST_SUITE("world/bounds") {
             std::uint32_t largest = 0;
             for (const ObjectHandle& handle : live) largest = std::max(largest, handle.index);
             CHECK(largest < 3000);
+            for (int i = 0; i < 100; ++i) REQUIRE(world.update().has_value());
+            World fresh;
+            for (const ObjectHandle& handle : live)
+                REQUIRE(fresh.add({.bound = world.box_of(handle).value()}).has_value());
+            REQUIRE(fresh.update().has_value());
+            VisibleObjects visible;
+            std::uint64_t tested = 0, tested_fresh = 0;
+            for (int i = 0; i < 100; ++i) {
+                const cull::View view = random_view(random);
+                world.view({.frustum = view.frustum}, visible);
+                tested += visible.statistics().nodes_tested + visible.statistics().boxes_tested;
+                const std::size_t seen = visible.size();
+                fresh.view({.frustum = view.frustum}, visible);
+                tested_fresh += visible.statistics().nodes_tested + visible.statistics().boxes_tested;
+                CHECK(visible.size() == seen);
+            }
+            CHECK(tested_fresh > 1000);
+            CHECK(tested <= tested_fresh + tested_fresh / 10);
         }
         CHECK(memory.bytes_in_use() == 0);
     }

@@ -59,7 +59,8 @@ void ContactFinder::list_pairs(const ObjectTable& table) {
     pairs_.clear();
     for (const collide::Pair& pair : broadphase_.pairs()) {
         const std::uint32_t first = colliders_[pair.first], second = colliders_[pair.second];
-        if (!bounds_meet(table.objects[first], boxes_[pair.first], table.objects[second], boxes_[pair.second])) continue;
+        if (!bounds_meet(table.objects[first], boxes_[pair.first], table.objects[second], boxes_[pair.second]))
+            continue;
         pairs_.push_back({table.ref(first), table.ref(second)});
     }
 }

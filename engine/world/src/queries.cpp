@@ -187,8 +187,7 @@ std::optional<ClosestObject> World::State::closest(const Shape& shape, double ma
     for (double limit = max_distance * 0x1p-12;; limit = std::min(8.0 * limit, max_distance)) {
         double rest = limit;
         visit_near(bounds, limit, layers, [&](std::uint32_t id) {
-            const collide::Distance gap =
-                collide::distance(body, world::convex_of(table.objects[id], index.box(id)));
+            const collide::Distance gap = collide::distance(body, world::convex_of(table.objects[id], index.box(id)));
             const bool nearer = !nearest || gap.distance < nearest->distance ||
                                 (gap.distance == nearest->distance && id < nearest->object.index);
             if (gap.distance > rest || !nearer) return rest;

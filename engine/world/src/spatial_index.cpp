@@ -6,9 +6,11 @@
 namespace crofton::world {
 namespace {
 
-constexpr std::uint8_t kUpdatesToMove = 2;      // in a row, until an item leaves the tree
+constexpr std::uint8_t kUpdatesToMove = 2;       // in a row, until an item leaves the tree
 constexpr std::size_t kAttachedPerUpdate = 256;  // one at a time, at about a microsecond each
 constexpr std::size_t kFewItems = 64;
+// Putting an item into the new tree is worth 64 (BoxTree::maintain); so the new tree gains on what changes.
+constexpr std::size_t kBudgetPerChange = 128;
 constexpr std::size_t kChangesToRebuild = 8;  // the tree is rebuilt once a part of 1 / 8 of its items has changed
 
 void must([[maybe_unused]] const Result<void>& done) {
@@ -147,10 +149,12 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     if (wants_refit_) tree_.refit();
     wants_refit_ = false;
     rebuilding_ |= tree_changes_ > 0 && tree_changes_ * kChangesToRebuild >= tree_.item_count();
-    if (rebuilding_ && tree_.maintain(settings.rebuild_budget)) {
+    const std::size_t budget = settings.rebuild_budget + kBudgetPerChange * (tree_changes_ - changes_before_);
+    if (rebuilding_ && tree_.maintain(budget)) {
         rebuilding_ = false;
         tree_changes_ = 0;
     }
+    changes_before_ = tree_changes_;
     Group& moving = group(Place::moving);
     if (list_changed_) must(moving_boxes_.update(tree_, moving.items, moving.boxes, executor));
     list_changed_ = false;
@@ -217,7 +221,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) must(built->remove(removed[i]));
     tree_ = std::move(*built);
-    tree_changes_ = 0;
+    tree_changes_ = changes_before_ = 0;
     rebuilding_ = false;
     list_changed_ = true;
 }

@@ -32,7 +32,7 @@ class SpatialIndex {
     Changes update(const Settings& settings, Executor& executor);
 
     [[nodiscard]] std::size_t size() const { return items_.size(); }  // ids are below it
-    [[nodiscard]] bool is_placed(ItemId item) const {                  // in the tree or the list
+    [[nodiscard]] bool is_placed(ItemId item) const {                 // in the tree or the list
         return items_[item].place >= Place::entering;
     }
     [[nodiscard]] bool has_box(ItemId item) const { return items_[item].place != Place::nowhere; }
@@ -72,7 +72,8 @@ class SpatialIndex {
     Vector<Obb> moved_boxes_;
     std::uint32_t now_ = 1;  // counts updates
     std::uint32_t boxes_changed_ = 0;
-    std::size_t tree_changes_ = 0;  // since it was last rebuilt
+    std::size_t tree_changes_ = 0;    // since it was last rebuilt
+    std::size_t changes_before_ = 0;  // of them, those before the last update
     bool rebuilding_ = false, list_changed_ = false, wants_refit_ = false;
 };
 

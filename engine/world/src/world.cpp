@@ -40,7 +40,8 @@ Result<std::uint64_t> World::user_of(ObjectHandle object) const {
 Result<Obb> World::box_of(ObjectHandle object) const {
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
     if (!state_->index.has_box(object.index))
-        return fail(ErrorCode::empty, object.index, "world: the object has no box before the first update after it was added");
+        return fail(ErrorCode::empty, object.index,
+                    "world: the object has no box before the first update after it was added");
     return state_->index.box(object.index);
 }
 

@@ -27,9 +27,7 @@ class Strided {
         : Strided(std::span<const T>(range).data(), std::span<const T>(range).size()) {}
 
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const T& operator[](std::size_t i) const {
-        return *reinterpret_cast<const T*>(first_ + i * stride_);
-    }
+    [[nodiscard]] const T& operator[](std::size_t i) const { return *reinterpret_cast<const T*>(first_ + i * stride_); }
 
   private:
     const std::byte* first_ = nullptr;
@@ -122,9 +120,10 @@ struct ObjectDescription {
     NodeHandle node = {};
     std::optional<scene::Transform> transform = {};  // none: the node's own
     Bound bound = {};
-    std::uint64_t user = 0;             // given back with every answer
-    std::uint32_t layers = ~0u;         // views and queries ask for layers
-    std::uint32_t collides_with = ~0u;  // two objects may be a pair where each one's layers meet what the other's has here
+    std::uint64_t user = 0;      // given back with every answer
+    std::uint32_t layers = ~0u;  // views and queries ask for layers
+    std::uint32_t collides_with =
+        ~0u;  // two objects may be a pair where each one's layers meet what the other's has here
 };
 
 }  // namespace crofton

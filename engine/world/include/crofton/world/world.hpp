@@ -29,7 +29,8 @@ struct WorldStatistics {
     bool tree_built = false;                           // all at once: much has come to rest
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
     std::uint32_t nodes_updated = 0;
-    std::uint32_t out_of_range = 0;  // objects that the product of transforms has put beyond it: hidden until they return
+    std::uint32_t out_of_range =
+        0;  // objects that the product of transforms has put beyond it: hidden until they return
 };
 
 // Owns nodes, meshes, objects, the tree of what rests and the list of what moves; which is which it finds out.
