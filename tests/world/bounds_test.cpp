@@ -152,8 +152,8 @@ TEST_SUITE("world/bounds") {
             REQUIRE(world.update().has_value());
         }
         CHECK(world.object_count() == 0);
-        CHECK(!world.contains({}));
-        CHECK(world.remove({}).error().code == ErrorCode::stale_handle);
+        CHECK(!world.contains(ObjectHandle()));
+        CHECK(world.remove(ObjectHandle()).error().code == ErrorCode::stale_handle);
     }
 
     TEST_CASE("bounds that are none are refused with a reason, and spoil nothing") {
@@ -240,7 +240,8 @@ TEST_SUITE("world/bounds") {
             CHECK(world.set_user(first, 1).error().code == ErrorCode::stale_handle);
             CHECK(world.user_of(first).error().code == ErrorCode::stale_handle);
             CHECK(world.box_of(first).error().code == ErrorCode::stale_handle);
-            CHECK(world.remove({first.index, first.generation + 7}).error().code == ErrorCode::stale_handle);
+            CHECK(world.remove(ObjectHandle{first.index, first.generation + 7}).error().code ==
+                  ErrorCode::stale_handle);
             REQUIRE(world.update().has_value());
         }
         const auto second = world.add({.bound = box_at({}), .user = 2}).value();

@@ -76,23 +76,96 @@ void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& i
     touch.hit = true;
     touch.normal = manifold.normal;
     touch.depth = manifold.depth;
-    touch.first_point = static_cast<std::uint32_t>(worker.points.size());
     touch.point_count = static_cast<std::uint32_t>(manifold.count);
     worker.points.insert(worker.points.end(), manifold.points, manifold.points + manifold.count);
 }
 
-void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, Executor& executor) {
+void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const {
+    const collide::Pose b_to_a = collide::relative(a.pose, b.pose);
+    collide::contacts(*a.tree, *b.tree, b_to_a, worker.found);
+    touch.hit = !worker.found.empty();
+    if (!touch.hit && options_.containment) {
+        touch.inside = collide::containment_of_disjoint(*a.tree, *b.tree, b_to_a);
+        touch.hit = touch.inside != collide::Containment::none;
+    }
+    if (!touch.hit) return;
+    touch.triangle_count = static_cast<std::uint32_t>(worker.found.size());
+    glm::dvec3 normals(0.0);
+    for (collide::MeshContact contact : worker.found) {
+        contact.segment = {collide::transform(a.pose, contact.segment.begin),
+                           collide::transform(a.pose, contact.segment.end)};
+        contact.normal = a.pose.rotation * contact.normal;
+        normals -= contact.normal;
+        worker.triangles.push_back(contact);
+    }
+    if (options_.mesh_depth) {
+        const collide::MeshDepth way_out = collide::penetration(*a.tree, *b.tree, b_to_a, worker.found);
+        touch.depth = way_out.depth;
+        touch.normal = a.pose.rotation * way_out.direction;
+    } else if (const double length = glm::length(normals); length > 0.0) {
+        touch.normal = normals / length;
+    }
+}
+
+// The normal points from the mesh to the ball.
+void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
+                               Touch& touch) const {
+    const collide::Pose to_mesh = collide::relative(mesh.pose, center.pose);
+    const collide::MeshDistance gap = collide::distance(*mesh.tree, *center.tree, to_mesh);
+    const bool inside = options_.containment && collide::contains(*mesh.tree, to_mesh.translation);
+    touch.hit = inside || gap.distance <= radius;
+    if (!touch.hit) return;
+    const double signed_distance = inside ? -gap.distance : gap.distance;
+    const glm::dvec3 on_mesh = collide::transform(mesh.pose, gap.on_a);
+    if (gap.distance > 0.0) touch.normal = (center.pose.translation - on_mesh) / signed_distance;
+    touch.depth = radius - signed_distance;
+    touch.point_count = 1;
+    worker.points.push_back({on_mesh, touch.depth});
+}
+
+void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                  Bodies& bodies, Executor& executor) {
+    const auto is_mesh = [&](const ObjectRef& object) {
+        return bodies.mesh_tree_of(table.objects[object.object.index]) != nullptr;
+    };
+    bodies.begin();
+    for (const ObjectPair& pair : pairs_) {
+        if (!is_mesh(pair.first) && !is_mesh(pair.second)) continue;
+        for (const ObjectRef& object : {pair.first, pair.second})
+            bodies.prepare(table, index, scene, object.object.index);
+    }
+    bodies.build(scene, executor);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
     for (Worker& worker : workers_) {
         worker.points.clear();
         worker.triangles.clear();
     }
     touches_.resize(pairs_.size());
-    executor.parallel_for(pairs_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    executor.parallel_for(pairs_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
+        Worker& worker = workers_[w];
         for (std::size_t i = begin; i < end; ++i) {
-            touches_[i] = {};
-            touches_[i].worker = worker;
-            touch_bounds(table, index, pairs_[i], workers_[worker], touches_[i]);
+            const ObjectPair& pair = pairs_[i];
+            Touch& touch = touches_[i];
+            touch = {};
+            touch.worker = w;
+            touch.first_point = static_cast<std::uint32_t>(worker.points.size());
+            touch.first_triangle = static_cast<std::uint32_t>(worker.triangles.size());
+            if (!is_mesh(pair.first) && !is_mesh(pair.second)) {
+                touch_bounds(table, index, pair, worker, touch);
+                continue;
+            }
+            const std::uint32_t first = pair.first.object.index, second = pair.second.object.index;
+            const PosedTree a = bodies.posed_tree(table, index, scene, first),
+                            b = bodies.posed_tree(table, index, scene, second);
+            if (!a.tree || !b.tree) continue;
+            if (table.objects[second].kind == BoundKind::ball) {
+                touch_ball(a, b, table.objects[second].radius, worker, touch);
+            } else if (table.objects[first].kind == BoundKind::ball) {
+                touch_ball(b, a, table.objects[first].radius, worker, touch);
+                touch.normal = -touch.normal;
+            } else {
+                touch_triangles(a, b, worker, touch);
+            }
         }
     });
 }
@@ -146,12 +219,13 @@ void ContactFinder::link_lists() {
     }
 }
 
-Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, Executor& executor) {
+Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                   Bodies& bodies, Executor& executor) {
     list_colliders(table, index);
     auto found = broadphase_.update(boxes_, filters_, executor);
     list_pairs(table);
     if (options_.contacts) {
-        find_contacts(table, index, executor);
+        find_contacts(table, index, scene, bodies, executor);
         gather();
     }
     return found;

@@ -3,6 +3,7 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/world/world.hpp>
 
+#include "bodies.hpp"
 #include "object_table.hpp"
 #include "spatial_index.hpp"
 
@@ -23,8 +24,9 @@ class ContactFinder {
   public:
     explicit ContactFinder(const WorldOptions& options);
 
-    // After the index's update. Error: as Broadphase::update.
-    Result<void> update(const ObjectTable& table, const SpatialIndex& index, Executor& executor);
+    // After the updates of these. Error: as Broadphase::update.
+    Result<void> update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
+                        Executor& executor);
     // Nothing has changed since the update before.
     void stay();
 
@@ -35,13 +37,16 @@ class ContactFinder {
   private:
     struct Worker {
         Vector<collide::ContactPoint> points;
-        Vector<collide::MeshContact> triangles;
+        Vector<collide::MeshContact> triangles, found;
     };
     void list_colliders(const ObjectTable& table, const SpatialIndex& index);
     void list_pairs(const ObjectTable& table);
-    void find_contacts(const ObjectTable& table, const SpatialIndex& index, Executor& executor);
+    void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
+                       Executor& executor);
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair, Worker& worker,
                       Touch& touch) const;
+    void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;
+    void touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker, Touch& touch) const;
     void gather();
     void add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase);
     void link_lists();

@@ -14,6 +14,8 @@ struct Object {
     std::uint32_t layers = ~0u;       // as they will be after the next update
     std::uint32_t collides_with = ~0u;
     std::uint32_t instance = kNoIndex;  // of a mesh, in the scene
+    std::uint32_t own_node = kNoIndex;  // that the object alone hangs on
+    std::uint32_t mesh = kNoIndex;      // as of the last update
     double radius = 0.0;                // of a ball
 };
 

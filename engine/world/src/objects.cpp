@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "for_each_pair.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -45,30 +46,96 @@ StagedChange& World::State::stage(std::uint32_t object) {
     return staged[entry];
 }
 
+// A mesh object's instance, on the node that was given or on one of its own.
+Result<void> World::State::hang(world::Object& object, const ObjectDescription& description) {
+    if (auto known = check(description.mesh, kNoItem); !known) return known;
+    scene::NodeId node = scene::kNone;
+    if (!description.node.is_null()) {
+        if (auto known = check(description.node, kNoItem); !known) return known;
+        node = description.node.index;
+    }
+    if (node == scene::kNone || description.transform) {
+        const auto own = scene.add_node(node, description.transform.value_or(scene::Transform()));
+        if (!own) return tl::unexpected(own.error());
+        node = object.own_node = *own;
+    }
+    const auto instance = scene.add_instance(node, description.mesh.index);
+    if (!instance) return tl::unexpected(instance.error());
+    object.instance = *instance;
+    return scene.set_instance_layers(*instance, description.layers);
+}
+
 Result<ObjectHandle> World::add(const ObjectDescription& description) {
     State& s = *state_;
-    if (auto valid = validate(description.bound, kNoItem); !valid) return tl::unexpected(valid.error());
-    const auto item = s.index.add(description.layers);
-    if (!item) return tl::unexpected(item.error());
     world::Object object;
     object.layers = description.layers;
     object.collides_with = description.collides_with;
+    const bool has_mesh = !description.mesh.is_null();
+    if (has_mesh && description.bound.kind != BoundKind::none)
+        return fail(ErrorCode::invalid_argument, kNoItem, "world: an object has a mesh or a bound, not both");
+    if (!has_mesh && (description.transform || !description.node.is_null()))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "world: a bound is given in the world's coordinates, without node and transform");
+    const auto item = s.index.add(description.layers);
+    if (!item) return tl::unexpected(item.error());
+    if (auto valid = has_mesh ? s.hang(object, description) : validate(description.bound, kNoItem); !valid) {
+        s.index.remove(*item);
+        return tl::unexpected(valid.error());
+    }
     s.table.add(*item, object, description.user);
     StagedChange& change = s.stage(*item);
-    change.has_bound = true;
+    change.has_bound = !has_mesh;
     change.bound = description.bound;
+    if (has_mesh) {
+        if (s.object_of_instance.size() <= object.instance)
+            s.object_of_instance.resize(object.instance + std::size_t{1}, kNoIndex);
+        s.object_of_instance[object.instance] = *item;
+    }
     return s.table.handle(*item);
 }
 
-Result<void> World::remove(ObjectHandle object) {
-    if (auto known = state_->check(object, object.index); !known) return known;
-    state_->table.remove(object.index);
-    state_->removed.push_back(object.index);
+void World::State::mark_removed(std::uint32_t object) {
+    table.remove(object);
+    removed.push_back(object);
+}
+
+Result<void> World::remove(ObjectHandle handle) {
+    State& s = *state_;
+    if (auto known = s.check(handle, handle.index); !known) return known;
+    const world::Object& object = s.table.objects[handle.index];
+    s.mark_removed(handle.index);
+    if (object.own_node != kNoIndex) return s.scene.remove_node(object.own_node);
+    if (object.instance != kNoIndex) return s.scene.remove_instance(object.instance);
     return {};
+}
+
+Result<void> World::State::set_transform(ObjectHandle handle, const scene::Transform& transform, std::uint64_t item) {
+    if (auto known = check(handle, item); !known) return known;
+    const world::Object& object = table.objects[handle.index];
+    if (object.own_node == kNoIndex)
+        return fail(ErrorCode::invalid_argument, item,
+                    object.instance == kNoIndex ? "world: the object is a bound: set_bound moves it"
+                                                : "world: the object has its node's transform: move the node, or add "
+                                                  "the object with a transform");
+    if (auto valid = scene::validate(transform, item); !valid) return valid;
+    return scene.set_local(object.own_node, transform);
+}
+
+Result<void> World::set_transform(ObjectHandle object, const scene::Transform& transform) {
+    return state_->set_transform(object, transform, object.index);
+}
+
+Result<void> World::set_transforms(Strided<ObjectHandle> objects, Strided<scene::Transform> transforms) {
+    return for_each_pair(objects, transforms,
+                         [&](ObjectHandle object, const scene::Transform& transform, std::size_t i) {
+                             return state_->set_transform(object, transform, i);
+                         });
 }
 
 Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item) {
     if (auto known = check(object, item); !known) return known;
+    if (table.objects[object.index].instance != kNoIndex)
+        return fail(ErrorCode::invalid_argument, item, "world: the object has a mesh: set_transform moves it");
     if (auto valid = validate(bound, item); !valid) return valid;
     StagedChange& change = stage(object.index);
     change.has_bound = true;
@@ -81,12 +148,20 @@ Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
 }
 
 Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes) {
-    if (objects.size() != boxes.size())
-        return fail(ErrorCode::invalid_argument, kNoItem, "world: as many boxes as objects are needed");
-    Result<void> first;
-    for (std::size_t i = 0; i < objects.size(); ++i)
-        if (auto set = state_->set_bound(objects[i], boxes[i], i); !set && first) first = std::move(set);
-    return first;
+    return for_each_pair(objects, boxes, [&](ObjectHandle object, const Obb& box, std::size_t i) {
+        return state_->set_bound(object, box, i);
+    });
+}
+
+Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
+    State& s = *state_;
+    if (auto known = s.check(object, object.index); !known) return known;
+    if (auto known = s.check(mesh, mesh.index); !known) return known;
+    const std::uint32_t instance = s.table.objects[object.index].instance;
+    if (instance == kNoIndex)
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and takes no mesh");
+    s.stage(object.index);
+    return s.scene.set_instance_mesh(instance, mesh.index);
 }
 
 Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
@@ -98,7 +173,9 @@ Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
 
 Result<void> World::set_layers(ObjectHandle object, std::uint32_t layers) {
     if (auto known = state_->check(object, object.index); !known) return known;
-    state_->table.objects[object.index].layers = layers;
+    world::Object& changed = state_->table.objects[object.index];
+    if (changed.instance != kNoIndex) return state_->scene.set_instance_layers(changed.instance, layers);
+    changed.layers = layers;
     state_->stage(object.index);
     return {};
 }

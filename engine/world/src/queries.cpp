@@ -6,6 +6,7 @@
 #include <crofton/cull/cull.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "ray_ball.hpp"
 #include "world_state.hpp"
@@ -93,7 +94,17 @@ void World::State::visit_along(const collide::Ray& ray, std::uint32_t layers, co
 std::optional<ObjectHit> World::State::shape_hit(const collide::Ray& ray, std::uint32_t id, double box_t) const {
     const world::Object& object = table.objects[id];
     ObjectHit hit{table.ref(id), box_t};
-    if (object.kind == BoundKind::ball) {
+    if (const tree::MeshTree* tree = bodies.mesh_tree_of(object)) {
+        const scene::Transform& world = scene.world(scene.node_of(object.instance));
+        const glm::dmat3 inverse = glm::inverse(world.linear);
+        if (is_finite(inverse[0]) && is_finite(inverse[1]) && is_finite(inverse[2])) {
+            const auto on_mesh = collide::raycast(
+                collide::Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
+            if (!on_mesh) return std::nullopt;
+            hit.t = on_mesh->t;
+            hit.triangle = on_mesh->triangle;
+        }
+    } else if (object.kind == BoundKind::ball) {
         const auto t = world::raycast(ray, {index.box(id).center, object.radius});
         if (!t) return std::nullopt;
         hit.t = *t;

@@ -19,6 +19,12 @@ void World::Deleter::operator()(State* state) const {
 bool World::contains(ObjectHandle object) const {
     return state_->table.contains(object);
 }
+bool World::contains(MeshHandle mesh) const {
+    return state_->meshes.contains(mesh);
+}
+bool World::contains(NodeHandle node) const {
+    return state_->nodes.contains(node);
+}
 std::size_t World::object_count() const {
     return state_->table.count;
 }
@@ -45,14 +51,31 @@ Result<Obb> World::box_of(ObjectHandle object) const {
     return state_->index.box(object.index);
 }
 
+Result<scene::Transform> World::transform_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    const std::uint32_t instance = state_->table.objects[object.index].instance;
+    if (instance == kNoIndex)
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
+    return state_->scene.world(state_->scene.node_of(instance));
+}
+
 void World::State::apply_changes() {
-    for (const std::uint32_t object : removed) index.remove(object);
+    for (const std::uint32_t object : removed) {
+        index.remove(object);
+        bodies.forget(object);
+    }
     pairs_changed |= !removed.empty();
     removed.clear();
     for (const StagedChange& change : staged) {
         world::Object& object = table.objects[change.object];
         object.staged = kNoIndex;
         if (!object.alive) continue;
+        if (object.instance != kNoIndex) {
+            object.mesh = scene.mesh_of(object.instance);
+            index.set_shown(change.object, object.shown && scene.layer_masks()[object.instance] != 0);
+            pairs_changed = true;
+            continue;
+        }
         index.set_layers(change.object, object.layers);
         index.set_shown(change.object, object.shown);
         if (!change.has_bound) continue;
@@ -64,18 +87,34 @@ void World::State::apply_changes() {
     staged.clear();
 }
 
+// What the scene's nodes have moved.
+void World::State::apply_scene(Executor& executor) {
+    const scene::UpdateStatistics updated = scene.update(executor);
+    statistics.nodes_updated = updated.nodes_updated;
+    statistics.out_of_range = updated.instances_invalid;
+    apply_changes();
+    for (const scene::InstanceId instance : scene.relayered_instances()) {
+        const std::uint32_t object = object_of_instance[instance], layers = scene.layer_masks()[instance];
+        index.set_shown(object, table.objects[object].shown && layers != 0);
+        if (layers != 0) index.set_layers(object, layers);
+    }
+    for (const scene::InstanceId instance : scene.moved_instances())
+        index.set_box(object_of_instance[instance], scene.world_boxes()[instance]);
+    pairs_changed |= bodies.update(scene, executor);
+}
+
 Result<void> World::update(Executor& executor) {
     State& s = *state_;
-    s.apply_changes();
+    s.statistics = {};
+    s.apply_scene(executor);
     const auto changes = s.index.update(
         {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
     Result<void> found;
     const bool changed = changes.boxes > 0 || s.pairs_changed;
     s.pairs_changed = false;
-    if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, executor);
+    if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, s.scene, s.bodies, executor);
     if (!changed) s.finder.stay();
     if (!found) s.pairs_changed = true;
-    s.statistics = {};
     s.statistics.objects = s.table.count;
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();

@@ -16,6 +16,29 @@ struct StagedChange {
     Bound bound;
 };
 
+// Which of the scene's ids have been given out as handles, and how often.
+struct Generations {
+    Vector<std::uint32_t> generations;
+    Vector<std::uint8_t> alive;
+
+    void add(std::uint32_t id) {
+        if (id >= alive.size()) {
+            generations.resize(id + std::size_t{1}, 0);
+            alive.resize(id + std::size_t{1}, 0);
+        }
+        alive[id] = 1;
+    }
+    void remove(std::uint32_t id) {
+        if (id >= alive.size() || !alive[id]) return;
+        alive[id] = 0;
+        ++generations[id];
+    }
+    template <class Tag>
+    [[nodiscard]] bool contains(Handle<Tag> handle) const {
+        return handle.index < alive.size() && alive[handle.index] && generations[handle.index] == handle.generation;
+    }
+};
+
 struct World::State {
     explicit State(const WorldOptions& chosen) : options(chosen), finder(chosen) {}
 
@@ -23,15 +46,28 @@ struct World::State {
     WorldStatistics statistics;
     world::ObjectTable table;
     world::SpatialIndex index;
+    world::Bodies bodies;
     world::ContactFinder finder;
+    scene::Scene scene;
+    Generations nodes, meshes;
+    Vector<std::uint32_t> object_of_instance;
+    Vector<glm::vec3> vertices;  // scratch
     Vector<StagedChange> staged;
     Vector<std::uint32_t> removed;
     bool pairs_changed = false;  // something other than a box
 
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
+    [[nodiscard]] Result<void> check(NodeHandle node, std::uint64_t item) const;
+    [[nodiscard]] Result<void> check(MeshHandle mesh, std::uint64_t item) const;
     StagedChange& stage(std::uint32_t object);
+    [[nodiscard]] Result<void> hang(world::Object& object, const ObjectDescription& description);
     [[nodiscard]] Result<void> set_bound(ObjectHandle object, const Bound& bound, std::uint64_t item);
+    [[nodiscard]] Result<void> set_transform(ObjectHandle object, const scene::Transform& transform,
+                                             std::uint64_t item);
+    [[nodiscard]] Result<void> set_transform(NodeHandle node, const scene::Transform& transform, std::uint64_t item);
+    void mark_removed(std::uint32_t object);
     void apply_changes();
+    void apply_scene(Executor& executor);
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const collide::Ray& ray, std::uint32_t object, double box_t) const;

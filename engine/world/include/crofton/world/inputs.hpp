@@ -88,16 +88,16 @@ class IndicesView {
 // A mesh in its own frame; World copies what it needs. Three indices a triangle, counter-clockwise seen from outside;
 // without indices three positions are a triangle.
 struct MeshDescription {
-    PointsView positions;
-    IndicesView indices;
+    PointsView positions = {};
+    IndicesView indices = {};
     // Rays and contacts ask the triangles. False spares memory and time: the mesh's box stands for it.
     bool triangles = true;
 };
 
 struct NodeDescription {
-    NodeHandle parent;           // null: none
-    scene::Transform transform;  // relative to the parent
-    std::uint32_t layers = ~0u;  // of all below: an object is in those that it and all nodes above it have
+    NodeHandle parent = {};           // null: none
+    scene::Transform transform = {};  // relative to the parent
+    std::uint32_t layers = ~0u;       // of all below: an object is in those that it and all nodes above it have
 };
 
 enum class BoundKind : std::uint8_t { none, box, aligned_box, ball };

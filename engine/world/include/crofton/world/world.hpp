@@ -35,8 +35,11 @@ struct WorldStatistics {
 
 // Owns nodes, meshes, objects, the tree of what rests and the list of what moves; which is which it finds out.
 // Changes take effect in update(). Const calls answer as of the last update and may run on any number of threads; the
-// others need the World for themselves. An error names the item and leaves the rest as it was; calls that take many
-// handles do what they can and return the first error, whose item is the place among the handles.
+// others need the World for themselves. An error names the item and leaves all as it was; calls that take many handles
+// do what they can and return the first error, whose item is the place among the handles.
+// Errors of all calls: a stale handle (stale_handle); numbers that are NaN, infinite or out of range, for which see
+// validate(Obb) and scene::validate(Transform). A transform may flatten: zero scale hides, a flat scale gives a flat
+// box.
 class World {
   public:
     explicit World(const WorldOptions& options = {});
@@ -44,20 +47,40 @@ class World {
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
 
-    // Objects. Errors: a stale handle; a bound or transform that is NaN, infinite or out of range.
     Result<ObjectHandle> add(const ObjectDescription& description);
     Result<void> remove(ObjectHandle object);
+    // Of an object that was added with a transform.
+    Result<void> set_transform(ObjectHandle object, const scene::Transform& transform);
+    Result<void> set_transforms(Strided<ObjectHandle> objects, Strided<scene::Transform> transforms);
+    // Of an object that was added with a bound.
     Result<void> set_bound(ObjectHandle object, const Bound& bound);
     Result<void> set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes);
-    Result<void> set_hidden(ObjectHandle object, bool hidden);  // in no answer until shown again
+    Result<void> set_mesh(ObjectHandle object, MeshHandle mesh);  // of an object that has one
+    Result<void> set_hidden(ObjectHandle object, bool hidden);    // in no answer until shown again
     Result<void> set_layers(ObjectHandle object, std::uint32_t layers);
     Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
     Result<void> set_user(ObjectHandle object, std::uint64_t user);
 
+    // A mesh must have triangles and pass validate(TriangleMesh).
+    Result<MeshHandle> add_mesh(const MeshDescription& description);
+    Result<void> replace_mesh(MeshHandle mesh, const MeshDescription& description);
+    Result<void> set_vertices(MeshHandle mesh, PointsView positions);  // as many as before: a mesh that deforms
+    Result<void> remove(MeshHandle mesh);                              // error: objects use it
+
+    Result<NodeHandle> add_node(const NodeDescription& description = {});
+    Result<void> remove(NodeHandle node);  // with all nodes and objects below it
+    Result<void> set_transform(NodeHandle node, const scene::Transform& transform);
+    Result<void> set_transforms(Strided<NodeHandle> nodes, Strided<scene::Transform> transforms);
+    Result<void> set_parent(NodeHandle node, NodeHandle parent_or_null);  // error: the node itself or one below it
+    Result<void> set_layers(NodeHandle node, std::uint32_t layers);
+
     [[nodiscard]] bool contains(ObjectHandle object) const;
+    [[nodiscard]] bool contains(MeshHandle mesh) const;
+    [[nodiscard]] bool contains(NodeHandle node) const;
     [[nodiscard]] std::size_t object_count() const;  // removed ones not counted
     [[nodiscard]] Result<std::uint64_t> user_of(ObjectHandle object) const;
-    [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;  // as of the last update
+    [[nodiscard]] Result<Obb> box_of(ObjectHandle object) const;                     // as of the last update
+    [[nodiscard]] Result<scene::Transform> transform_of(ObjectHandle object) const;  // to the world; likewise
 
     // Once a frame. Error: more than max_pairs pairs; then there are none, and all else is as it should be.
     Result<void> update(Executor& executor = serial_executor());
