@@ -49,12 +49,13 @@ bool occurs_in(const Lines& block, Lines source) {
 TEST_SUITE("engines/documentation") {
     TEST_CASE("every code block of the pages is part of a source that is compiled") {
         const Lines sources[] = {lines_of("tests/engines/integrate_test.cpp"), lines_of("samples/hello_cull/main.cpp"),
-                                 lines_of("samples/c_hello/main.c"), lines_of("samples/executors/tbb_executor.hpp")};
+                                 lines_of("samples/hello_frame/main.cpp"), lines_of("samples/c_hello/main.c"),
+                                 lines_of("tests/world/guide_test.cpp"), lines_of("samples/executors/tbb_executor.hpp")};
         struct Page {
             const char* name;
             std::size_t least_blocks;
         };
-        for (const Page& page : {Page{"docs/integrate.md", 8}, Page{"README.md", 1}}) {
+        for (const Page& page : {Page{"docs/integrate.md", 8}, Page{"docs/world.md", 3}, Page{"README.md", 1}}) {
             const auto blocks = code_blocks(lines_of(page.name));
             CHECK(blocks.size() >= page.least_blocks);
             for (const Lines& block : blocks) {
@@ -69,5 +70,6 @@ TEST_SUITE("engines/documentation") {
 
     TEST_CASE("the quick start fits on a screen") {
         CHECK(lines_of("samples/hello_cull/main.cpp").size() <= 40);
+        CHECK(lines_of("samples/hello_frame/main.cpp").size() <= 80);
     }
 }
