@@ -209,7 +209,7 @@ TEST_SUITE("collide/tree_query") {
     TEST_CASE("what is near is visited, whatever the visitor asks next, and a negative answer ends the visit") {
         NearMisses random(7);
         const oracle::Crowd crowd = crowd_of(2000, 1e4, 7);
-        const tree::BoxTree tree = tree_of(crowd);
+        const boxtree::BoxTree tree = tree_of(crowd);
         std::size_t nearest_found = 0;
         for (int query = 0; query < 300; ++query) {
             const Aabb bounds = aabb_of(oracle::random_box(random, crowd.boxes[random.index(2000)].center, 30.0));
@@ -221,33 +221,34 @@ TEST_SUITE("collide/tree_query") {
                 return glm::length(gap);
             };
             const auto near = by_brute_force(crowd, 6, [&](const Obb& box) { return gap_to(box) <= distance; });
-            std::vector<tree::ItemId> visited;
+            std::vector<boxtree::ItemId> visited;
             visit_near(
-                bounds, distance, tree, [&](tree::ItemId item) { return visited.push_back(item), distance; }, 6);
+                bounds, distance, tree, [&](boxtree::ItemId item) { return visited.push_back(item), distance; }, 6);
             std::sort(visited.begin(), visited.end());
             CHECK(std::includes(visited.begin(), visited.end(), near.begin(), near.end()));
             double least = distance, expected = std::numeric_limits<double>::infinity();
             std::size_t asked = 0;
             visit_near(
                 bounds, distance, tree,
-                [&](tree::ItemId item) {
+                [&](boxtree::ItemId item) {
                     ++asked;
                     return least = std::min(least, gap_to(tree.boxes()[item]));
                 },
                 6);
-            for (const tree::ItemId item : near) expected = std::min(expected, gap_to(crowd.boxes[item]));
+            for (const boxtree::ItemId item : near) expected = std::min(expected, gap_to(crowd.boxes[item]));
             CHECK(least == std::min(distance, expected));
             CHECK(asked <= visited.size());
             nearest_found += !near.empty();
             asked = 0;
-            visit_near(bounds, distance, tree, [&](tree::ItemId) { return ++asked, -1.0; });
+            visit_near(bounds, distance, tree, [&](boxtree::ItemId) { return ++asked, -1.0; });
             CHECK(asked <= 1);
         }
         CHECK(nearest_found > 100);
         std::size_t visits = 0;
         for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0})
-            visit_near(aabb_of(crowd.boxes[0]), bad, tree, [&](tree::ItemId) { return static_cast<double>(++visits); });
-        visit_near(Aabb(), 1.0, tree, [&](tree::ItemId) { return static_cast<double>(++visits); });
+            visit_near(aabb_of(crowd.boxes[0]), bad, tree,
+                       [&](boxtree::ItemId) { return static_cast<double>(++visits); });
+        visit_near(Aabb(), 1.0, tree, [&](boxtree::ItemId) { return static_cast<double>(++visits); });
         CHECK(visits == 0);
     }
 }

@@ -45,8 +45,8 @@ cull::View random_view(NearMisses& random) {
     return {.frustum = frustum_of(camera).value(), .layer_mask = random.index(2) ? ~0u : 1u << random.index(4)};
 }
 
-collide::Ray random_ray(NearMisses& random) {
-    collide::Ray ray;
+Ray random_ray(NearMisses& random) {
+    Ray ray;
     ray.origin = 40.0 * random.direction();
     ray.direction = -ray.origin + 15.0 * random.direction();
     if (random.index(3) == 0) ray.max_t = random.number(0.0, 2.0);
@@ -94,7 +94,7 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
     Vector<ObjectRef> found;
     for (int query = 0; query < 5; ++query) {
         const std::uint32_t layers = random.index(2) ? ~0u : 1u << random.index(4);
-        const collide::Ray ray = random_ray(random);
+        const Ray ray = random_ray(random);
         const auto expected = model.along(ray, layers);
         world.raycast_all(ray, hits, layers);
         REQUIRE(hits.size() == expected.size());
@@ -495,7 +495,7 @@ TEST_SUITE("world/bounds") {
                 REQUIRE(world.update().has_value());
                 world.view(views[0], visible);
                 world.view(views, in_views);
-                const collide::Ray ray{{-90.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
+                const Ray ray{{-90.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
                 world.raycast_all(ray, hits);
                 CHECK(world.raycast(ray).has_value());
                 CHECK(world.raycast_any(ray));

@@ -61,7 +61,7 @@ TEST_SUITE("world/conventions") {
         REQUIRE(ours.update().has_value());
         REQUIRE(theirs.update().has_value());
 
-        const auto ask = [](const World& world, const cull::View& view, const collide::Ray& ray, const Sphere& ball) {
+        const auto ask = [](const World& world, const cull::View& view, const Ray& ray, const Sphere& ball) {
             Answers answers;
             VisibleObjects visible;
             world.view(view, visible);
@@ -92,7 +92,7 @@ TEST_SUITE("world/conventions") {
             const cull::View our_view{.frustum = frustum_of(to_clip, DepthRange::reversed_zero_to_one).value()};
             const cull::View their_view{.frustum =
                                             frustum_of(to_clip * to_ours, DepthRange::reversed_zero_to_one).value()};
-            const collide::Ray ray{camera.position, camera.forward};
+            const Ray ray{camera.position, camera.forward};
             const Sphere ball{5.0 * random.direction(), 3.0};
             const Answers a = ask(ours, our_view, ray, ball);
             const Answers b = ask(theirs, their_view, {kUnit * (kSwap * ray.origin), kUnit * (kSwap * ray.direction)},

@@ -1,11 +1,11 @@
 // Objects with meshes, under nodes and by themselves.
 #include <doctest/doctest.h>
-#include <collide/meshes.hpp>
 #include <counting_memory.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <mesh/meshes.hpp>
 #include <oracle/random_boxes.hpp>
 #include <set>
 
@@ -36,7 +36,7 @@ TriangleMesh cube() {
     return mesh;
 }
 
-collide::Ray down(double x, double y) {
+Ray down(double x, double y) {
     return {{x, y, 100.0}, {0.0, 0.0, -1.0}};
 }
 
@@ -284,16 +284,16 @@ TEST_SUITE("world/meshes") {
         std::size_t hits = 0;
         Vector<ObjectHit> all;
         for (int i = 0; i < 400; ++i) {
-            collide::Ray ray{15.0 * random.direction(), {}};
+            Ray ray{15.0 * random.direction(), {}};
             ray.direction = 5.0 * random.direction() - ray.origin;
             std::map<double, ObjectHandle> expected;
             for (const auto& [object, place] : objects) {
                 double least = kInfinity;
                 for (std::size_t t = 0; t < ring.indices.size(); t += 3) {
-                    collide::Triangle triangle;
+                    Triangle triangle;
                     for (std::size_t k = 0; k < 3; ++k)
                         triangle[k] = place * glm::dvec3(ring.positions[ring.indices[t + k]]);
-                    if (const auto hit = collide::raycast(ray, triangle)) least = std::min(least, *hit);
+                    if (const auto hit = mesh::raycast(ray, triangle)) least = std::min(least, *hit);
                 }
                 if (least < kInfinity) expected[least] = object;
             }
@@ -334,8 +334,7 @@ TEST_SUITE("world/meshes") {
         CHECK(!rings.triangles.empty());
         CHECK(rings.normal.x == doctest::Approx(1.0).epsilon(0.05));
         CHECK(rings.depth == doctest::Approx(0.1).epsilon(0.3));
-        for (const collide::MeshContact& contact : rings.triangles)
-            CHECK(std::abs(contact.segment.begin.x - 1.25) < 0.1);
+        for (const mesh::MeshContact& contact : rings.triangles) CHECK(std::abs(contact.segment.begin.x - 1.25) < 0.1);
         const Contact& touch = world.contacts()[1];
         CHECK(touch.second.object == ball);
         CHECK(touch.depth == doctest::Approx(0.05).epsilon(0.05));
@@ -344,7 +343,7 @@ TEST_SUITE("world/meshes") {
         CHECK(touch.points[0].position.x == doctest::Approx(-1.3).epsilon(0.01));
         const Contact& inside = world.contacts()[2];
         CHECK(inside.second.object == box);
-        CHECK(inside.inside == collide::Containment::b_inside_a);
+        CHECK(inside.inside == mesh::Containment::b_inside_a);
         CHECK(inside.triangles.empty());
         CHECK(world.pairs().size() > 3);
     }
@@ -390,7 +389,7 @@ TEST_SUITE("world/meshes") {
                 for (std::size_t j = i + 1; j < things.size(); ++j) {
                     const auto triangles = [&](const Thing& thing) {
                         const TriangleMesh& mesh = meshes[thing.mesh];
-                        std::vector<collide::Triangle> list;
+                        std::vector<Triangle> list;
                         for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
                             list.emplace_back();
                             for (std::size_t k = 0; k < 3; ++k)
@@ -401,7 +400,7 @@ TEST_SUITE("world/meshes") {
                     bool meet = false;
                     if (glm::length(things[i].place.translation - things[j].place.translation) < 3.5)
                         for (const auto& x : triangles(things[i]))
-                            for (const auto& y : triangles(things[j])) meet = meet || collide::intersects(x, y);
+                            for (const auto& y : triangles(things[j])) meet = meet || mesh::intersects(x, y);
                     const std::pair key{things[i].object.index, things[j].object.index};
                     const auto found = phases.find(key);
                     const bool hit = found != phases.end() && found->second != ContactPhase::ended;

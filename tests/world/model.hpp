@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/crofton.hpp>
+#include <crofton/mesh/ray.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>
@@ -30,7 +31,7 @@ inline bool meet(const Bound& a, const Bound& b) {
 }
 
 // Where a line enters a ball, by the quadratic formula in long double.
-inline std::optional<double> enter(const collide::Ray& ray, const Sphere& ball) {
+inline std::optional<double> enter(const Ray& ray, const Sphere& ball) {
     long double a = 0, b = 0, c = -static_cast<long double>(ball.radius) * ball.radius;
     for (int k = 0; k < 3; ++k) {
         const long double d = ray.direction[k], o = static_cast<long double>(ray.origin[k]) - ball.center[k];
@@ -76,14 +77,13 @@ struct Model {
         return ids;
     }
     // t and id of every object that the ray meets, by t.
-    [[nodiscard]] std::vector<std::pair<double, std::uint32_t>> along(const collide::Ray& ray,
-                                                                      std::uint32_t layers) const {
+    [[nodiscard]] std::vector<std::pair<double, std::uint32_t>> along(const Ray& ray, std::uint32_t layers) const {
         std::vector<std::pair<double, std::uint32_t>> hits;
         for (const auto& [id, object] : objects) {
             if (object.hidden || (object.layers & layers) == 0) continue;
             const auto t = object.bound.kind == BoundKind::ball
                                ? enter(ray, {object.bound.box.center, object.bound.radius})
-                               : collide::raycast(ray, object.bound.box);
+                               : mesh::raycast(ray, object.bound.box);
             if (t) hits.emplace_back(*t, id);
         }
         std::sort(hits.begin(), hits.end());

@@ -39,7 +39,7 @@ Bodies::Bodies() {
     TriangleMesh point;
     point.positions.resize(1);
     point.indices.assign(3, 0);
-    auto built = tree::MeshTree::build(point);
+    auto built = mesh::MeshTree::build(point);
     CROFTON_ASSERT(built.has_value(), "a point is a mesh");
     if (built) point_ = std::move(*built);
 }
@@ -65,9 +65,9 @@ bool Bodies::update(const scene::Scene& scene, Executor& executor) {
     executor.parallel_for(to_build_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
             Mesh& mesh = meshes_[to_build_[i]];
-            auto built = tree::MeshTree::build(scene.mesh(to_build_[i]));
+            auto built = mesh::MeshTree::build(scene.mesh(to_build_[i]));
             mesh.is_usable = built.has_value();
-            mesh.tree = built ? std::move(*built) : tree::MeshTree();
+            mesh.tree = built ? std::move(*built) : mesh::MeshTree();
         }
     });
     return changed;
@@ -120,7 +120,7 @@ void Bodies::build_own(const scene::Scene& scene, Own& own) const {
         turned.positions.reserve(mesh.positions.size());
         for (const glm::vec3& p : mesh.positions) turned.positions.push_back(glm::vec3(own.linear * glm::dvec3(p)));
     }
-    auto built = tree::MeshTree::build(turned);
+    auto built = mesh::MeshTree::build(turned);
     own.is_usable = built.has_value();
     if (built) own.tree = std::move(*built);
 }
@@ -135,11 +135,11 @@ PosedTree Bodies::posed_tree(const ObjectTable& table, const SpatialIndex& index
                              std::uint32_t id) const {
     const Object& object = table.objects[id];
     if (object.kind == BoundKind::ball) return {&point_, {glm::dmat3(1.0), index.box(id).center}};
-    const auto own = [&]() -> const tree::MeshTree* {
+    const auto own = [&]() -> const mesh::MeshTree* {
         const Own& kept = own_[own_of_object_[id]];
         return kept.is_usable ? &kept.tree : nullptr;
     };
-    const tree::MeshTree* tree = mesh_tree_of(object);
+    const mesh::MeshTree* tree = mesh_tree_of(object);
     if (!tree) {
         const Obb& box = index.box(id);
         const glm::dmat3 axes(box.axes);

@@ -1,8 +1,8 @@
 // Objects as meshes: the trees over triangles that rays and contacts ask.
 #pragma once
-#include <crofton/collide/pose.hpp>
+#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
-#include <crofton/tree/mesh_tree.hpp>
 
 #include "object_table.hpp"
 #include "spatial_index.hpp"
@@ -11,8 +11,8 @@ namespace crofton::world {
 
 // Triangles and where they are.
 struct PosedTree {
-    const tree::MeshTree* tree = nullptr;  // none: no valid triangle
-    collide::Pose pose;
+    const mesh::MeshTree* tree = nullptr;  // none: no valid triangle
+    RigidTransform pose;
 };
 
 // A mesh's tree serves all objects that turn and move it. An object with a scale or shear has a tree of its own, of the
@@ -27,7 +27,7 @@ class Bodies {
 
     // Its mesh's tree; none for a bound, and where triangles are not wanted or none is valid: then its box stands for
     // it.
-    [[nodiscard]] const tree::MeshTree* mesh_tree_of(const Object& object) const {
+    [[nodiscard]] const mesh::MeshTree* mesh_tree_of(const Object& object) const {
         const bool has = object.kind == BoundKind::none && object.mesh < meshes_.size();
         return has && meshes_[object.mesh].is_usable ? &meshes_[object.mesh].tree : nullptr;
     }
@@ -43,12 +43,12 @@ class Bodies {
 
   private:
     struct Mesh {
-        tree::MeshTree tree;
+        mesh::MeshTree tree;
         std::uint64_t revision = 0;
         bool wants_triangles = true, is_usable = false;
     };
     struct Own {
-        tree::MeshTree tree;
+        mesh::MeshTree tree;
         glm::dmat3 linear{1.0};
         glm::vec3 half_extents{0.0f};   // of a box
         scene::MeshId mesh = kNoIndex;  // none: a box
@@ -61,7 +61,7 @@ class Bodies {
     Vector<std::uint32_t> own_of_object_;  // kNoIndex: none
     Vector<Own> own_;
     Vector<std::uint32_t> free_, to_build_;
-    tree::MeshTree point_;
+    mesh::MeshTree point_;
 };
 
 }  // namespace crofton::world

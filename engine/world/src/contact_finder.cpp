@@ -57,7 +57,7 @@ void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex&
 // Colliders ascend, so that pairs of objects are in the order of pairs of boxes.
 void ContactFinder::list_pairs(const ObjectTable& table) {
     pairs_.clear();
-    for (const collide::Pair& pair : broadphase_.pairs()) {
+    for (const IdPair& pair : broadphase_.pairs()) {
         const std::uint32_t first = colliders_[pair.first], second = colliders_[pair.second];
         if (!bounds_meet(table.objects[first], boxes_[pair.first], table.objects[second], boxes_[pair.second]))
             continue;
@@ -81,25 +81,24 @@ void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& i
 }
 
 void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const {
-    const collide::Pose b_to_a = collide::relative(a.pose, b.pose);
-    collide::contacts(*a.tree, *b.tree, b_to_a, worker.found);
+    const RigidTransform b_to_a = relative(a.pose, b.pose);
+    mesh::contacts(*a.tree, *b.tree, b_to_a, worker.found);
     touch.hit = !worker.found.empty();
     if (!touch.hit && options_.containment) {
-        touch.inside = collide::containment_of_disjoint(*a.tree, *b.tree, b_to_a);
-        touch.hit = touch.inside != collide::Containment::none;
+        touch.inside = mesh::containment_of_disjoint(*a.tree, *b.tree, b_to_a);
+        touch.hit = touch.inside != mesh::Containment::none;
     }
     if (!touch.hit) return;
     touch.triangle_count = static_cast<std::uint32_t>(worker.found.size());
     glm::dvec3 normals(0.0);
-    for (collide::MeshContact contact : worker.found) {
-        contact.segment = {collide::transform(a.pose, contact.segment.begin),
-                           collide::transform(a.pose, contact.segment.end)};
+    for (mesh::MeshContact contact : worker.found) {
+        contact.segment = {transform(a.pose, contact.segment.begin), transform(a.pose, contact.segment.end)};
         contact.normal = a.pose.rotation * contact.normal;
         normals -= contact.normal;
         worker.triangles.push_back(contact);
     }
     if (options_.mesh_depth) {
-        const collide::MeshDepth way_out = collide::penetration(*a.tree, *b.tree, b_to_a, worker.found);
+        const mesh::MeshDepth way_out = mesh::penetration(*a.tree, *b.tree, b_to_a, worker.found);
         touch.depth = way_out.depth;
         touch.normal = a.pose.rotation * way_out.direction;
     } else if (const double length = glm::length(normals); length > 0.0) {
@@ -110,13 +109,13 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
 // The normal points from the mesh to the ball.
 void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
                                Touch& touch) const {
-    const collide::Pose to_mesh = collide::relative(mesh.pose, center.pose);
-    const collide::MeshDistance gap = collide::distance(*mesh.tree, *center.tree, to_mesh);
-    const bool inside = options_.containment && collide::contains(*mesh.tree, to_mesh.translation);
+    const RigidTransform to_mesh = relative(mesh.pose, center.pose);
+    const mesh::MeshDistance gap = mesh::distance(*mesh.tree, *center.tree, to_mesh);
+    const bool inside = options_.containment && mesh::contains(*mesh.tree, to_mesh.translation);
     touch.hit = inside || gap.distance <= radius;
     if (!touch.hit) return;
     const double signed_distance = inside ? -gap.distance : gap.distance;
-    const glm::dvec3 on_mesh = collide::transform(mesh.pose, gap.on_a);
+    const glm::dvec3 on_mesh = transform(mesh.pose, gap.on_a);
     if (gap.distance > 0.0) touch.normal = (center.pose.translation - on_mesh) / signed_distance;
     touch.depth = radius - signed_distance;
     touch.point_count = 1;

@@ -12,7 +12,7 @@ namespace crofton::world {
 // What one pair's shapes gave; ranges of the worker's lists.
 struct Touch {
     bool hit = false;
-    collide::Containment inside = collide::Containment::none;
+    mesh::Containment inside = mesh::Containment::none;
     glm::dvec3 normal{0.0};
     double depth = 0.0;
     std::uint32_t worker = 0;
@@ -37,7 +37,7 @@ class ContactFinder {
   private:
     struct Worker {
         Vector<collide::ContactPoint> points;
-        Vector<collide::MeshContact> triangles, found;
+        Vector<mesh::MeshContact> triangles, found;
     };
     void list_colliders(const ObjectTable& table, const SpatialIndex& index);
     void list_pairs(const ObjectTable& table);
@@ -63,7 +63,7 @@ class ContactFinder {
     Vector<Contact> contacts_;
     Vector<Touch> contact_touches_;  // by contact, ranges of the lists below
     Vector<collide::ContactPoint> points_;
-    Vector<collide::MeshContact> triangles_;
+    Vector<mesh::MeshContact> triangles_;
 };
 
 }  // namespace crofton::world

@@ -69,16 +69,16 @@ Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cu
 void World::view(const cull::View& view, VisibleObjects& visible, const cull::Options& options,
                  Executor& executor) const {
     visible.names_ = &state_->table.names;
-    cull::cull(state_->index.tree(), state_->index.moving(), view, visible.set_, options, executor);
+    cull::find_visible(state_->index.tree(), state_->index.moving(), view, visible.set_, options, executor);
 }
 
 void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::Mode mode) const {
     visible.names_ = &state_->table.names;
-    cull::cull(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);
+    cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);
 }
 
-void World::State::visit_along(const collide::Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
-    collide::Ray rest = ray;
+void World::State::visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const {
+    Ray rest = ray;
     const auto visit_living = [&](std::uint32_t object, double t) {
         if (table.objects[object].alive) rest.max_t = visit(object, t);
         return rest.max_t;
@@ -87,19 +87,19 @@ void World::State::visit_along(const collide::Ray& ray, std::uint32_t layers, co
     const cull::MovingBoxes& moving = index.moving();
     for (std::size_t i = 0; i < moving.size() && rest.max_t >= 0.0; ++i) {
         if ((index.layers(moving.items()[i]) & layers) == 0) continue;
-        if (const auto t = collide::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
+        if (const auto t = mesh::raycast(rest, moving.boxes()[i])) visit_living(moving.items()[i], *t);
     }
 }
 
-std::optional<ObjectHit> World::State::shape_hit(const collide::Ray& ray, std::uint32_t id, double box_t) const {
+std::optional<ObjectHit> World::State::shape_hit(const Ray& ray, std::uint32_t id, double box_t) const {
     const world::Object& object = table.objects[id];
-    ObjectHit hit{table.ref(id), box_t};
-    if (const tree::MeshTree* tree = bodies.mesh_tree_of(object)) {
+    ObjectHit hit{table.handle(id), table.names.users[id], box_t, {}, kNoTriangle};
+    if (const mesh::MeshTree* tree = bodies.mesh_tree_of(object)) {
         const scene::Transform& world = scene.world(scene.node_of(object.instance));
         const glm::dmat3 inverse = glm::inverse(world.linear);
         if (is_finite(inverse[0]) && is_finite(inverse[1]) && is_finite(inverse[2])) {
-            const auto on_mesh = collide::raycast(
-                collide::Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
+            const auto on_mesh = mesh::raycast(
+                Ray{inverse * (ray.origin - world.translation), inverse * ray.direction, ray.max_t}, *tree);
             if (!on_mesh) return std::nullopt;
             hit.t = on_mesh->t;
             hit.triangle = on_mesh->triangle;
@@ -113,9 +113,9 @@ std::optional<ObjectHit> World::State::shape_hit(const collide::Ray& ray, std::u
     return hit;
 }
 
-std::optional<ObjectHit> World::raycast(const collide::Ray& ray, std::uint32_t layers) const {
+std::optional<ObjectHit> World::raycast(const Ray& ray, std::uint32_t layers) const {
     std::optional<ObjectHit> nearest;
-    collide::Ray rest = ray;
+    Ray rest = ray;
     state_->visit_along(ray, layers, [&](std::uint32_t object, double t) {
         const auto hit = state_->shape_hit(rest, object, t);
         if (hit && (!nearest || hit->t < nearest->t || object < nearest->object.index)) {
@@ -127,7 +127,7 @@ std::optional<ObjectHit> World::raycast(const collide::Ray& ray, std::uint32_t l
     return nearest;
 }
 
-bool World::raycast_any(const collide::Ray& ray, std::uint32_t layers) const {
+bool World::raycast_any(const Ray& ray, std::uint32_t layers) const {
     bool any = false;
     state_->visit_along(ray, layers, [&](std::uint32_t object, double t) {
         any = any || state_->shape_hit(ray, object, t).has_value();
@@ -136,7 +136,7 @@ bool World::raycast_any(const collide::Ray& ray, std::uint32_t layers) const {
     return any;
 }
 
-void World::raycast_all(const collide::Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers) const {
+void World::raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers) const {
     hits.clear();
     state_->visit_along(ray, layers, [&](std::uint32_t object, double t) {
         if (const auto hit = state_->shape_hit(ray, object, t)) hits.push_back(*hit);
@@ -202,7 +202,7 @@ std::optional<ClosestObject> World::State::closest(const Shape& shape, double ma
             const bool nearer = !nearest || gap.distance < nearest->distance ||
                                 (gap.distance == nearest->distance && id < nearest->object.index);
             if (gap.distance > rest || !nearer) return rest;
-            nearest = ClosestObject{table.ref(id), gap.distance, gap.on_a, gap.on_b};
+            nearest = ClosestObject{table.handle(id), table.names.users[id], gap.distance, gap.on_a, gap.on_b};
             return rest = gap.distance;
         });
         if (nearest || limit == max_distance) return nearest;

@@ -1,8 +1,8 @@
 // Where a ray enters a ball.
 #pragma once
 #include <cmath>
-#include <crofton/collide/ray.hpp>
 #include <crofton/geometry/sphere.hpp>
+#include <crofton/mesh/ray.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace crofton::world {
 
 // 0 where the ray starts inside. Rounded; the discriminant is that of the distance from the centre to the line (Haines,
 // Günther, Akenine-Möller 2019), which keeps its digits for small balls far away.
-[[nodiscard]] inline std::optional<double> raycast(const collide::Ray& ray, const Sphere& ball) {
+[[nodiscard]] inline std::optional<double> raycast(const Ray& ray, const Sphere& ball) {
     const glm::dvec3 to_center = ball.center - ray.origin;
     const double outside = glm::dot(to_center, to_center) - ball.radius * ball.radius;
     if (outside <= 0.0) return 0.0;

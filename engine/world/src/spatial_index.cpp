@@ -23,7 +23,7 @@ bool same(const Obb& a, const Obb& b) {
 
 }  // namespace
 
-SpatialIndex::SpatialIndex() : tree_(std::move(*tree::BoxTree::build({}))) {}
+SpatialIndex::SpatialIndex() : tree_(std::move(*boxtree::BoxTree::build({}))) {}
 
 Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     auto item = tree_.insert_lifted(layers);
@@ -213,9 +213,9 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     for (ItemId item = 0; item < items_.size(); ++item) {
         if (items_[item].place == Place::resting) continue;
         lifted.push_back(item);
-        if (!tree_.is_lifted(item) && tree_.slot_of(item) == tree::kNone) removed.push_back(item);
+        if (!tree_.is_lifted(item) && tree_.slot_of(item) == boxtree::kNone) removed.push_back(item);
     }
-    auto built = tree::BoxTree::build(boxes, tree_.layer_masks(), {.lifted = lifted}, executor);
+    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(), {.lifted = lifted}, executor);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;
     // The lowest ids are given first.

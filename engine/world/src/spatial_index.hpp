@@ -1,12 +1,12 @@
 // The boxes of a World's objects: a tree of those that rest, a list of those that move. It finds out which is which.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/moving_boxes.hpp>
-#include <crofton/tree/box_tree.hpp>
 
 namespace crofton::world {
 
-using tree::ItemId;
+using boxtree::ItemId;
 
 // Ids are the tree's. What is asked of the tree and of the list is as of the last update(). Boxes are valid.
 class SpatialIndex {
@@ -38,7 +38,7 @@ class SpatialIndex {
     [[nodiscard]] bool has_box(ItemId item) const { return items_[item].place != Place::nowhere; }
     [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
     [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.layer_masks()[item]; }
-    [[nodiscard]] const tree::BoxTree& tree() const { return tree_; }
+    [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
     [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_boxes_; }
 
   private:
@@ -66,7 +66,7 @@ class SpatialIndex {
 
     Vector<Item> items_;
     Group groups_[5];  // by Place; items that rest have theirs in the tree
-    tree::BoxTree tree_;
+    boxtree::BoxTree tree_;
     cull::MovingBoxes moving_boxes_;
     Vector<ItemId> moved_, rested_;
     Vector<Obb> moved_boxes_;

@@ -70,9 +70,9 @@ struct World::State {
     void apply_scene(Executor& executor);
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
-    [[nodiscard]] std::optional<ObjectHit> shape_hit(const collide::Ray& ray, std::uint32_t object, double box_t) const;
+    [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;
     // Visits objects whose boxes the ray meets; the visitor answers how far along the ray others are of interest.
-    void visit_along(const collide::Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
+    void visit_along(const Ray& ray, std::uint32_t layers, collide::RayVisitor visit) const;
     // Visits objects whose boxes are within `distance` of `bounds`, and some others.
     void visit_near(const Aabb& bounds, double distance, std::uint32_t layers, collide::NearVisitor visit) const;
     template <class Shape>

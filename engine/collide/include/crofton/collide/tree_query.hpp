@@ -5,7 +5,7 @@
 #include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/aabb.hpp>
-#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/mesh/ray.hpp>
 #include <cstdint>
 #include <optional>
 

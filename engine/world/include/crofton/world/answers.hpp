@@ -1,10 +1,10 @@
 // What a World answers.
 #pragma once
 #include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/mesh_mesh.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/many_views.hpp>
 #include <crofton/cull/visible_set.hpp>
+#include <crofton/mesh/mesh_mesh.hpp>
 #include <crofton/world/handle.hpp>
 #include <cstdint>
 #include <span>
@@ -65,13 +65,17 @@ class VisibleInViews {
 
 inline constexpr std::uint32_t kNoTriangle = ~std::uint32_t{0};
 
-struct ObjectHit : ObjectRef {
+struct ObjectHit {
+    ObjectHandle object;
+    std::uint64_t user = 0;
     double t = 0.0;  // the ray's
     glm::dvec3 point{0.0};
     std::uint32_t triangle = kNoTriangle;  // of the object's mesh
 };
 
-struct ClosestObject : ObjectRef {
+struct ClosestObject {
+    ObjectHandle object;
+    std::uint64_t user = 0;
     double distance = 0.0;
     glm::dvec3 on_shape{0.0}, on_object{0.0};  // a nearest point of each; any where they meet
 };
@@ -87,11 +91,11 @@ enum class ContactPhase : std::uint8_t { began, stayed, ended };
 struct Contact {
     ObjectRef first, second;  // ordered as in ObjectPair
     ContactPhase phase = ContactPhase::began;
-    collide::Containment inside = collide::Containment::none;
+    mesh::Containment inside = mesh::Containment::none;
     glm::dvec3 normal{0.0};  // unit, from the first to the second; zero where no direction is known
     double depth = 0.0;      // moving the second so far along it ends the contact; 0 between meshes unless asked for
-    std::span<const collide::ContactPoint> points;    // of two bounds, or a mesh and a ball
-    std::span<const collide::MeshContact> triangles;  // of two meshes, or a mesh and a box
+    std::span<const collide::ContactPoint> points;  // of two bounds, or a mesh and a ball
+    std::span<const mesh::MeshContact> triangles;   // of two meshes, or a mesh and a box
 };
 
 }  // namespace crofton

@@ -1,9 +1,9 @@
 // The front door: objects in, what is seen and what touches out.
 #pragma once
-#include <crofton/collide/ray.hpp>
 #include <crofton/collide/shapes.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/geometry/ray.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
 #include <memory>
@@ -96,10 +96,10 @@ class World {
 
     // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
     // of the answers.
-    [[nodiscard]] std::optional<ObjectHit> raycast(const collide::Ray& ray, std::uint32_t layers = ~0u) const;
-    [[nodiscard]] bool raycast_any(const collide::Ray& ray, std::uint32_t layers = ~0u) const;
+    [[nodiscard]] std::optional<ObjectHit> raycast(const Ray& ray, std::uint32_t layers = ~0u) const;
+    [[nodiscard]] bool raycast_any(const Ray& ray, std::uint32_t layers = ~0u) const;
     // Every object's nearest hit, by t, then by index.
-    void raycast_all(const collide::Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
+    void raycast_all(const Ray& ray, Vector<ObjectHit>& hits, std::uint32_t layers = ~0u) const;
 
     // Whose box or ball meets the shape; by index. Meshes by their boxes.
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
