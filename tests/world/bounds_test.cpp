@@ -290,8 +290,10 @@ TEST_SUITE("world/bounds") {
         const auto late = world.add({.bound = box_at({0.0, 0.0, 50.0})}).value();
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().moving == 1);
+        CHECK(!world.statistics().tree_built);
         for (int i = 0; i < 5; ++i) REQUIRE(world.update().has_value());
         CHECK(world.statistics().moving == 0);
+        CHECK(world.statistics().resting == 101);
         CHECK(world.raycast({{0.0, 0.0, 60.0}, {0.0, 0.0, -1.0}})->object == late);
     }
 

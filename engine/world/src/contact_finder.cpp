@@ -26,12 +26,12 @@ bool are_same(const ObjectPair& a, const ObjectPair& b) {
     return a.first.object == b.first.object && a.second.object == b.second.object;
 }
 
-// Appends part of a list and returns where it begins there.
+// Appends part of a list, for which there is room, and returns where it is.
 template <class T>
-std::uint32_t append(const Vector<T>& from, std::uint32_t first, std::uint32_t count, Vector<T>& to) {
-    const auto begin = static_cast<std::uint32_t>(to.size());
+std::span<const T> append(const Vector<T>& from, std::uint32_t first, std::uint32_t count, Vector<T>& to) {
+    const std::size_t begin = to.size();
     to.insert(to.end(), from.begin() + first, from.begin() + first + count);
-    return begin;
+    return {to.data() + begin, count};
 }
 
 }  // namespace
@@ -170,20 +170,17 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
 }
 
 void ContactFinder::add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase) {
-    Contact contact;
+    Contact& contact = contacts_.emplace_back();
     contact.first = pair.first;
     contact.second = pair.second;
     contact.phase = phase;
+    if (phase == ContactPhase::ended) return;
     contact.inside = touch.inside;
     contact.normal = touch.normal;
     contact.depth = touch.depth;
-    contacts_.push_back(contact);
-    contact_touches_.push_back(touch);
-    if (phase == ContactPhase::ended) return;
-    Touch& kept = contact_touches_.back();
     const Worker& worker = workers_[touch.worker];
-    kept.first_point = append(worker.points, touch.first_point, touch.point_count, points_);
-    kept.first_triangle = append(worker.triangles, touch.first_triangle, touch.triangle_count, triangles_);
+    contact.points = append(worker.points, touch.first_point, touch.point_count, points_);
+    contact.triangles = append(worker.triangles, touch.first_triangle, touch.triangle_count, triangles_);
 }
 
 // In the order of the pairs, whoever tested them.
@@ -192,9 +189,15 @@ void ContactFinder::gather() {
     for (const Contact& contact : contacts_)
         if (contact.phase != ContactPhase::ended) before_.push_back({contact.first, contact.second});
     contacts_.clear();
-    contact_touches_.clear();
     points_.clear();
     triangles_.clear();
+    std::size_t point_count = 0, triangle_count = 0;
+    for (const Worker& worker : workers_) {
+        point_count += worker.points.size();
+        triangle_count += worker.triangles.size();
+    }
+    if (point_count > points_.capacity()) points_.reserve(point_count + point_count / 2);
+    if (triangle_count > triangles_.capacity()) triangles_.reserve(triangle_count + triangle_count / 2);
     std::size_t old = 0;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         if (!touches_[i].hit) continue;
@@ -207,15 +210,6 @@ void ContactFinder::gather() {
         old += met;
     }
     for (; old < before_.size(); ++old) add_contact(before_[old], {}, ContactPhase::ended);
-    link_lists();
-}
-
-void ContactFinder::link_lists() {
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        const Touch& touch = contact_touches_[i];
-        contacts_[i].points = std::span(points_).subspan(touch.first_point, touch.point_count);
-        contacts_[i].triangles = std::span(triangles_).subspan(touch.first_triangle, touch.triangle_count);
-    }
 }
 
 Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
@@ -236,11 +230,9 @@ void ContactFinder::stay() {
         if (contacts_[i].phase == ContactPhase::ended) continue;
         contacts_[kept] = contacts_[i];
         contacts_[kept].phase = ContactPhase::stayed;
-        contact_touches_[kept] = contact_touches_[i];
         ++kept;
     }
     contacts_.resize(kept);
-    contact_touches_.resize(kept);
 }
 
 }  // namespace crofton::world

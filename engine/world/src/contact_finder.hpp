@@ -49,7 +49,6 @@ class ContactFinder {
     void touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker, Touch& touch) const;
     void gather();
     void add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase);
-    void link_lists();
 
     WorldOptions options_;
     collide::Broadphase broadphase_;
@@ -61,7 +60,7 @@ class ContactFinder {
     Vector<Touch> touches_;      // by pair
     Vector<ObjectPair> before_;  // that touched in the update before
     Vector<Contact> contacts_;
-    Vector<Touch> contact_touches_;  // by contact, ranges of the lists below
+    // What the contacts' spans show.
     Vector<collide::ContactPoint> points_;
     Vector<mesh::MeshContact> triangles_;
 };

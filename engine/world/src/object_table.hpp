@@ -19,6 +19,13 @@ struct Object {
     double radius = 0.0;                // of a ball
 };
 
+// Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
+template <class T>
+void resize(Vector<T>& items, std::size_t size) {
+    if (size > items.capacity()) items.reserve(size + size / 8 + 16);
+    items.resize(size);
+}
+
 struct ObjectTable {
     Vector<Object> objects;
     ObjectNames names;
@@ -26,9 +33,9 @@ struct ObjectTable {
 
     void add(std::uint32_t index, const Object& object, std::uint64_t user) {
         if (index >= objects.size()) {
-            objects.resize(index + std::size_t{1});
-            names.generations.resize(index + std::size_t{1}, 0);
-            names.users.resize(index + std::size_t{1});
+            resize(objects, index + std::size_t{1});
+            resize(names.generations, index + std::size_t{1});
+            resize(names.users, index + std::size_t{1});
         }
         objects[index] = object;
         objects[index].alive = true;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <crofton/core/assert.hpp>
+#include <utility>
 
 namespace crofton::world {
 namespace {
@@ -9,9 +10,10 @@ namespace {
 constexpr std::uint8_t kUpdatesToMove = 2;       // in a row, until an item leaves the tree
 constexpr std::size_t kAttachedPerUpdate = 256;  // one at a time, at about a microsecond each
 constexpr std::size_t kFewItems = 64;
+constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Putting an item into the new tree is worth 64 (BoxTree::maintain); so the new tree gains on what changes.
 constexpr std::size_t kBudgetPerChange = 128;
-constexpr std::size_t kChangesToRebuild = 8;  // the tree is rebuilt once a part of 1 / 8 of its items has changed
+constexpr std::size_t kChangesToRebuild = 64;  // the tree is rebuilt once a part of 1 / 64 of its items has changed
 
 void must([[maybe_unused]] const Result<void>& done) {
     CROFTON_ASSERT(done.has_value(), "the index and its tree disagree");
@@ -28,7 +30,10 @@ SpatialIndex::SpatialIndex() : tree_(std::move(*boxtree::BoxTree::build({}))) {}
 Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     auto item = tree_.insert_lifted(layers);
     if (!item) return item;
-    if (*item >= items_.size()) items_.resize(*item + std::size_t{1});
+    if (*item >= items_.size()) {
+        if (items_.size() == items_.capacity()) items_.reserve(items_.size() + items_.size() / 8 + 16);
+        items_.resize(*item + std::size_t{1});
+    }
     items_[*item] = {};
     return item;
 }
@@ -148,13 +153,7 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     bring_to_rest(settings, changes, executor);
     if (wants_refit_) tree_.refit();
     wants_refit_ = false;
-    rebuilding_ |= tree_changes_ > 0 && tree_changes_ * kChangesToRebuild >= tree_.item_count();
-    const std::size_t budget = settings.rebuild_budget + kBudgetPerChange * (tree_changes_ - changes_before_);
-    if (rebuilding_ && tree_.maintain(budget)) {
-        rebuilding_ = false;
-        tree_changes_ = 0;
-    }
-    changes_before_ = tree_changes_;
+    rebuild_step(settings.rebuild_budget);
     Group& moving = group(Place::moving);
     if (list_changed_) must(moving_boxes_.update(tree_, moving.items, moving.boxes, executor));
     list_changed_ = false;
@@ -163,7 +162,24 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     return changes;
 }
 
-// What is new moves more often than not; but a scene that has just been loaded rests.
+// Begins once enough has changed since the last rebuild began.
+void SpatialIndex::rebuild_step(std::size_t budget) {
+    const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
+    if (budget == 0) return;
+    if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
+    if (!rebuilding_) {
+        if (tree_changes_ * kChangesToRebuild < tree_.item_count() || tree_changes_ == 0) return;
+        rebuilding_ = true;
+        changes_at_start_ = tree_changes_;
+    }
+    if (!tree_.maintain(budget + kBudgetPerChange * fresh)) return;
+    rebuilding_ = false;
+    tree_changes_ -= changes_at_start_;
+    changes_before_ = tree_changes_;
+}
+
+// What is new waits in the list until it has rested: many come and go before. What has just been loaded is built in one
+// go.
 void SpatialIndex::enter(Changes& changes, Executor& executor) {
     Group& entering = group(Place::entering);
     if (entering.items.size() > std::max(kFewItems, tree_.item_count() / 2)) {
@@ -181,6 +197,15 @@ void SpatialIndex::enter(Changes& changes, Executor& executor) {
     }
 }
 
+// From its group into the tree.
+void SpatialIndex::attach(ItemId item) {
+    const Obb last = box(item);
+    take(item);
+    items_[item].place = Place::resting;
+    must(tree_.settle(item, last));
+    ++tree_changes_;
+}
+
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
     rested_.clear();
     for (const ItemId item : group(Place::moving).items)
@@ -191,13 +216,7 @@ void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Exe
         return;
     }
     rested_.resize(std::min(rested_.size(), kAttachedPerUpdate));
-    for (const ItemId item : rested_) {
-        const Obb last = box(item);
-        take(item);
-        items_[item].place = Place::resting;
-        must(tree_.settle(item, last));
-        ++tree_changes_;
-    }
+    for (const ItemId item : rested_) attach(item);
 }
 
 // The tree of all that rests and of these, which are taken from their groups.

@@ -3,6 +3,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/moving_boxes.hpp>
+#include <crofton/world/world.hpp>
 
 namespace crofton::world {
 
@@ -60,6 +61,8 @@ class SpatialIndex {
     void take(ItemId item);
     void detach(ItemId item);
     void note_move(Item& item);
+    void rebuild_step(std::size_t budget);
+    void attach(ItemId item);
     void enter(Changes& changes, Executor& executor);
     void bring_to_rest(const Settings& settings, Changes& changes, Executor& executor);
     void build_tree(std::span<const ItemId> entering, Executor& executor);
@@ -72,8 +75,8 @@ class SpatialIndex {
     Vector<Obb> moved_boxes_;
     std::uint32_t now_ = 1;  // counts updates
     std::uint32_t boxes_changed_ = 0;
-    std::size_t tree_changes_ = 0;    // since it was last rebuilt
-    std::size_t changes_before_ = 0;  // of them, those before the last update
+    // Since the last rebuild began; of them those before the last update, and those when the one under way began.
+    std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
     bool rebuilding_ = false, list_changed_ = false, wants_refit_ = false;
 };
 

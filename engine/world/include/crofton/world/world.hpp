@@ -12,14 +12,18 @@
 
 namespace crofton {
 
+inline constexpr std::size_t kAutomatic = ~std::size_t{0};
+
 struct WorldOptions {
     bool pairs = true;        // false: neither pairs nor contacts are looked for
     bool contacts = true;     // false: pairs alone
     bool containment = true;  // a closed mesh around another object touches it
     bool mesh_depth = false;  // depth and direction of contacts between meshes, which cost more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
-    std::size_t rebuild_budget = 512;              // items' worth of work on the tree an update: BoxTree::rebuild_step
-    std::uint32_t updates_to_rest = 16;            // without moving, until an object counts as resting again
+    // Items' worth of background work on the tree an update (BoxTree::maintain), beside what changes make necessary;
+    // kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
+    std::size_t rebuild_budget = kAutomatic;
+    std::uint32_t updates_to_rest = 16;  // without moving, until an object counts as resting again
 };
 
 // As of the last update.
