@@ -1,64 +1,84 @@
 #include "interval_program.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace crofton::triangulate {
 namespace {
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Combinations of two sub-polygons tried in one of the watch's steps.
+constexpr std::size_t kCombinationsPerStep = 8;
+
+// The least a[i] + b[i]. Several running minima, so that one addition need not wait for another's comparison.
+double least_of_sums(const double* a, const double* b, std::size_t count) {
+    constexpr std::size_t kLanes = 8;
+    double least[kLanes];
+    std::fill(least, least + kLanes, kInfinity);
+    std::size_t i = 0;
+    for (; i + kLanes <= count; i += kLanes) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const double sum = a[i + lane] + b[i + lane];
+            least[lane] = sum < least[lane] ? sum : least[lane];
+        }
+    }
+    for (; i < count; ++i) least[0] = std::min(least[0], a[i] + b[i]);
+    return *std::min_element(least, least + kLanes);
 }
+
+}  // namespace
 
 void IntervalProgram::start(std::span<const glm::dvec2> points, const CandidateGraph& graph) {
     points_ = points;
     graph_ = &graph;
+    table_.points = points;
     slot_of_.resize(graph.half_edge_count());
 }
 
-// Corner i's slots are its out-going side, the candidate edges inside, and its in-coming side, counter-clockwise: their
-// targets ascend cyclically from i + 1 to i − 1.
 void IntervalProgram::collect_slots(std::span<const Index> walk) {
     const auto& g = *graph_;
     const auto count = static_cast<Index>(walk.size());
     walk_ = walk;
-    slots_.clear();
+    table_.target.clear();
     slot_edge_.clear();
-    first_.resize(count + 1);
-    vertices_.resize(count);
+    table_.first.resize(count + 1);
+    table_.vertices.resize(count);
     Index origin = g.destination[walk[count - 1]];
     for (Index i = 0; i < count; ++i) {
-        vertices_[i] = origin;
-        first_[i] = static_cast<Index>(slots_.size());
+        table_.vertices[i] = origin;
+        table_.first[i] = static_cast<Index>(slot_edge_.size());
         const Index begin = g.first[origin], end = g.first[origin + 1];
         const Index incoming = g.twin[walk[i == 0 ? count - 1 : i - 1]];
-        slots_.push_back({i + 1 == count ? 0 : i + 1, 0, 0, 0.0, 0.0});
+        table_.target.push_back(i + 1 == count ? 0 : i + 1);
         slot_edge_.push_back(walk[i]);
         for (Index h = walk[i] + 1 == end ? begin : walk[i] + 1; h != incoming; h = h + 1 == end ? begin : h + 1) {
             if ((g.flags[h] & CandidateGraph::kDead) != 0) continue;
-            slot_of_[h] = static_cast<Index>(slots_.size());
-            slots_.push_back({i, 0, 0, 0.0, kInfinity});  // target is set through the twin
+            slot_of_[h] = static_cast<Index>(slot_edge_.size());
+            table_.target.push_back(i);  // its own corner, until match_targets()
             slot_edge_.push_back(h);
         }
-        slots_.push_back({i == 0 ? count - 1 : i - 1, 0, 0, 0.0, 0.0});
+        table_.target.push_back(i == 0 ? count - 1 : i - 1);
         slot_edge_.push_back(incoming);
         origin = g.destination[walk[i]];
     }
-    first_[count] = static_cast<Index>(slots_.size());
+    table_.first[count] = static_cast<Index>(slot_edge_.size());
+    match_targets();
+}
+
+// Joins the two slots of every edge and gives each the other's corner.
+void IntervalProgram::match_targets() {
+    const auto& g = *graph_;
+    const Index count = table_.corner_count();
+    table_.twin.resize(slot_edge_.size());
     for (Index i = 0; i < count; ++i) {
-        const Index out = first_[i], in = first_[i + 1 == count ? 1 : i + 2] - 1;
-        slots_[out].twin = in;
-        slots_[in].twin = out;
-        for (Index s = first_[i] + 1; s + 1 < first_[i + 1]; ++s) {
+        const Index out = table_.first[i], in = table_.first[i + 1 == count ? 1 : i + 2] - 1;
+        table_.twin[out] = in;
+        table_.twin[in] = out;
+        for (Index s = table_.first[i] + 1; s + 1 < table_.first[i + 1]; ++s) {
             const Index t = slot_of_[g.twin[slot_edge_[s]]];
-            slots_[s].twin = t;
-            if (t < s) continue;
-            const glm::dvec2 d = points_[vertices_[i]] - points_[g.destination[slot_edge_[s]]];
-            slots_[s].length = slots_[t].length = std::sqrt(d.x * d.x + d.y * d.y);
-        }
-    }
-    // Each slot still names its own corner: give it its twin's.
-    for (Index i = 0; i < count; ++i) {
-        for (Index s = first_[i] + 1; s + 1 < first_[i + 1]; ++s) {
-            if (slots_[s].twin > s) std::swap(slots_[s].target, slots_[slots_[s].twin].target);
+            table_.twin[s] = t;
+            if (t < s) std::swap(table_.target[s], table_.target[t]);
         }
     }
 }
@@ -66,93 +86,58 @@ void IntervalProgram::collect_slots(std::span<const Index> walk) {
 double IntervalProgram::solve(std::span<const Index> walk, Watch& watch, double fraction) {
     collect_slots(walk);
     const auto count = static_cast<Index>(walk.size());
+    auto& [points, vertices, first, target, twin, value, error_bound] = table_;
     // A length has a relative error below 4u (two differences, squares, sum, root; u = 2^-53), a sum of m such terms in
     // any order below (m + 4)u; two of them and the rounding of this product: 2(m + 8)u.
-    tolerance_ = (count + 8.0) * 0x1p-52;
+    error_bound = (count + 8.0) * 0x1p-52;
+    value.assign(target.size(), kInfinity);
+    for (Index i = 0; i < count; ++i) value[first[i]] = value[first[i + 1] - 1] = 0.0;
+    row_.assign(count, kInfinity);
     for (Index low = count - 1; low-- > 0;) {
-        const bool root = low == 0;
-        if (watch.stopped(fraction, 1)) return kInfinity;
-        for (Index s = first_[low] + 1; s + 1 < first_[low + 1]; ++s) {
-            Slot& slot = slots_[s];
-            if (slot.target < low) break;  // targets ascend from low + 1 and then wrap
-            if (watch.stopped(fraction, s - first_[low] + first_[slot.target + 1] - slot.twin)) return kInfinity;
-            const Best best = combine(low, slot.target, s, slot.twin + 1);
-            slot.middle = slots_[slot.twin].middle = best.middle;
-            slot.value = slots_[slot.twin].value = best.value + slot.length;
+        row_[low + 1] = 0.0;
+        const Index end = first[low + 1] - 1;
+        std::size_t combinations = 0;
+        Index s = first[low] + 1;
+        // Targets ascend from low + 1 and then wrap.
+        for (; s < end && target[s] > low; ++s) {
+            const Index high = target[s], begin = twin[s] + 1;
+            const glm::dvec2 d = points[vertices[low]] - points[vertices[high]];
+            const double least = least_sum(begin, first[high + 1]);
+            value[s] = value[twin[s]] = row_[high] = least + std::sqrt(d.x * d.x + d.y * d.y);
+            combinations += first[high + 1] - begin;
         }
-        if (root) {
-            const Best best = combine(0, count - 1, first_[1] - 1, first_[count - 1] + 1);
-            root_middle_ = best.middle;
-            return best.value;
-        }
+        if (watch.stopped(fraction, combinations / kCombinationsPerStep + 1)) return kInfinity;
+        if (low == 0) break;
+        for (Index k = first[low]; k < s; ++k) row_[target[k]] = kInfinity;
     }
-    return kInfinity;
+    const double least = least_sum(first[count - 1] + 1, first[count]);
+    if (!(least < kInfinity) || !choice_.run(table_, watch, fraction)) return kInfinity;
+    return least;
 }
 
-// The best apex over the edge from low to high: a corner that is a target of both. Slots [first of low, low_end) hold
-// low's targets below high, [high_begin, end of high) high's targets above low; both ascend.
-IntervalProgram::Best IntervalProgram::combine(Index low, Index high, Index low_end, Index high_begin) {
-    Best best{kInfinity, kNone};
-    Index a = first_[low], b = high_begin;
-    const Index b_end = first_[high + 1];
-    while (a < low_end && b < b_end) {
-        const Index at = slots_[a].target, bt = slots_[b].target;
-        if (at == bt) {
-            ++steps_;
-            const double value = slots_[a].value + slots_[b].value;
-            if (value < best.value) {
-                const bool clear = value < best.value - best.value * tolerance_ || best.middle == kNone;
-                if (clear || lighter(low, high, at, best.middle)) best = {value, at};
-            } else if (value <= best.value + best.value * tolerance_ && value < kInfinity) {
-                if (lighter(low, high, at, best.middle)) best = {value, at};
-            }
-        }
-        a += at <= bt;
-        b += bt <= at;
+// The least sum of the row and the values of slots [begin, end), which are one corner's, ascending.
+double IntervalProgram::least_sum(Index begin, Index end) const {
+    const Index* const target = table_.target.data();
+    const double *const value = table_.value.data(), *const row = row_.data();
+    if (begin == end) return kInfinity;
+    if (target[end - 1] - target[begin] == end - 1 - begin)
+        return least_of_sums(row + target[begin], value + begin, end - begin);
+    double even = kInfinity, odd = kInfinity;
+    Index i = begin;
+    for (; i + 2 <= end; i += 2) {
+        even = std::min(even, row[target[i]] + value[i]);
+        odd = std::min(odd, row[target[i + 1]] + value[i + 1]);
     }
-    return best;
-}
-
-bool IntervalProgram::lighter(Index low, Index high, Index middle, Index than) const {
-    left_edges_.clear();
-    right_edges_.clear();
-    collect_edges(low, high, middle, left_edges_);
-    collect_edges(low, high, than, right_edges_);
-    return sums_.compare(points_, left_edges_, right_edges_) < 0;
-}
-
-Index IntervalProgram::slot_between(Index low, Index high) const {
-    for (Index s = first_[low];; ++s) {
-        if (slots_[s].target == high) return s;
-    }
-}
-
-void IntervalProgram::collect_edges(Index low, Index high, Index middle, Vector<Segment>& edges) const {
-    stack_.assign(1, {low, high, middle});
-    while (!stack_.empty()) {
-        const Interval at = stack_.back();
-        stack_.pop_back();
-        for (const auto& [from, to] : {std::array{at.low, at.middle}, std::array{at.middle, at.high}}) {
-            if (to == from + 1) continue;
-            edges.push_back({vertices_[from], vertices_[to]});
-            stack_.push_back({from, to, slots_[slot_between(from, to)].middle});
-        }
-    }
+    if (i < end) even = std::min(even, row[target[i]] + value[i]);
+    return std::min(even, odd);
 }
 
 void IntervalProgram::append(Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const {
-    const auto last = static_cast<Index>(walk_.size() - 1);
-    stack_.assign(1, {0, last, root_middle_});
-    while (!stack_.empty()) {
-        const Interval at = stack_.back();
-        stack_.pop_back();
-        triangles.push_back({walk_[at.low], walk_[at.middle], walk_[at.high]});
-        for (const auto& [from, to] : {std::array{at.low, at.middle}, std::array{at.middle, at.high}}) {
-            if (to == from + 1) continue;
-            diagonals.push_back({vertices_[from], vertices_[to]});
-            stack_.push_back({from, to, slots_[slot_between(from, to)].middle});
-        }
-    }
+    choice_.for_each_triangle([&](Index low, Index middle, Index high) {
+        triangles.push_back({walk_[low], walk_[middle], walk_[high]});
+        for (const auto& [from, to] : {std::array{low, middle}, std::array{middle, high}})
+            if (to != from + 1) diagonals.push_back({table_.vertices[from], table_.vertices[to]});
+    });
 }
 
 }  // namespace crofton::triangulate

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/expansion.hpp>
 #include <limits>
+
+#include "double_double.hpp"
 
 namespace crofton::triangulate {
 namespace {
@@ -13,16 +14,6 @@ auto exact_square(std::span<const glm::dvec2> points, const Segment& s) {
     const auto y = exact_difference(points[s.from].y, points[s.to].y);
     return x * x + y * y;
 }
-
-struct DoubleDouble {
-    double high = 0.0, low = 0.0;
-    void add(double h, double l) {
-        const auto sum = detail::two_sum(high, h);
-        const auto renormalised = detail::two_sum(sum.high, sum.low + low + l);
-        high = renormalised.high;
-        low = renormalised.low;
-    }
-};
 
 }  // namespace
 
@@ -42,13 +33,8 @@ int RootSums::compare(std::span<const glm::dvec2> points, std::span<const Segmen
 
 void RootSums::append(std::span<const glm::dvec2> points, std::span<const Segment> segments, int sign) {
     for (const Segment& s : segments) {
-        const auto x = detail::two_sum(points[s.from].x, -points[s.to].x);
-        const auto y = detail::two_sum(points[s.from].y, -points[s.to].y);
-        const auto xx = detail::two_product(x.high, x.high), yy = detail::two_product(y.high, y.high);
-        const auto sum = detail::two_sum(xx.high, yy.high);
-        const bool exact = x.low == 0.0 && y.low == 0.0 && xx.low == 0.0 && yy.low == 0.0;
-        const double rest = sum.low + (xx.low + yy.low + 2.0 * (x.high * x.low + y.high * y.low));
-        terms_.push_back({s, sum.high, rest, sign, exact});
+        const SquaredLength square = squared_length(points[s.from], points[s.to]);
+        terms_.push_back({s, square.high, square.rest, sign, square.exact});
     }
 }
 
@@ -78,18 +64,16 @@ void RootSums::cancel(std::span<const glm::dvec2> points) {
                  terms_.end());
 }
 
-// √(s + r) = q + (s − q² + r) / 2q with q = √s rounded: the neglected term is below q·2^-104, as are the roundings of
-// the correction; each addition errs by at most 2^-104 of the running sum.
+// Each root errs by less than 2^-101 of it, each addition by at most 2^-104 of the running sum.
 int RootSums::sum_to_100_bits() const {
     DoubleDouble sum;
     double magnitude = 0.0;
     for (const Term& t : terms_) {
-        const double root = std::sqrt(t.square);
-        const double rest = (std::fma(-root, root, t.square) + t.rest) / (2.0 * root);
+        const DoubleDouble length = root({t.square, t.rest, t.exact});
         const double c = t.coefficient;
-        const auto high = detail::two_product(root, c);
-        sum.add(high.high, high.low + rest * c);
-        magnitude += root * std::fabs(c);
+        const auto high = detail::two_product(length.high, c);
+        sum.add(high.high, high.low + length.low * c);
+        magnitude += length.high * std::fabs(c);
     }
     const double bound = magnitude * (static_cast<double>(terms_.size()) + 8.0) * 0x1p-101;
     return std::fabs(sum.high) > bound ? (sum.high > 0.0 ? 1 : -1) : 0;
