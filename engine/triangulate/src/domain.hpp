@@ -36,6 +36,7 @@ class Domain {
     [[nodiscard]] bool has_shared_positions() const { return points_.size() != vertex_of_.size(); }
     // The only index of a vertex where no positions are shared.
     [[nodiscard]] Index input_of(Index vertex) const { return input_of_[vertex]; }
+    [[nodiscard]] Index vertex_of(Index input) const { return vertex_of_[input]; }
     [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
 
   private:

@@ -85,7 +85,35 @@ void IntervalProgram::match_targets() {
 
 double IntervalProgram::solve(std::span<const Index> walk, Watch& watch, double fraction) {
     collect_slots(walk);
-    const auto count = static_cast<Index>(walk.size());
+    return run(watch, fraction);
+}
+
+// Slot k of corner i leads to corner i + 1 + k.
+double IntervalProgram::solve_convex(std::span<const glm::dvec2> points, std::span<const Index> ring, Watch& watch,
+                                     double fraction) {
+    const auto count = static_cast<Index>(ring.size()), degree = count - 1;
+    table_.points = points;
+    table_.vertices.assign(ring.begin(), ring.end());
+    table_.first.resize(count + 1);
+    table_.target.resize(std::size_t{count} * degree);
+    table_.twin.resize(table_.target.size());
+    for (Index i = 0; i <= count; ++i) table_.first[i] = i * degree;
+    for (Index i = 0; i < count; ++i) {
+        for (Index k = 0; k < degree; ++k) {
+            const Index j = i + 1 + k < count ? i + 1 + k : i + 1 + k - count;
+            table_.target[i * degree + k] = j;
+            table_.twin[i * degree + k] = j * degree + (degree - 1 - k);
+        }
+    }
+    return run(watch, fraction);
+}
+
+std::size_t IntervalProgram::convex_bytes(std::size_t count) {
+    return count * count * (3 * sizeof(Index) + sizeof(double) + 8);
+}
+
+double IntervalProgram::run(Watch& watch, double fraction) {
+    const Index count = table_.corner_count();
     auto& [points, vertices, first, target, twin, value, error_bound] = table_;
     // A length has a relative error below 4u (two differences, squares, sum, root; u = 2^-53), a sum of m such terms in
     // any order below (m + 4)u; two of them and the rounding of this product: 2(m + 8)u.

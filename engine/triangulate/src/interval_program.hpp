@@ -22,6 +22,16 @@ class IntervalProgram {
     // the candidates triangulate no such face or the watch stops; the walk must have at least three corners and must
     // outlive append().
     [[nodiscard]] double solve(std::span<const Index> walk, Watch& watch, double fraction);
+    // The same for a strictly convex ring of all diagonals, given by its vertices.
+    [[nodiscard]] double solve_convex(std::span<const glm::dvec2> points, std::span<const Index> ring, Watch& watch,
+                                      double fraction);
+    // The memory that solve_convex() takes for so many vertices.
+    [[nodiscard]] static std::size_t convex_bytes(std::size_t count);
+    // Calls visit(low, middle, high) for the triangles of the last solve: positions in the walk or ring.
+    template <class Visit>
+    void for_each_triangle(Visit visit) const {
+        choice_.for_each_triangle(visit);
+    }
     // Appends the triangles of the last solve, as half-edges of the graph whose origins are their corners, and the
     // edges inside.
     void append(Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;
@@ -29,6 +39,7 @@ class IntervalProgram {
   private:
     void collect_slots(std::span<const Index> walk);
     void match_targets();
+    [[nodiscard]] double run(Watch& watch, double fraction);
     [[nodiscard]] double least_sum(Index begin, Index end) const;
 
     std::span<const glm::dvec2> points_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/predicates.hpp>
 #include <limits>
 #include <numeric>
 
@@ -40,6 +41,16 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     proven_ = true;
     corners_.clear();
     diagonals_.clear();
+    if (collect_convex_ring(domain, options.bytes)) {
+        const double weight = program_.solve_convex(domain.mesh().points, ring_, watch, 0.5);
+        if (watch.cancelled()) return cancelled();
+        if (weight < std::numeric_limits<double>::infinity()) {
+            finish_convex(domain, result);
+            return true;
+        }
+        bound_whole(domain, false);
+        return false;
+    }
     const bool candidates = finder_.find(domain, options.bytes / kBytesPerHalfEdge, watch, graph_);
     const bool faces = candidates && settle_faces(domain, options, watch);
     if (watch.cancelled()) return cancelled();
@@ -64,6 +75,42 @@ Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, 
     bound_unsolved(points);
     finish(domain, complete, result);
     return complete;
+}
+
+// The vertices of a strictly convex polygon counter-clockwise, from the first one; false for others. No diagonal of it
+// can be excluded by what lies beside it, so the programme needs no candidates.
+bool MinimumWeight::collect_convex_ring(const Domain& domain, std::size_t bytes) {
+    const auto points = domain.mesh().points;
+    const auto count = static_cast<Index>(points.size());
+    if (domain.ring_count() != 1 || domain.has_shared_positions() || IntervalProgram::convex_bytes(count) > bytes)
+        return false;
+    const auto corner = [&](Index i) { return domain.vertex_of(i % count); };
+    const auto turn = [&](Index i) {
+        return orientation(points[corner(i)], points[corner(i + 1)], points[corner(i + 2)]);
+    };
+    const int side = turn(0);
+    if (side == 0) return false;
+    for (Index i = 1; i < count; ++i)
+        if (turn(i) != side) return false;
+    const Index start = domain.input_of(0);
+    ring_.resize(count);
+    for (Index i = 0; i < count; ++i) ring_[i] = corner(side > 0 ? start + i : start + count - i);
+    return true;
+}
+
+void MinimumWeight::finish_convex(const Domain& domain, Triangulation& result) {
+    const auto points = domain.mesh().points;
+    const auto input = [&](Index corner) { return domain.input_of(ring_[corner]); };
+    double weight = 0.0;
+    result.triangles.reserve(ring_.size() - 2);
+    program_.for_each_triangle([&](Index low, Index middle, Index high) {
+        result.triangles.push_back({input(low), input(middle), input(high)});
+        if (middle != low + 1) weight += length(points, {ring_[low], ring_[middle]});
+        if (high != middle + 1) weight += length(points, {ring_[middle], ring_[high]});
+    });
+    result.weight = weight * domain.scale();
+    result.optimal = true;
+    result.gap = 0.0;
 }
 
 // Returns false if the watch stops before the certain edges are known.

@@ -24,6 +24,8 @@ class MinimumWeight {
     }
 
   private:
+    [[nodiscard]] bool collect_convex_ring(const Domain& domain, std::size_t bytes);
+    void finish_convex(const Domain& domain, Triangulation& result);
     [[nodiscard]] bool settle_faces(const Domain& domain, const Options& options, Watch& watch);
     [[nodiscard]] bool has_pieces() const;
     void settle_simple_faces();
@@ -43,6 +45,7 @@ class MinimumWeight {
     FaceSearch search_;
     Vector<std::array<Index, 3>> corners_;
     Vector<Segment> diagonals_;
+    Vector<Index> ring_;
     Vector<Index> unsolved_;  // names of faces
     DelaunayBound delaunay_bound_;
     Vector<double> lengths_;

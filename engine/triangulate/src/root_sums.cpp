@@ -1,6 +1,7 @@
 #include "root_sums.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,31 @@ auto exact_square(std::span<const glm::dvec2> points, const Segment& s) {
     return x * x + y * y;
 }
 
+// √S to about 200 bits: with Q the sum of the parts so far, √S − Q = (S − Q²) / (√S + Q), of which double gives each
+// time 50 bits more. What is left after the fourth part is less than 2^-202 of the first.
+std::array<double, 4> root_parts(const Expansion<16>& square) {
+    const double first = std::sqrt(square.estimate()), twice = 2.0 * first;
+    const auto rest1 = square - exact_product(first, first);
+    const double second = rest1.estimate() / twice;
+    const auto rest2 = rest1 - exact_product(twice, second) - exact_product(second, second);
+    const double third = rest2.estimate() / twice;
+    const auto rest3 =
+        rest2 - exact_product(twice, third) - exact_product(2.0 * second, third) - exact_product(third, third);
+    return {first, second, third, rest3.estimate() / twice};
+}
+
+// Adds to an exact sum of doubles, smallest first (Shewchuk's grow-expansion).
+void add_exactly(Vector<double>& sum, double x) {
+    std::size_t kept = 0;
+    for (const double term : sum) {
+        const auto [high, low] = detail::two_sum(x, term);
+        if (low != 0.0) sum[kept++] = low;
+        x = high;
+    }
+    sum.resize(kept);
+    if (x != 0.0) sum.push_back(x);
+}
+
 }  // namespace
 
 int RootSums::compare(std::span<const glm::dvec2> points, std::span<const Segment> a, std::span<const Segment> b) {
@@ -24,6 +50,7 @@ int RootSums::compare(std::span<const glm::dvec2> points, std::span<const Segmen
     cancel(points);
     if (terms_.empty()) return 0;
     if (const int sign = sum_to_100_bits(); sign != 0) return sign;
+    if (const int sign = sum_to_200_bits(points); sign != 0) return sign;
     widen(points);
     if (classes_cancel()) return 0;
     for (std::size_t bits = 128;; bits *= 2) {
@@ -77,6 +104,24 @@ int RootSums::sum_to_100_bits() const {
     }
     const double bound = magnitude * (static_cast<double>(terms_.size()) + 8.0) * 0x1p-101;
     return std::fabs(sum.high) > bound ? (sum.high > 0.0 ? 1 : -1) : 0;
+}
+
+// The parts of a root miss it by less than 2^-200; they are summed without rounding.
+int RootSums::sum_to_200_bits(std::span<const glm::dvec2> points) {
+    exact_sum_.clear();
+    double magnitude = 0.0;
+    for (const Term& t : terms_) {
+        const auto parts = root_parts(exact_square(points, t.segment));
+        const double c = t.coefficient;
+        for (const double part : parts) {
+            const auto product = detail::two_product(part, c);
+            add_exactly(exact_sum_, product.low);
+            add_exactly(exact_sum_, product.high);
+        }
+        magnitude += parts[0] * std::fabs(c);
+    }
+    if (exact_sum_.empty() || std::fabs(exact_sum_.back()) <= magnitude * 0x1p-198) return 0;
+    return exact_sum_.back() > 0.0 ? 1 : -1;
 }
 
 // The squared lengths as integers: every coordinate is an integer multiple of the smallest unit in the last place.
