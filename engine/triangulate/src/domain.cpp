@@ -150,6 +150,7 @@ void Domain::mark_present_edges() {
 Result<void> Domain::insert_rings() {
     mark_present_edges();
     records_.clear();
+    has_split_edges_ = false;
     Index begin = 0;
     for (const Index end : polygon_->ring_ends) {
         for (Index i = begin; i < begin + edge_count(begin, end); ++i) {
@@ -176,6 +177,7 @@ Result<void> Domain::insert_edge(Index input, Index successor) {
         claim(e, input);
         for (const Index triangle : scratch_.cavity) inside_[triangle / 4] = kUnreached;
         at = mesh_.origin[e] == at ? mesh_.destination(e) : mesh_.origin[e];
+        has_split_edges_ |= at != end;
     }
     return {};
 }

@@ -34,6 +34,8 @@ class Domain {
     // The caller's index for the corner of triangle e / 4 at origin[e]; e's triangle must be inside.
     [[nodiscard]] Index input_index(Index e) const;
     [[nodiscard]] bool has_shared_positions() const { return points_.size() != vertex_of_.size(); }
+    // Whether rings touch themselves or each other, at points or along edges.
+    [[nodiscard]] bool has_touching_rings() const { return has_shared_positions() || has_split_edges_; }
     // The only index of a vertex where no positions are shared.
     [[nodiscard]] Index input_of(Index vertex) const { return input_of_[vertex]; }
     [[nodiscard]] Index vertex_of(Index input) const { return vertex_of_[input]; }
@@ -94,6 +96,7 @@ class Domain {
     Vector<Index> next_vertex_;     // vertex → the one after its first input point, where the other way is no edge
     Vector<std::uint8_t> present_;  // vertices whose edge to the next one is in the Delaunay triangulation
     Vector<Record> records_;        // the explicit ones
+    bool has_split_edges_ = false;  // by a vertex of another edge
     Vector<std::uint8_t> left_inside_;  // vertices of rings with the inside on their left
     Vector<std::uint8_t> inside_;       // of every triangle: 0, 1 or kUnreached
     Vector<State> regions_;

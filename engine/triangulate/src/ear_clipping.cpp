@@ -6,15 +6,22 @@
 
 namespace crofton::triangulate {
 
-double EarClipping::run(const Domain& domain, Vector<std::array<Index, 3>>& triangles) {
+double EarClipping::run(const Domain& domain, Vector<std::array<std::uint32_t, 3>>& triangles) {
     domain_ = &domain;
     mesh_ = &domain.mesh();
     weight_ = 0.0;
-    join_pieces();
-    walked_.assign(mesh_->origin.size(), 0);
+    simple_ = domain.ring_count() == 1 && !domain.has_touching_rings();
+    if (!simple_) join_pieces();
     reflex_count_.assign(mesh_->points.size(), 0);
+    waiting_for_.assign(mesh_->points.size(), kNone);
     for (Index e = 0; e < mesh_->origin.size(); ++e) {
-        if ((e & 3u) == 3u || !wall_[e] || walked_[e] || !domain.inside(e / 4)) continue;
+        if ((e & 3u) == 3u || !is_wall(e) || !domain.inside(e / 4)) continue;
+        if (simple_) {
+            collect_ring(e);
+            clip(triangles);
+            break;
+        }
+        if (walked_[e]) continue;
         collect_walk(e);
         clip(triangles);
     }
@@ -40,6 +47,7 @@ void EarClipping::join_pieces() {
     parent_.resize(mesh.points.size());
     for (Index v = 0; v < parent_.size(); ++v) parent_[v] = v;
     wall_.assign(mesh.origin.size(), 0);
+    walked_.assign(mesh.origin.size(), 0);
     bridges_.clear();
     for (Index e = 0; e < mesh.origin.size(); ++e) {
         if ((e & 3u) == 3u) continue;
@@ -67,24 +75,52 @@ void EarClipping::join_pieces() {
     }
 }
 
+// The ring's corners with the inside on their left, from the one that this half-edge leaves.
+void EarClipping::collect_ring(Index start) {
+    const auto count = static_cast<Index>(mesh_->points.size());
+    const Index from = domain_->input_of(mesh_->origin[start]), to = domain_->input_of(mesh_->destination(start));
+    const bool ascending = to == (from + 1 == count ? 0 : from + 1);
+    corners_.resize(count);
+    Index input = from;
+    for (Corner& c : corners_) {
+        c.vertex = domain_->vertex_of(input);
+        c.input = input;
+        if (ascending)
+            input = input + 1 == count ? 0 : input + 1;
+        else
+            input = (input == 0 ? count : input) - 1;
+    }
+    link_corners();
+}
+
 void EarClipping::collect_walk(Index start) {
     corners_.clear();
     Index e = start;
     do {
-        const auto i = static_cast<Index>(corners_.size());
-        corners_.push_back({e, mesh_->origin[e], i - 1, i + 1, false});
+        corners_.push_back({mesh_->origin[e], 0, 0, domain_->input_index(e), false});
         walked_[e] = 1;
         e = next(e);
         while (!wall_[e]) e = next(mesh_->twin[e]);
     } while (e != start);
-    corners_.front().previous = static_cast<Index>(corners_.size() - 1);
-    corners_.back().next = 0;
+    link_corners();
+}
+
+void EarClipping::link_corners() {
+    const auto count = static_cast<Index>(corners_.size());
+    for (Index i = 0; i < count; ++i) {
+        corners_[i].previous = (i == 0 ? count : i) - 1;
+        corners_[i].next = i + 1 == count ? 0 : i + 1;
+    }
+    awake_.reset(count);
+    waiting_.clear();
     reflex_.clear();
-    for (Corner& c : corners_) {
+    for (Index i = 0; i < count; ++i) {
+        Corner& c = corners_[i];
         c.reflex = is_reflex(c);
-        if (!c.reflex) continue;
-        ++reflex_count_[c.vertex];
-        reflex_.push_back(c.vertex);
+        if (!c.reflex)
+            awake_.insert(i);
+        else if (reflex_count_[c.vertex]++ == 0)
+            reflex_.push_back(c.vertex);
     }
     grid_.build(mesh_->points, reflex_);
 }
@@ -94,11 +130,23 @@ bool EarClipping::is_reflex(const Corner& c) const {
     return orientation(points[corners_[c.previous].vertex], points[c.vertex], points[corners_[c.next].vertex]) <= 0;
 }
 
+void EarClipping::wake(Index corner) {
+    if (!corners_[corner].reflex) awake_.insert(corner);
+}
+
 // Clipping narrows corners: what is convex stays so.
-void EarClipping::update(Corner& c) {
-    if (!c.reflex || is_reflex(c)) return;
-    c.reflex = false;
-    if (--reflex_count_[c.vertex] == 0) grid_.remove(c.vertex);
+void EarClipping::update(Index corner) {
+    Corner& c = corners_[corner];
+    if (c.reflex && !is_reflex(c)) {
+        c.reflex = false;
+        if (--reflex_count_[c.vertex] == 0) {
+            grid_.remove(c.vertex);
+            for (Index i = waiting_for_[c.vertex]; i != kNone; i = waiting_[i].next)
+                if (corners_[waiting_[i].corner].next != kNone) wake(waiting_[i].corner);
+            waiting_for_[c.vertex] = kNone;
+        }
+    }
+    wake(corner);
 }
 
 // Whether the segment to the vertex starts inside the corner.
@@ -112,49 +160,58 @@ bool EarClipping::opens_towards(const Corner& c, Index vertex) const {
 }
 
 // Only reflex vertices can lie in an ear; those at a corner's position count by the direction in which the corners
-// open.
-bool EarClipping::is_ear(const Corner& c) const {
-    if (c.reflex) return false;
+// open. In a ring that touches nothing an ear that holds no vertex opens the right way.
+bool EarClipping::is_ear(Index corner) {
+    const Corner& c = corners_[corner];
     const Corner &before = corners_[c.previous], &after = corners_[c.next];
     const auto& points = mesh_->points;
     const auto &p = points[before.vertex], &q = points[c.vertex], &r = points[after.vertex];
-    if (before.vertex == after.vertex) return false;
-    if (after.next != c.previous && (!opens_towards(before, after.vertex) || !opens_towards(after, before.vertex)))
-        return false;
+    if (!simple_) {
+        if (before.vertex == after.vertex) return false;
+        if (after.next != c.previous && (!opens_towards(before, after.vertex) || !opens_towards(after, before.vertex)))
+            return false;
+    }
     const glm::dvec2 low(std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}));
     const glm::dvec2 high(std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y}));
-    return !grid_.any(low, high, [&](Index v) {
+    const Index inside = grid_.find(low, high, [&](Index v, const glm::dvec2& x) {
         if (v == before.vertex || v == c.vertex || v == after.vertex) return false;
-        const auto& x = points[v];
         return orientation(p, q, x) >= 0 && orientation(q, r, x) >= 0 && orientation(r, p, x) >= 0;
     });
+    if (inside == kNone) return true;
+    waiting_.push_back({corner, waiting_for_[inside]});
+    waiting_for_[inside] = static_cast<Index>(waiting_.size() - 1);
+    return false;
 }
 
-void EarClipping::clip(Vector<std::array<Index, 3>>& triangles) {
+void EarClipping::clip(Vector<std::array<std::uint32_t, 3>>& triangles) {
     const auto& points = mesh_->points;
     Index at = 0;
-    for (std::size_t left = corners_.size(), failures = 0; left >= 3 && failures <= left;) {
+    for (std::size_t left = corners_.size(); left >= 3;) {
+        at = awake_.next_cyclic(at);
+        if (at == CornerSet::kNothing) break;
+        awake_.erase(at);
+        if (!is_ear(at)) continue;
         Corner& c = corners_[at];
-        if (!is_ear(c)) {
-            at = c.next;
-            ++failures;
-            continue;
-        }
-        Corner &before = corners_[c.previous], &after = corners_[c.next];
-        triangles.push_back({before.half_edge, c.half_edge, after.half_edge});
-        before.next = c.next;
-        after.previous = c.previous;
+        const Index before = c.previous, after = c.next;
+        triangles.push_back({corners_[before].input, c.input, corners_[after].input});
+        corners_[before].next = after;
+        corners_[after].previous = before;
+        c.next = kNone;
         if (--left > 2) {
-            const glm::dvec2 d = points[before.vertex] - points[after.vertex];
+            const glm::dvec2 d = points[corners_[before].vertex] - points[corners_[after].vertex];
             weight_ += std::sqrt(d.x * d.x + d.y * d.y);
             update(before);
             update(after);
+            wake(corners_[before].previous);
+            wake(corners_[after].next);
         }
-        failures = 0;
         // The neighbour but one: fans from a single corner are long and thin.
-        at = after.next;
+        at = corners_[after].next;
     }
-    for (const Corner& c : corners_) reflex_count_[c.vertex] = 0;
+    for (const Corner& c : corners_) {
+        reflex_count_[c.vertex] = 0;
+        waiting_for_[c.vertex] = kNone;
+    }
 }
 
 }  // namespace crofton::triangulate

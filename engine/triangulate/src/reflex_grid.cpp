@@ -4,19 +4,32 @@
 #include <cmath>
 
 namespace crofton::triangulate {
+namespace {
+// So few vertices are asked one by one.
+constexpr std::size_t kFew = 12;
+}  // namespace
 
 void ReflexGrid::build(std::span<const glm::dvec2> points, std::span<const Index> vertices) {
     points_ = points;
     members_.assign(vertices.begin(), vertices.end());
-    std::sort(members_.begin(), members_.end());
-    members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
     fill();
 }
 
 void ReflexGrid::fill() {
     left_ = members_.size();
     vertices_.assign(left_, kNone);
+    positions_.resize(left_);
     if (left_ == 0) return;
+    if (left_ <= kFew) {
+        columns_ = rows_ = 1;
+        per_unit_ = {0.0, 0.0};
+        begin_.assign({0, static_cast<Index>(left_)});
+        for (std::size_t i = 0; i < left_; ++i) {
+            vertices_[i] = members_[i];
+            positions_[i] = points_[members_[i]];
+        }
+        return;
+    }
     glm::dvec2 low = points_[members_[0]], high = low;
     for (const Index v : members_) {
         const auto& p = points_[v];
@@ -37,7 +50,11 @@ void ReflexGrid::fill() {
     begin_.assign(std::size_t{columns_} * rows_ + 1, 0);
     for (const Index v : members_) ++begin_[cell_of(v)];
     for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
-    for (const Index v : members_) vertices_[--begin_[cell_of(v)]] = v;
+    for (const Index v : members_) {
+        const Index at = --begin_[cell_of(v)];
+        vertices_[at] = v;
+        positions_[at] = points_[v];
+    }
 }
 
 void ReflexGrid::remove(Index vertex) {

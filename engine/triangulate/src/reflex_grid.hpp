@@ -12,22 +12,24 @@ namespace crofton::triangulate {
 // proportion to the vertices left.
 class ReflexGrid {
   public:
-    // Vertices may be listed more than once.
+    // Each vertex is listed once.
     void build(std::span<const glm::dvec2> points, std::span<const Index> vertices);
     // Does nothing if the vertex is not in the grid.
     void remove(Index vertex);
 
-    // Whether admit(vertex) holds for a vertex in the box; all in the cells that it touches are asked.
+    // A vertex in the closed box for which admit(vertex, position) holds, or kNone.
     template <class Admit>
-    [[nodiscard]] bool any(const glm::dvec2& low, const glm::dvec2& high, Admit admit) const {
-        if (vertices_.empty()) return false;
-        const Index right = column(high.x), top = row(high.y);
+    [[nodiscard]] Index find(const glm::dvec2& low, const glm::dvec2& high, Admit admit) const {
+        if (vertices_.empty()) return kNone;
+        const Index left = column(low.x), right = column(high.x), top = row(high.y);
         for (Index y = row(low.y); y <= top; ++y) {
-            for (Index i = begin_[y * columns_ + column(low.x)]; i < begin_[y * columns_ + right + 1]; ++i) {
-                if (vertices_[i] != kNone && admit(vertices_[i])) return true;
+            for (Index i = begin_[y * columns_ + left]; i < begin_[y * columns_ + right + 1]; ++i) {
+                const glm::dvec2& p = positions_[i];
+                const bool in_box = (p.x >= low.x) & (p.x <= high.x) & (p.y >= low.y) & (p.y <= high.y);
+                if (in_box && vertices_[i] != kNone && admit(vertices_[i], p)) return vertices_[i];
             }
         }
-        return false;
+        return kNone;
     }
 
   private:
@@ -47,6 +49,7 @@ class ReflexGrid {
     glm::dvec2 low_{0.0}, per_unit_{0.0};
     Index columns_ = 1, rows_ = 1;
     Vector<Index> begin_, vertices_, members_;  // vertices_: by cell, row by row; kNone where one has gone
+    Vector<glm::dvec2> positions_;              // of vertices_
     std::size_t left_ = 0;
 };
 

@@ -13,7 +13,6 @@ struct Triangulator::Workspace {
     Domain domain;
     MinimumWeight minimum_weight;
     EarClipping ear_clipping;
-    Vector<std::array<Index, 3>> corners;
 };
 
 Triangulator::Triangulator() : workspace_(new (Allocator<Workspace>().allocate(1)) Workspace) {}
@@ -69,14 +68,12 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
         workspace_->domain.insert_diagonals(workspace_->minimum_weight.known_edges());
     }
     if (options.method == Method::ear) {
-        auto& corners = workspace_->corners;
-        corners.clear();
         const Domain& domain = workspace_->domain;
-        result.weight = workspace_->ear_clipping.run(domain, corners) * domain.scale();
-        for (const auto& c : corners) {
-            result.triangles.push_back({domain.input_index(c[0]), domain.input_index(c[1]), domain.input_index(c[2])});
+        result.weight = workspace_->ear_clipping.run(domain, result.triangles) * domain.scale();
+        if (result.triangles.size() != domain.inside_count()) {
+            result.triangles.clear();
+            return fail(ErrorCode::internal, kNoItem, "a walk without ears");
         }
-        if (corners.size() != domain.inside_count()) return fail(ErrorCode::internal, kNoItem, "a walk without ears");
         return {};
     }
     write(workspace_->domain, result);
