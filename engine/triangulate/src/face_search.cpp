@@ -221,8 +221,11 @@ bool FaceSearch::mark_certain(Level& level, Watch& watch) const {
     CandidateGraph& g = level.graph;
     if (watch.stopped_now(kSearching)) return false;
     for (Index h = 0; h < g.half_edge_count(); ++h) {
-        if (watch.stopped(kSearching, level.witness[h] == kNone ? g.half_edge_count() : 1)) return false;
-        if (h > g.twin[h] || (g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0 || has_crossing(level, h)) continue;
+        if (h > g.twin[h] || (g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0) continue;
+        std::size_t steps = 1;
+        const bool crossed = has_crossing(level, h, steps);
+        if (watch.stopped(kSearching, steps)) return false;
+        if (crossed) continue;
         g.flags[h] |= CandidateGraph::kCertain;
         g.flags[g.twin[h]] |= CandidateGraph::kCertain;
     }
@@ -245,7 +248,8 @@ Index FaceSearch::crossing_from_apex(const Level& level, Index h) const {
     return kNone;
 }
 
-bool FaceSearch::has_crossing(Level& level, Index h) const {
+// Adds to `steps`.
+bool FaceSearch::has_crossing(Level& level, Index h, std::size_t& steps) const {
     const CandidateGraph& g = level.graph;
     const auto open = [&](Index k) {
         return (g.flags[k] & (CandidateGraph::kConstraint | CandidateGraph::kDead)) == 0;
@@ -257,6 +261,7 @@ bool FaceSearch::has_crossing(Level& level, Index h) const {
     const auto [y_low, y_high] = std::minmax(level.points[a].y, level.points[b].y);
     for (Index v = 0; v < g.vertex_count(); ++v) {
         const glm::dvec2 c = level.points[v];
+        steps += 1 + (g.first[v + 1] - g.first[v]) / 4;
         for (Index k = g.first[v]; k < g.first[v + 1]; ++k) {
             if (g.destination[k] <= v || !open(k)) continue;
             const Index d = g.destination[k];

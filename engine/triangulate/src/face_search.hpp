@@ -49,7 +49,7 @@ class FaceSearch {
     void choose(Level& level);
     // Returns false if the watch stops.
     [[nodiscard]] bool mark_certain(Level& level, Watch& watch) const;
-    [[nodiscard]] bool has_crossing(Level& level, Index h) const;
+    [[nodiscard]] bool has_crossing(Level& level, Index h, std::size_t& steps) const;
     [[nodiscard]] Index crossing_from_apex(const Level& level, Index h) const;
     void raise(const Level& level, Vector<std::array<Index, 3>>& triangles, Vector<Segment>& diagonals) const;
 

@@ -36,7 +36,8 @@ tl::unexpected<Error> cancelled() {
 
 }  // namespace
 
-Result<bool> MinimumWeight::solve(const Domain& domain, const Options& options, Watch& watch, Triangulation& result) {
+Result<bool> MinimumWeight::solve(const Domain& domain, const TriangulateOptions& options, Watch& watch,
+                                  Triangulation& result) {
     lower_bound_ = 0.0;
     proven_ = true;
     corners_.clear();
@@ -114,7 +115,7 @@ void MinimumWeight::finish_convex(const Domain& domain, Triangulation& result) {
 }
 
 // Returns false if the watch stops before the certain edges are known.
-bool MinimumWeight::settle_faces(const Domain& domain, const Options& options, Watch& watch) {
+bool MinimumWeight::settle_faces(const Domain& domain, const TriangulateOptions& options, Watch& watch) {
     const auto points = domain.mesh().points;
     infeasible_ = gave_up_ = false;
     // Long rings with few candidates are pruned too: sums of thousands of lengths that tie are costly to compare.

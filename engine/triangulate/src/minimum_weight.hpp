@@ -15,7 +15,8 @@ class MinimumWeight {
   public:
     // False if a budget ran out before all faces had a triangulation; then known_edges() tells what is settled. Errors:
     // cancelled.
-    [[nodiscard]] Result<bool> solve(const Domain& domain, const Options& options, Watch& watch, Triangulation& result);
+    [[nodiscard]] Result<bool> solve(const Domain& domain, const TriangulateOptions& options, Watch& watch,
+                                     Triangulation& result);
     // Diagonals that are proven to be in a minimum-weight triangulation, or in the best one known of a face.
     [[nodiscard]] std::span<const Segment> known_edges() const { return diagonals_; }
     // The proven bound on how much heavier than the minimum a triangulation of the last domain with this weight is.
@@ -26,7 +27,7 @@ class MinimumWeight {
   private:
     [[nodiscard]] bool collect_convex_ring(const Domain& domain, std::size_t bytes);
     void finish_convex(const Domain& domain, Triangulation& result);
-    [[nodiscard]] bool settle_faces(const Domain& domain, const Options& options, Watch& watch);
+    [[nodiscard]] bool settle_faces(const Domain& domain, const TriangulateOptions& options, Watch& watch);
     [[nodiscard]] bool has_pieces() const;
     void settle_simple_faces();
     [[nodiscard]] FaceSearch::Outcome solve_face(std::span<const glm::dvec2> points, Index name, Watch& watch,

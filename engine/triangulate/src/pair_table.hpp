@@ -8,6 +8,8 @@ namespace crofton::triangulate {
 // A hash table with linear probing; numbers count up from 0. Keeps its memory when cleared.
 class PairTable {
   public:
+    static constexpr std::uint32_t kNew = ~std::uint32_t{0};
+
     void clear() {
         entries_.assign(entries_.size(), {});
         count_ = 0;
@@ -19,8 +21,12 @@ class PairTable {
         return entry.number;
     }
 
+    // kNew if it has none.
+    [[nodiscard]] std::uint32_t find_number(std::uint64_t a, std::uint64_t b) {
+        return entries_.empty() ? kNew : find(a, b).number;
+    }
+
   private:
-    static constexpr std::uint32_t kNew = ~std::uint32_t{0};
     struct Entry {
         std::uint64_t a = 0, b = 0;
         std::uint32_t number = kNew;
