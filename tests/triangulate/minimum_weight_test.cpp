@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <chrono>
 #include <crofton/triangulate/triangulate.hpp>
+#include <ctime>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <oracle/minimum_weight.hpp>
@@ -316,14 +316,15 @@ TEST_SUITE("triangulate/minimum_weight") {
         add_star(rough, random, {0, 0}, 9.0, 10.0, 30'000, 0.0);
         add_star(round, random, {0, 0}, 10.0, 10.0, 30'000, 0.0);
         for (const Polygon& p : {rough, round}) {
-            const auto start = std::chrono::steady_clock::now();
+            // Processor time: other programs may run meanwhile.
+            const std::clock_t start = std::clock();
             const auto result = triangulate::triangulate(p, {.seconds = 0.05});
-            const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+            const double taken = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
             REQUIRE(result.has_value());
             CHECK_FALSE(result->optimal);
             CHECK(result->gap > 0.0);
             CHECK(result->gap < 50.0);
-            CHECK(taken.count() < 1.0);  // 0.06 s on an idle core
+            CHECK(taken < 1.0);  // 0.4 s, most of it to improve what is returned
         }
     }
 

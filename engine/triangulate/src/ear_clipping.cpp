@@ -122,7 +122,7 @@ void EarClipping::link_corners() {
         else if (reflex_count_[c.vertex]++ == 0)
             reflex_.push_back(c.vertex);
     }
-    grid_.build(mesh_->points, reflex_);
+    tree_.build(mesh_->points, reflex_);
 }
 
 bool EarClipping::is_reflex(const Corner& c) const {
@@ -140,7 +140,7 @@ void EarClipping::update(Index corner) {
     if (c.reflex && !is_reflex(c)) {
         c.reflex = false;
         if (--reflex_count_[c.vertex] == 0) {
-            grid_.remove(c.vertex);
+            tree_.remove(c.vertex);
             for (Index i = waiting_for_[c.vertex]; i != kNone; i = waiting_[i].next)
                 if (corners_[waiting_[i].corner].next != kNone) wake(waiting_[i].corner);
             waiting_for_[c.vertex] = kNone;
@@ -171,9 +171,7 @@ bool EarClipping::is_ear(Index corner) {
         if (after.next != c.previous && (!opens_towards(before, after.vertex) || !opens_towards(after, before.vertex)))
             return false;
     }
-    const glm::dvec2 low(std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}));
-    const glm::dvec2 high(std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y}));
-    const Index inside = grid_.find(low, high, [&](Index v, const glm::dvec2& x) {
+    const Index inside = tree_.find({p, q, r}, [&](Index v, const glm::dvec2& x) {
         if (v == before.vertex || v == c.vertex || v == after.vertex) return false;
         return orientation(p, q, x) >= 0 && orientation(q, r, x) >= 0 && orientation(r, p, x) >= 0;
     });

@@ -4,7 +4,7 @@
 
 #include "corner_set.hpp"
 #include "domain.hpp"
-#include "reflex_grid.hpp"
+#include "reflex_tree.hpp"
 
 namespace crofton::triangulate {
 
@@ -49,7 +49,7 @@ class EarClipping {
     bool simple_ = false;
     Vector<std::uint8_t> wall_, walked_;
     Vector<Index> parent_, bridges_, reflex_count_, reflex_;
-    ReflexGrid grid_;
+    ReflexTree tree_;
     Vector<Corner> corners_;
     CornerSet awake_;
     Vector<Index> waiting_for_;  // vertex → the first of waiting_

@@ -4,28 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "least_sum.hpp"
+
 namespace crofton::triangulate {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Combinations of two sub-polygons tried in one of the watch's steps.
 constexpr std::size_t kCombinationsPerStep = 8;
-
-// The least a[i] + b[i]. Several running minima, so that one addition need not wait for another's comparison.
-double least_of_sums(const double* a, const double* b, std::size_t count) {
-    constexpr std::size_t kLanes = 8;
-    double least[kLanes];
-    std::fill(least, least + kLanes, kInfinity);
-    std::size_t i = 0;
-    for (; i + kLanes <= count; i += kLanes) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const double sum = a[i + lane] + b[i + lane];
-            least[lane] = sum < least[lane] ? sum : least[lane];
-        }
-    }
-    for (; i < count; ++i) least[0] = std::min(least[0], a[i] + b[i]);
-    return *std::min_element(least, least + kLanes);
-}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <crofton/geometry/predicates.hpp>
 #include <limits>
 
+#include "least_sum.hpp"
 #include "local_minimality.hpp"
 
 namespace crofton::triangulate {
@@ -246,13 +247,20 @@ double LocalImprovement::solve_window() {
     apex_.assign(values_.size(), 0);
     for (Index low = count - 1; low-- > 0;) {
         for (Index high = low + 2; high < count; ++high) {
-            double least = kInfinity;
-            Index best = low;
-            for (Index k = low + 1; k < high; ++k) {
-                const double sum = values_[low * count + k] + values_[high * count + k];
-                if (sum < least && orientation(corners_[low], corners_[k], corners_[high]) > 0) {
-                    least = sum;
-                    best = k;
+            const double *const left = &values_[low * count], *const right = &values_[high * count];
+            const auto turns_left = [&](Index k) {
+                return orientation(corners_[low], corners_[k], corners_[high]) > 0;
+            };
+            double least = least_of_sums(left + low + 1, right + low + 1, high - low - 1);
+            Index best = low + 1;
+            while (best < high && left[best] + right[best] != least) ++best;
+            if (least < kInfinity && !turns_left(best)) {
+                least = kInfinity;
+                for (Index k = low + 1; k < high; ++k) {
+                    if (left[k] + right[k] < least && turns_left(k)) {
+                        least = left[k] + right[k];
+                        best = k;
+                    }
                 }
             }
             if (low != 0 || high + 1 != count) least += length(corners_[low], corners_[high]);
