@@ -3,10 +3,10 @@
 #include <limits>
 #include <new>
 
-#include "domain.hpp"
-#include "ear_clipping.hpp"
-#include "local_improvement.hpp"
-#include "minimum_weight.hpp"
+#include "domain/domain.hpp"
+#include "ear/ear_clipping.hpp"
+#include "minimum_weight/local_improvement.hpp"
+#include "minimum_weight/minimum_weight.hpp"
 
 namespace crofton::triangulate {
 
