@@ -118,7 +118,7 @@ void MinimumWeight::finish_convex(const Domain& domain, Triangulation& result) {
 bool MinimumWeight::divide_into_faces(const Domain& domain, const TriangulateOptions& options, Watch& watch) {
     const auto points = domain.mesh().points;
     infeasible_ = gave_up_ = false;
-    // Long rings with few candidates are pruned too: sums of thousands of lengths that tie are costly to compare.
+    // Long rings with few candidates are pruned too, which shortens the lists of the programme.
     const bool long_ring =
         domain.vertex_count() > kLongRing && graph_.half_edge_count() < kFewCandidates * domain.vertex_count();
     const bool prune = domain.ring_count() > 1 || long_ring;
