@@ -72,6 +72,9 @@ void RootSums::cancel(std::span<const glm::dvec2> points) {
     const auto equal = [&](const Term& a, const Term& b) {
         if (a.exact && b.exact) return a.square == b.square && a.rest == b.rest;
         if (a.segment.from == b.segment.from && a.segment.to == b.segment.to) return true;
+        // Each square errs by less than 2^-104 of it.
+        const double difference = (a.square - b.square) + (a.rest - b.rest);
+        if (std::fabs(difference) > b.square * 0x1p-98) return false;
         return (exact_square(points, a.segment) - exact_square(points, b.segment)).sign() == 0;
     };
     std::size_t kept = 0;
