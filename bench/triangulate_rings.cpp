@@ -98,6 +98,18 @@ BENCHMARK_CAPTURE(ring, smooth, smooth, Method::minimum_weight)->Arg(512)->Arg(2
 BENCHMARK_CAPTURE(ring, strip_ear, strip, Method::ear)->Arg(1000)->Arg(8000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ring, ribbon_ear, ribbon, Method::ear)->Arg(1000)->Arg(8000)->Unit(benchmark::kMillisecond);
 
+// What is returned when the search ends before it has begun: compare the weights with those of the lines above.
+void ring_without_work(benchmark::State& state, Polygon (*make)(std::size_t)) {
+    measure(state, make(static_cast<std::size_t>(state.range(0))), {.work = 0});
+}
+BENCHMARK_CAPTURE(ring_without_work, regular, regular)->Arg(512)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ring_without_work, smooth, smooth)->Arg(512)->Arg(2000)->Arg(15000)->Unit(benchmark::kMillisecond);
+// Too large to be proven: ends at the limit of memory.
+BENCHMARK_CAPTURE(ring, smooth_unproven, smooth, Method::minimum_weight)
+    ->Arg(15000)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
 // The textbook's programme on a convex ring: three loops over doubles, no bound on rounding, ties as they fall.
 double plain_program(const std::vector<glm::dvec2>& points) {
     const std::size_t n = points.size();
@@ -128,7 +140,7 @@ void plain(benchmark::State& state) {
 }
 BENCHMARK(plain)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(128)->Arg(256)->Arg(512)->Unit(benchmark::kMillisecond);
 
-// Bends of 12 cells: some 15,000 vertices in one ring, and 18,880 with 295 holes.
+// Bends of 12 cells, with and without holes.
 void contours_12(benchmark::State& state, bench::Contours which) {
     measure(state, bench::noise_contours(which), {});
 }
@@ -146,6 +158,15 @@ BENCHMARK_CAPTURE(contours_12, holes, bench::Contours{.side = 240, .wavelength =
 BENCHMARK_CAPTURE(contours_12, small_holes, bench::Contours{.side = 120, .wavelength = 12.0, .level = -0.5})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
+
+void contours_12_without_work(benchmark::State& state, bench::Contours which) {
+    measure(state, bench::noise_contours(which), {.work = 0});
+}
+BENCHMARK_CAPTURE(contours_12_without_work, one_ring,
+                  bench::Contours{.side = 480, .wavelength = 12.0, .level = -0.1, .holes = false})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(contours_12_without_work, holes, bench::Contours{.side = 240, .wavelength = 12.0, .level = -0.5})
+    ->Unit(benchmark::kMillisecond);
 
 // All of the file's polygons that our ear clipping takes, so that both do the same work.
 const std::vector<Polygon>& valid_polygons(const std::string& name) {
