@@ -17,11 +17,11 @@ void ReflexTree::build(std::span<const glm::dvec2> points, std::span<const Index
         place_.resize(points.size());
         leaf_.resize(points.size());
     }
-    if (!vertices_.empty()) split(0, static_cast<Index>(vertices_.size()), kNone, true);
+    if (!vertices_.empty()) split(0, static_cast<Index>(vertices_.size()), kNone);
 }
 
-// Halves along x and y in turn, not along the longer one: of a band the first cut shall part its two sides.
-void ReflexTree::split(Index begin, Index end, Index parent, bool along_y) {
+// Halves along the longer side, but first along the shorter one: of a straight band that parts its two sides.
+void ReflexTree::split(Index begin, Index end, Index parent) {
     const auto node = static_cast<Index>(nodes_.size());
     nodes_.push_back({{}, begin, end, kNone, parent, end - begin});
     for (Index i = begin; i < end; ++i) positions_[i] = points_[vertices_[i]];
@@ -34,16 +34,17 @@ void ReflexTree::split(Index begin, Index end, Index parent, bool along_y) {
         }
         return;
     }
-    if (along_y ? box.low.y == box.high.y : box.low.x == box.high.x) along_y = !along_y;
+    const bool taller = box.high.y - box.low.y > box.high.x - box.low.x;
+    const bool along_y = parent == kNone ? !taller : taller;
     const Index middle = begin + (end - begin) / 2;
     const auto less = [&](Index a, Index b) {
         const double at_a = along_y ? points_[a].y : points_[a].x, at_b = along_y ? points_[b].y : points_[b].x;
         return at_a != at_b ? at_a < at_b : a < b;
     };
     std::nth_element(vertices_.begin() + begin, vertices_.begin() + middle, vertices_.begin() + end, less);
-    split(begin, middle, node, !along_y);
+    split(begin, middle, node);
     nodes_[node].right = static_cast<Index>(nodes_.size());
-    split(middle, end, node, !along_y);
+    split(middle, end, node);
 }
 
 void ReflexTree::remove(Index vertex) {

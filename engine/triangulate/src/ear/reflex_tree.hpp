@@ -57,7 +57,7 @@ class ReflexTree {
         Index count;  // of vertices still there
     };
 
-    void split(Index begin, Index end, Index parent, bool along_y);
+    void split(Index begin, Index end, Index parent);
     [[nodiscard]] static Box box_of(std::span<const glm::dvec2> points);
     [[nodiscard]] static bool misses(const Box& a, const Box& b) {
         return a.low.x > b.high.x || a.high.x < b.low.x || a.low.y > b.high.y || a.high.y < b.low.y;
