@@ -37,7 +37,7 @@ void measure(benchmark::State& state, const std::vector<Polygon>& polygons, Meth
         vertices = optimal = done = 0;
         for (const Polygon& polygon : polygons) {
             vertices += polygon.points.size();
-            if (!triangulator.triangulate(polygon, {.method = method, .seconds = 20.0}, result)) continue;
+            if (!triangulator.triangulate(polygon, {.method = method, .work = 2'000'000'000}, result)) continue;
             weight += result.weight;
             optimal += result.optimal;
             ++done;

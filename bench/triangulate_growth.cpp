@@ -28,7 +28,7 @@ double measure(const Polygon& polygon, Method method, const std::string& name, s
     const int runs = method != Method::minimum_weight ? 9 : vertices < 15'000 ? 3 : 2;
     for (int run = 0; run < runs; ++run) {
         const auto start = std::chrono::steady_clock::now();
-        if (!triangulator.triangulate(polygon, {.method = method, .seconds = 60.0}, result)) return -1.0;
+        if (!triangulator.triangulate(polygon, {.method = method, .work = 6'000'000'000}, result)) return -1.0;
         best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
     std::printf("%-24s n %7.0f holes %5zu: %9.3f ms, %8.3f us/vertex%s\n", name.c_str(), vertices, holes, 1e3 * best,

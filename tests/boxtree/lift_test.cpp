@@ -74,6 +74,24 @@ TEST_SUITE("boxtree/lift") {
         CHECK(holds_all(tree));
     }
 
+    TEST_CASE("an item inserted as lifted has an id and layers, and is in no leaf until it settles") {
+        const oracle::Crowd crowd = oracle::random_crowd(100, 0.0, 5);
+        BoxTree tree = *BoxTree::build(crowd.boxes);
+        REQUIRE(tree.remove(17).has_value());
+        CHECK(tree.insert_lifted(4u).value() == 17);
+        CHECK(tree.insert_lifted(8u).value() == 100);
+        CHECK(tree.item_count() == 99);
+        CHECK(tree.is_lifted(100));
+        CHECK(tree.slot_of(100) == boxtree::kNone);
+        CHECK((tree.lifted_layers() & ~12u) == 0);
+        tree.refit();
+        CHECK(tree.validate().has_value());
+        REQUIRE(tree.settle(100, crowd.boxes[3]).has_value());
+        CHECK(tree.validate().has_value());
+        CHECK(tree.slot_of(100) != boxtree::kNone);
+        CHECK(tree.layer_masks()[100] == 8u);
+    }
+
     TEST_CASE(
         "lifting and settling amid other changes and background rebuilds leaves a valid tree, stored and read too") {
         oracle::NearMisses random(3);
@@ -86,9 +104,12 @@ TEST_SUITE("boxtree/lift") {
                     const ItemId item = random.index(static_cast<unsigned>(tree.boxes().size()));
                     const Obb box = oracle::random_box(random, glm::dvec3(frame), 40.0);
                     const bool rests = tree.slot_of(item) != boxtree::kNone;
-                    switch (random.index(6)) {
+                    switch (random.index(7)) {
                         case 0:
                             REQUIRE(tree.insert(box, 1u << random.index(8)).has_value());
+                            break;
+                        case 5:
+                            lifted.insert(tree.insert_lifted(1u << random.index(8)).value());
                             break;
                         case 1:
                             CHECK(tree.remove(item).has_value() == (rests || lifted.erase(item) > 0));

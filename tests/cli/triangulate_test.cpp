@@ -95,7 +95,7 @@ TEST_SUITE("cli/triangulate") {
         write_contents(scratch().file("fit.poly"), "P square 1\n4 0 0 2 0 2 2 0 2\n");
         const std::string file = "triangulate '" + scratch().file("fit.poly") + "' ";
         for (const char* options :
-             {"--map MAP01", "--tolerance -1", "--tolerance nan", "--time-limit -1", "--out x.glb"})
+             {"--map MAP01", "--tolerance -1", "--tolerance nan", "--time-limit -1", "--work-limit -1", "--out x.glb"})
             CHECK(run_cli(file + options).status == 2);
     }
 
@@ -104,9 +104,11 @@ TEST_SUITE("cli/triangulate") {
         for (int i = 0; i < 2000; ++i)
             points += " " + std::to_string(i % 2 * 3 + i) + " " + std::to_string((i - 1000) * (i - 1000));
         write_contents(scratch().file("late.poly"), "P late 1\n2000" + points + "\n");
-        const CliRun run = run_cli("triangulate '" + scratch().file("late.poly") + "' --time-limit 0");
-        CHECK(run.status == 0);
-        CHECK(run.out.find("1 polygon is not proven minimal") != std::string::npos);
+        for (const char* limit : {"--time-limit 0", "--work-limit 0"}) {
+            const CliRun run = run_cli("triangulate '" + scratch().file("late.poly") + "' " + limit);
+            CHECK(run.status == 0);
+            CHECK(run.out.find("1 polygon is not proven minimal") != std::string::npos);
+        }
     }
 
     TEST_CASE("SVG goes to a file or stdout") {

@@ -205,4 +205,50 @@ TEST_SUITE("collide/tree_query") {
                   by_brute_force(crowd, ~0u, [&](const Obb& b) { return mesh::raycast(ray, b).has_value(); }));
         }
     }
+
+    TEST_CASE("what is near is visited, whatever the visitor asks next, and a negative answer ends the visit") {
+        NearMisses random(7);
+        const oracle::Crowd crowd = crowd_of(2000, 1e4, 7);
+        const boxtree::BoxTree tree = tree_of(crowd);
+        std::size_t nearest_found = 0;
+        for (int query = 0; query < 300; ++query) {
+            const Aabb bounds = aabb_of(oracle::random_box(random, crowd.boxes[random.index(2000)].center, 30.0));
+            const double distance = query % 3 ? random.number(0.0, 20.0) : 0.0;
+            // Axis by axis, as far as the bounds of the box and the query's are apart.
+            const auto gap_to = [&](const Obb& box) {
+                const Aabb other = aabb_of(box);
+                const glm::dvec3 gap = glm::max(glm::max(other.min - bounds.max, bounds.min - other.max), 0.0);
+                return glm::length(gap);
+            };
+            const auto near = by_brute_force(crowd, 6, [&](const Obb& box) { return gap_to(box) <= distance; });
+            std::vector<boxtree::ItemId> visited;
+            visit_near(
+                bounds, distance, tree, [&](boxtree::ItemId item) { return visited.push_back(item), distance; }, 6);
+            std::sort(visited.begin(), visited.end());
+            CHECK(std::includes(visited.begin(), visited.end(), near.begin(), near.end()));
+            double least = distance, expected = std::numeric_limits<double>::infinity();
+            std::size_t asked = 0;
+            visit_near(
+                bounds, distance, tree,
+                [&](boxtree::ItemId item) {
+                    ++asked;
+                    return least = std::min(least, gap_to(tree.boxes()[item]));
+                },
+                6);
+            for (const boxtree::ItemId item : near) expected = std::min(expected, gap_to(crowd.boxes[item]));
+            CHECK(least == std::min(distance, expected));
+            CHECK(asked <= visited.size());
+            nearest_found += !near.empty();
+            asked = 0;
+            visit_near(bounds, distance, tree, [&](boxtree::ItemId) { return ++asked, -1.0; });
+            CHECK(asked <= 1);
+        }
+        CHECK(nearest_found > 100);
+        std::size_t visits = 0;
+        for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0})
+            visit_near(aabb_of(crowd.boxes[0]), bad, tree,
+                       [&](boxtree::ItemId) { return static_cast<double>(++visits); });
+        visit_near(Aabb(), 1.0, tree, [&](boxtree::ItemId) { return static_cast<double>(++visits); });
+        CHECK(visits == 0);
+    }
 }

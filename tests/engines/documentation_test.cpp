@@ -55,7 +55,8 @@ TEST_SUITE("engines/documentation") {
         };
         std::vector<Page> pages = {{"docs/integrate.md", 8}, {"README.md", 1}};
         std::vector<Lines> sources = {lines_of("tests/engines/integrate_test.cpp"),
-                                      lines_of("samples/hello_cull/main.cpp"), lines_of("samples/c_hello/main.c"),
+                                      lines_of("samples/hello_cull/main.cpp"),
+                                      lines_of("samples/hello_frame/main.cpp"), lines_of("samples/c_hello/main.c"),
                                       lines_of("samples/executors/tbb_executor.hpp")};
         // The guide docs/<module>.md takes its examples from tests/<module>/guide_test.cpp.
         for (const auto& folder : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/tests")) {
@@ -80,5 +81,6 @@ TEST_SUITE("engines/documentation") {
 
     TEST_CASE("the quick start fits on a screen") {
         CHECK(lines_of("samples/hello_cull/main.cpp").size() <= 40);
+        CHECK(lines_of("samples/hello_frame/main.cpp").size() <= 80);
     }
 }

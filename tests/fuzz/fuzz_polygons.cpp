@@ -15,9 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (file.error().message.find(path) == std::string::npos) std::abort();
         return 0;
     }
-    triangulate::Options options;
+    triangulate::TriangulateOptions options;
     options.method = static_cast<triangulate::Method>(data[0] / 4 % 3);
-    options.seconds = 0.05;
+    options.work = 5'000'000;
     for (const auto& named : file->polygons) {
         const auto result = triangulate::triangulate(named.polygon, options);
         if (!result) continue;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <set>
 
 #include "counting_memory.hpp"
 #include "oracle/plain_scene.hpp"
@@ -109,10 +110,26 @@ struct Pair {
 
     void edit_node(NodeId node) {
         switch (random() % 8) {
-            case 0:
+            case 0: {
+                std::set<NodeId> below, expected;
+                std::set<InstanceId> on, expected_on;
+                scene.visit_subtree(
+                    node,
+                    [&](NodeId n) {
+                        CHECK((n == node || below.contains(scene.parent_of(n))));
+                        CHECK(below.insert(n).second);
+                    },
+                    [&](InstanceId i) { CHECK(on.insert(i).second); });
+                for (const auto& entry : plain.nodes)
+                    if (plain.is_below(entry.first, node)) expected.insert(entry.first);
+                for (const auto& [i, instance] : plain.instances)
+                    if (plain.is_below(instance.node, node)) expected_on.insert(i);
+                CHECK(below == expected);
+                CHECK(on == expected_on);
                 REQUIRE(scene.remove_node(node).has_value());
                 plain.remove_node(node);
                 break;
+            }
             case 1:
                 plain.nodes[node].mask = static_cast<std::uint32_t>(random());
                 REQUIRE(scene.set_layer_mask(node, plain.nodes[node].mask).has_value());
@@ -318,7 +335,7 @@ TEST_SUITE("scene/edit") {
         CHECK(scene.world(b).translation.x == 1.0);
     }
 
-    TEST_CASE("a mesh's new vertices keep its box's axes and move its instances; bad ones change nothing") {
+    TEST_CASE("a mesh's new vertices keep its box's axes and move its instances, and bad ones change nothing") {
         Scene scene;
         const MeshId mesh = scene.add_mesh(tetrahedron(), "blob").value();
         const InstanceId instance = scene.add_instance(scene.add_node(kNone, moved(10.0)).value(), mesh).value();

@@ -225,7 +225,7 @@ TEST_SUITE("triangulate/triangulate") {
             REQUIRE(p.points.size() >= 3);
             ++count;
             for (const Method method : kMethods) {
-                const auto result = triangulate::triangulate(p, {.method = method, .seconds = 60.0});
+                const auto result = triangulate::triangulate(p, {.method = method});
                 if (!result) {
                     CHECK(result.error().code == ErrorCode::degenerate);
                     CHECK(result.error().message.find("ring ") == 0);
@@ -250,7 +250,7 @@ TEST_SUITE("triangulate/triangulate") {
                 // Spikes: one county, and several of the fixtures.
                 const bool weakly_simple = file[0] == 'f' || name == "Hardin";
                 for (const Method method : kMethods) {
-                    const auto result = triangulate::triangulate(p, {.method = method, .seconds = 60.0});
+                    const auto result = triangulate::triangulate(p, {.method = method});
                     if (!result) {
                         CHECK(result.error().code == ErrorCode::degenerate);
                         ++errors;

@@ -17,6 +17,12 @@ constexpr std::size_t kMaxItems = std::size_t{1} << 30;
 // Scattered items wait for memory: slots and boxes are asked for so many items ahead of their use, then leaves.
 constexpr std::size_t kAhead = 32, kNear = 12;
 
+// By an eighth where there is no room: a tree that is loaded and then changes a little does not double its memory.
+template <class T>
+void grow_for_one(Vector<T>& items) {
+    if (items.size() == items.capacity()) items.reserve(items.size() + items.size() / 8 + 16);
+}
+
 template <class T>
 void prefetch_all(const T& value) {
     for (std::size_t at = 0; at < sizeof(T); at += 64) hwy::Prefetch(reinterpret_cast<const char*>(&value) + at);
@@ -134,22 +140,33 @@ void BoxTree::vacate(ItemId item) {
     mark(slot);
 }
 
-Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
-    const ItemId item = free_items_.empty() ? static_cast<ItemId>(boxes_.size()) : free_items_.back();
-    if (boxes_.size() >= kMaxItems && free_items_.empty())
-        return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
-    if (auto valid = crofton::validate(box, item); !valid) return tl::unexpected(valid.error());
+// An id for it, that of a removed item if there is one.
+Result<ItemId> BoxTree::new_item(const Obb& box, std::uint32_t layer_mask) {
     if (free_items_.empty()) {
+        const auto item = static_cast<ItemId>(boxes_.size());
+        if (item >= kMaxItems) return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
+        grow_for_one(boxes_);
+        grow_for_one(layer_masks_);
+        grow_for_one(now_.item_slots);
         boxes_.push_back(box);
         layer_masks_.push_back(layer_mask);
         now_.item_slots.push_back(kNone);
-    } else {
-        free_items_.pop_back();
-        boxes_[item] = box;
-        layer_masks_[item] = layer_mask;
+        return item;
     }
-    note_change(item);
-    place(item);
+    const ItemId item = free_items_.back();
+    free_items_.pop_back();
+    boxes_[item] = box;
+    layer_masks_[item] = layer_mask;
+    return item;
+}
+
+Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
+    if (auto valid = crofton::validate(box, free_items_.empty() ? boxes_.size() : free_items_.back()); !valid)
+        return tl::unexpected(valid.error());
+    auto item = new_item(box, layer_mask);
+    if (!item) return item;
+    note_change(*item);
+    place(*item);
     return item;
 }
 

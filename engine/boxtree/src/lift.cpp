@@ -11,6 +11,12 @@ Result<void> BoxTree::lift(ItemId item) {
     return {};
 }
 
+Result<ItemId> BoxTree::insert_lifted(std::uint32_t layer_mask) {
+    auto item = new_item({}, layer_mask);
+    if (item) set_lifted(*item, true);
+    return item;
+}
+
 Result<void> BoxTree::settle(ItemId item, const Obb& box) {
     if (!is_lifted(item)) return fail(ErrorCode::out_of_range, item, "box tree: only what has been lifted can settle");
     if (auto valid = crofton::validate(box, item); !valid) return valid;

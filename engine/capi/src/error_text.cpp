@@ -25,7 +25,7 @@ crofton_status report(crofton_status status, const char* function, const char* m
 }
 
 crofton_status report(const Error& error, const char* function) {
-    // Statuses 1 to 12 are the codes, in their order.
+    // Statuses 1 to 13 are the codes, in their order.
     static_assert(static_cast<int>(ErrorCode::internal) + 1 == CROFTON_INTERNAL);
     static_assert(static_cast<int>(ErrorCode::parse) + 1 == CROFTON_PARSE);
     const auto status = static_cast<crofton_status>(static_cast<int>(error.code) + 1);

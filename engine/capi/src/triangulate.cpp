@@ -56,7 +56,7 @@ crofton_status crofton_triangulate(crofton_triangulator* triangulator, const cro
     if (method > CROFTON_TRIANGULATE_MINIMUM_WEIGHT)
         return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown method");
     CROFTON_CHECK(copy_polygon(polygon, __func__, triangulator->polygon));
-    const triangulate::Options options{.method = static_cast<triangulate::Method>(method)};
+    const triangulate::TriangulateOptions options{.method = static_cast<triangulate::Method>(method)};
     const triangulate::Triangulation& result = triangulator->result;
     CROFTON_CHECK(status_of(
         triangulator->triangulator.triangulate(triangulator->polygon, options, triangulator->result), __func__));

@@ -81,25 +81,21 @@ template <class Body>
 void collect(const boxtree::BoxTree& tree, const Body& body, const Aabb& bounds, std::uint32_t layers,
              Vector<boxtree::ItemId>& items) {
     items.clear();
-    if (!std::isfinite(bounds.min.x + bounds.min.y + bounds.min.z + bounds.max.x + bounds.max.y + bounds.max.z)) return;
-    Stack<std::uint32_t> stack(tree);
-    stack.push(0);
-    while (!stack.is_empty()) {
-        const std::uint32_t child = stack.pop();
-        if (child & boxtree::kLeafBit) {
-            const boxtree::LeafId id = child & ~boxtree::kLeafBit;
-            const boxtree::Leaf& leaf = tree.leaves()[id];
-            for_each_item(tree, id, lanes_within(leaf, box_for(leaf, bounds)), layers, [&](boxtree::ItemId item) {
-                if (intersects(tree.boxes()[item], body)) items.push_back(item);
-            });
-            continue;
-        }
-        const boxtree::Node& node = tree.nodes()[child];
-        for_each_lane(lanes_within(node, box_for(node, bounds)), [&](unsigned lane) {
-            if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
-        });
-    }
+    visit_near(
+        bounds, 0.0, tree,
+        [&](boxtree::ItemId item) {
+            if (intersects(tree.boxes()[item], body)) items.push_back(item);
+            return 0.0;
+        },
+        layers);
     std::sort(items.begin(), items.end());
+}
+
+// Rounded outward: the sums by 2^-53 of themselves.
+Aabb grown(const Aabb& bounds, double distance) {
+    if (distance == 0.0) return bounds;
+    const glm::dvec3 by = distance + 1e-15 * (glm::abs(bounds.min) + glm::abs(bounds.max) + distance);
+    return {bounds.min - by, bounds.max + by};
 }
 
 // Around points in double that carry a few roundings.
@@ -146,6 +142,31 @@ struct RayStep {
 };
 
 }  // namespace
+
+void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tree, NearVisitor visit,
+                std::uint32_t layers) {
+    Aabb near = grown(bounds, distance);
+    if (!std::isfinite(near.min.x + near.min.y + near.min.z + near.max.x + near.max.y + near.max.z)) return;
+    Stack<std::uint32_t> stack(tree);
+    stack.push(0);
+    while (!stack.is_empty() && distance >= 0.0) {
+        const std::uint32_t child = stack.pop();
+        if (child & boxtree::kLeafBit) {
+            const boxtree::LeafId id = child & ~boxtree::kLeafBit;
+            const boxtree::Leaf& leaf = tree.leaves()[id];
+            const double before = distance;
+            for_each_item(tree, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
+                if (distance >= 0.0) distance = std::min(distance, visit(item));
+            });
+            if (distance < before) near = grown(bounds, distance);
+            continue;
+        }
+        const boxtree::Node& node = tree.nodes()[child];
+        for_each_lane(lanes_within(node, box_for(node, near)), [&](unsigned lane) {
+            if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
+        });
+    }
+}
 
 void overlapping(const boxtree::BoxTree& tree, const Obb& body, Vector<boxtree::ItemId>& items, std::uint32_t layers) {
     items.clear();

@@ -26,6 +26,8 @@ const char* to_string(ErrorCode code) {
             return "budget exceeded";
         case ErrorCode::unavailable:
             return "unavailable";
+        case ErrorCode::stale_handle:
+            return "stale handle";
         case ErrorCode::internal:
             return "internal";
     }

@@ -143,6 +143,22 @@ NodeId Scene::parent_of(NodeId node) const {
 std::string_view Scene::node_name(NodeId node) const {
     return state_->node_names[node];
 }
+void Scene::visit_subtree(NodeId root, FunctionRef<void(NodeId)> on_node,
+                          FunctionRef<void(InstanceId)> on_instance) const {
+    const State& s = *state_;
+    NodeId at = root;
+    for (;;) {
+        on_node(at);
+        for (InstanceId i = s.nodes[at].first_instance; i != kNone; i = s.instances[i].next_on_node) on_instance(i);
+        if (s.nodes[at].first_child != kNone) {
+            at = s.nodes[at].first_child;
+            continue;
+        }
+        while (at != root && s.nodes[at].next_sibling == kNone) at = s.nodes[at].parent;
+        if (at == root) return;
+        at = s.nodes[at].next_sibling;
+    }
+}
 const Transform& Scene::local(NodeId node) const {
     return state_->locals[node];
 }

@@ -3,9 +3,10 @@
 #include <limits>
 #include <new>
 
-#include "domain.hpp"
-#include "ear_clipping.hpp"
-#include "minimum_weight.hpp"
+#include "domain/domain.hpp"
+#include "ear/ear_clipping.hpp"
+#include "minimum_weight/local_improvement.hpp"
+#include "minimum_weight/minimum_weight.hpp"
 
 namespace crofton::triangulate {
 
@@ -13,7 +14,10 @@ struct Triangulator::Workspace {
     Domain domain;
     MinimumWeight minimum_weight;
     EarClipping ear_clipping;
-    Vector<std::array<Index, 3>> corners;
+    LocalImprovement improvement;
+    Vector<std::array<std::uint32_t, 3>> lightest, other;
+
+    void complete(Triangulation& result);
 };
 
 Triangulator::Triangulator() : workspace_(new (Allocator<Workspace>().allocate(1)) Workspace) {}
@@ -55,7 +59,8 @@ void write(const Domain& domain, Triangulation& result) {
 
 }  // namespace
 
-Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& options, Triangulation& result) {
+Result<void> Triangulator::triangulate(const Polygon& polygon, const TriangulateOptions& options,
+                                       Triangulation& result) {
     result.triangles.clear();
     result.weight = 0.0;
     result.optimal = false;
@@ -65,26 +70,50 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Options& op
     if (options.method == Method::minimum_weight) {
         const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
         if (!solved) return tl::unexpected<Error>(solved.error());
-        if (*solved) return {};
-        workspace_->domain.insert_diagonals(workspace_->minimum_weight.known_edges());
+        if (!result.optimal) workspace_->complete(result);
+        return {};
     }
     if (options.method == Method::ear) {
-        auto& corners = workspace_->corners;
-        corners.clear();
         const Domain& domain = workspace_->domain;
-        result.weight = workspace_->ear_clipping.run(domain, corners) * domain.scale();
-        for (const auto& c : corners) {
-            result.triangles.push_back({domain.input_index(c[0]), domain.input_index(c[1]), domain.input_index(c[2])});
+        result.weight = workspace_->ear_clipping.run(domain, result.triangles) * domain.scale();
+        if (result.triangles.size() != domain.inside_count()) {
+            result.triangles.clear();
+            return fail(ErrorCode::internal, kNoItem, "a walk without ears");
         }
-        if (corners.size() != domain.inside_count()) return fail(ErrorCode::internal, kNoItem, "a walk without ears");
         return {};
     }
     write(workspace_->domain, result);
-    if (options.method == Method::minimum_weight) result.gap = workspace_->minimum_weight.gap_of(result.weight);
     return {};
 }
 
-Result<Triangulation> triangulate(const Polygon& polygon, const Options& options) {
+// The lightest of what is known, where the search has not come to its end: its best triangulation, if it has one, ear
+// clipping, Delaunay, and Delaunay with all that is proven; all improved.
+void Triangulator::Workspace::complete(Triangulation& result) {
+    double least = std::numeric_limits<double>::infinity();
+    const auto improve = [&] {
+        improvement.run();
+        const double weight = improvement.weight();
+        if (!(weight < least)) return;
+        least = weight;
+        improvement.write(lightest);
+    };
+    if (!result.triangles.empty() && improvement.start_from_triangles(domain, result.triangles)) improve();
+    other.clear();
+    (void)ear_clipping.run(domain, other);
+    if (other.size() == domain.inside_count() && improvement.start_from_triangles(domain, other)) improve();
+    improvement.start_from_mesh(domain);
+    improve();
+    if (result.triangles.empty() && !minimum_weight.known_edges().empty()) {
+        domain.insert_diagonals(minimum_weight.known_edges());
+        improvement.start_from_mesh(domain);
+        improve();
+    }
+    result.triangles.swap(lightest);
+    result.weight = least * domain.scale();
+    result.gap = minimum_weight.gap_of(result.weight);
+}
+
+Result<Triangulation> triangulate(const Polygon& polygon, const TriangulateOptions& options) {
     Triangulator triangulator;
     Triangulation result;
     if (auto done = triangulator.triangulate(polygon, options, result); !done) {

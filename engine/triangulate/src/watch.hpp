@@ -1,4 +1,4 @@
-// When to stop: time, the caller's wish.
+// When to stop: work, time, the caller's wish.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -8,40 +8,44 @@ namespace crofton::triangulate {
 
 class Watch {
   public:
-    explicit Watch(const Options& options) : options_(options), limited_(options.seconds < 1e9) {
+    explicit Watch(const TriangulateOptions& options) : options_(options), limited_(options.seconds < 1e9) {
         if (limited_) {
             const std::chrono::duration<double> allowed(options.seconds > 0.0 ? options.seconds : 0.0);
             deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(allowed);
         }
     }
 
-    // Cheap enough for inner loops: the clock is read and the caller told only when so many steps of some 10 ns have
-    // been made since the last time.
+    // Counts so many steps of some 10 ns. Cheap enough for inner loops: the clock is read and the caller told only when
+    // many have been made since the last time.
     [[nodiscard]] bool stopped(double fraction, std::size_t steps) {
-        if (!stopped_ && (steps_ += steps) >= kStepsBetween) check(fraction);
+        steps_ += steps;
+        if (!stopped_ && steps_ >= next_check_) check(fraction);
         return stopped_;
     }
     [[nodiscard]] bool stopped_now(double fraction) {
         if (!stopped_) check(fraction);
         return stopped_;
     }
+    // So far, the same in every run.
+    [[nodiscard]] std::uint64_t steps() const { return steps_; }
     [[nodiscard]] bool cancelled() const { return cancelled_; }
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    static constexpr std::size_t kStepsBetween = 1 << 14;
+    static constexpr std::uint64_t kStepsBetween = 1 << 14;
 
     void check(double fraction) {
-        steps_ = 0;
+        // Work ends exactly where it is used up.
+        next_check_ = std::min(steps_ + kStepsBetween, std::max(options_.work, steps_ + 1));
         fraction_ = std::max(fraction_, fraction);
         cancelled_ = options_.progress != nullptr && !options_.progress(options_.user, fraction_);
-        stopped_ = cancelled_ || (limited_ && Clock::now() >= deadline_);
+        stopped_ = cancelled_ || steps_ >= options_.work || (limited_ && Clock::now() >= deadline_);
     }
 
-    const Options& options_;
+    const TriangulateOptions& options_;
     Clock::time_point deadline_{};
-    std::size_t steps_ = 0;
+    std::uint64_t steps_ = 0, next_check_ = 0;
     double fraction_ = 0.0;
     bool limited_ = false, stopped_ = false, cancelled_ = false;
 };

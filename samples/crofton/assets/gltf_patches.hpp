@@ -11,7 +11,7 @@
 namespace crofton::assets {
 
 struct PatchSettings {
-    triangulate::Options triangulation;
+    triangulate::TriangulateOptions triangulation;
     double tolerance = -1.0;            // from a patch's plane; negative: a millionth of each mesh's size
     double attribute_tolerance = 1e-4;  // how far attributes may leave one linear function of the position; see below
     std::function<void(std::size_t done, std::size_t of)> progress = {};

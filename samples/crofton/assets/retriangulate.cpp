@@ -9,8 +9,8 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// Large polygons have a proven answer within this, or a good one.
-constexpr double kSecondsPerPolygon = 0.5;
+// Large polygons have a proven answer within this, some 0.5 s, or a good one: the same in every run.
+constexpr std::uint64_t kWorkPerPolygon = 50'000'000;
 
 glm::dvec3 normal_of(const TriangleMesh& mesh, const Triangle& t) {
     const glm::dvec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
@@ -24,7 +24,7 @@ class Retriangulation {
   public:
     Retriangulation(const scene::Scene& from, triangulate::Method method) : from_(from) {
         options_.method = method;
-        options_.seconds = kSecondsPerPolygon;
+        options_.work = kWorkPerPolygon;
     }
 
     // From a scene as loaded: nothing was removed from it, and parents have lower ids than their children.
@@ -81,7 +81,7 @@ class Retriangulation {
     }
 
     const scene::Scene& from_;
-    triangulate::Options options_;
+    triangulate::TriangulateOptions options_;
     triangulate::Triangulator triangulator_;
     triangulate::Triangulation result_;
 };

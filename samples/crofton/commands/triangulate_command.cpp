@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
 #include <cstdio>
+#include <limits>
 
 #include "assets/file.hpp"
 #include "commands.hpp"
@@ -24,7 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 struct TriangulateOptions {
     std::string file, method = "minimum-weight", map, json, svg, out;
-    double seconds = 10.0, tolerance = -1.0, attribute_tolerance = 1e-4;
+    double seconds = std::numeric_limits<double>::infinity(), work = 1000.0;  // work in millions of steps
+    double tolerance = -1.0, attribute_tolerance = 1e-4;
     bool no_indices = false, compare = false, has_tolerance = false;
     std::uint64_t frusta = 100'000;
     std::size_t least_vertices = 5;
@@ -36,6 +38,13 @@ Result<Method> method_from(const std::string& name) {
     if (name == "minimum-weight") return Method::minimum_weight;
     return fail(ErrorCode::invalid_argument, kNoItem,
                 "--method must be ear, delaunay or minimum-weight, not '" + name + "'");
+}
+
+triangulate::TriangulateOptions limits_of(const TriangulateOptions& options, Method method) {
+    triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds};
+    constexpr double kMost = 1e12;
+    limits.work = options.work < kMost ? static_cast<std::uint64_t>(1e6 * options.work) : limits.kUnlimitedWork;
+    return limits;
 }
 
 Json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds, bool no_indices) {
@@ -94,8 +103,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
         ProgressBar bar("triangulate", polygons.size());
         for (std::size_t i = 0; i < polygons.size(); ++i) {
             const auto start = Clock::now();
-            const auto done = triangulator.triangulate(polygons[i].polygon,
-                                                       {.method = method, .seconds = options.seconds}, results[i]);
+            const auto done = triangulator.triangulate(polygons[i].polygon, limits_of(options, method), results[i]);
             const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
             if (done) {
                 totals.add(polygons[i].polygon, results[i], time);
@@ -143,6 +151,7 @@ Result<int> run(const TriangulateOptions& options) {
     }
     if (!(options.seconds >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
+    if (!(options.work >= 0.0)) return fail(ErrorCode::invalid_argument, kNoItem, "--work-limit must not be negative");
     if (!(options.attribute_tolerance >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem, "--attribute-tolerance must not be negative");
     if (options.json == "-" && options.out == "-")
@@ -161,8 +170,8 @@ Result<int> run(const TriangulateOptions& options) {
     if (options.compare) {
         if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
             return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
-        return run_compare({options.file, options.map, options.json, options.seconds, options.tolerance, options.frusta,
-                            options.least_vertices});
+        return run_compare({options.file, options.map, options.json, limits_of(options, *method), options.tolerance,
+                            options.frusta, options.least_vertices});
     }
     if (is_polygon_file(options.file)) {
         if (!options.out.empty())
@@ -171,7 +180,7 @@ Result<int> run(const TriangulateOptions& options) {
     }
     if (!options.svg.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
-    return run_meshes({options.file, options.method, *method, options.json, options.out, options.seconds,
+    return run_meshes({options.file, options.method, limits_of(options, *method), options.json, options.out,
                        options.tolerance, options.attribute_tolerance, options.no_indices});
 }
 
@@ -203,8 +212,13 @@ void add_triangulate_command(CommandLine& line) {
     command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
     command.option("--map", options->map, "Only this level of a .wad");
     command
+        .option("--work-limit", options->work,
+                "Millions of steps (some 10 ms each) allowed per polygon; then the best so far, with its proven gap: "
+                "the same on every machine")
+        .show_default();
+    command
         .option("--time-limit,--seconds", options->seconds,
-                "Seconds allowed per polygon; then the best so far, with its proven gap")
+                "Seconds allowed per polygon; the answer then depends on the machine")
         .show_default();
     const Option tolerance =
         command.option("--tolerance", options->tolerance,

@@ -64,7 +64,7 @@ struct Study {
     std::array<double, 3> weight{};  // in the file's units
 };
 
-Study triangulate_all(std::vector<Polygon> polygons, double seconds) {
+Study triangulate_all(std::vector<Polygon> polygons, triangulate::TriangulateOptions options) {
     Study study;
     triangulate::Triangulator triangulator;
     ProgressBar bar("triangulate", polygons.size());
@@ -73,9 +73,8 @@ Study triangulate_all(std::vector<Polygon> polygons, double seconds) {
         bool valid = true;
         for (std::size_t m = 0; m < kMethods.size() && valid; ++m) {
             entry.results.emplace_back();
-            valid =
-                triangulator.triangulate(polygons[i], {.method = kMethods[m], .seconds = seconds}, entry.results.back())
-                    .has_value();
+            options.method = kMethods[m];
+            valid = triangulator.triangulate(polygons[i], options, entry.results.back()).has_value();
         }
         bar.set(i + 1);
         if (!valid) {
@@ -137,7 +136,7 @@ void print(const Study& study, const Comparison& passed, const QuadComparison& q
 Result<int> run_compare(const CompareRun& run) {
     auto polygons = gather(run);
     if (!polygons) return tl::unexpected(polygons.error());
-    const Study study = triangulate_all(std::move(*polygons), run.seconds);
+    const Study study = triangulate_all(std::move(*polygons), run.limits);
     if (study.polygons.empty())
         return fail(ErrorCode::empty, kNoItem,
                     run.file + ": no valid polygon of " + std::to_string(run.least_vertices) + " vertices or more");

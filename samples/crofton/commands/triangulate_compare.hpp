@@ -1,6 +1,7 @@
 // The three methods side by side.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -9,7 +10,8 @@ namespace crofton::cli {
 
 struct CompareRun {
     std::string file, map, json;
-    double seconds = 10.0, tolerance = -1.0;
+    triangulate::TriangulateOptions limits;  // of each method
+    double tolerance = -1.0;
     std::uint64_t frusta = 100'000;
     std::size_t least_vertices = 5;  // smaller polygons leave little choice
 };

@@ -192,8 +192,7 @@ Result<int> run_meshes(const MeshRun& run) {
     if (!document) return tl::unexpected(document.error());
     for (const auto& warning : document->warnings)
         std::fprintf(stderr, "crofton: warning: %s: %s\n", run.file.c_str(), warning.c_str());
-    assets::PatchSettings settings{
-        {.method = run.method, .seconds = run.seconds}, run.tolerance, run.attribute_tolerance};
+    assets::PatchSettings settings{run.triangulation, run.tolerance, run.attribute_tolerance};
     std::vector<PrimitivePatches> outcomes;
     {
         std::optional<ProgressBar> bar;

@@ -8,9 +8,8 @@ namespace crofton::cli {
 
 struct MeshRun {
     std::string file, method_name;
-    triangulate::Method method = triangulate::Method::minimum_weight;
+    triangulate::TriangulateOptions triangulation;
     std::string json, out;
-    double seconds = 10.0;
     double tolerance = -1.0;  // negative: a millionth of each mesh's size
     double attribute_tolerance = 1e-4;
     bool no_indices = false;

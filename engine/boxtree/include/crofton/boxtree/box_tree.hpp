@@ -66,6 +66,8 @@ class BoxTree {
     // its id and layers stay its own until settle() puts it back or remove() gives the id away. Like remove and insert
     // otherwise.
     [[nodiscard]] Result<void> lift(ItemId item);
+    // A new item that is in no leaf yet, as if inserted and lifted. Errors: 2^30 items.
+    [[nodiscard]] Result<ItemId> insert_lifted(std::uint32_t layer_mask = ~std::uint32_t{0});
     [[nodiscard]] Result<void> settle(ItemId item, const Obb& box);
     [[nodiscard]] bool is_lifted(ItemId item) const {
         return item / 64 < lifted_bits_.size() && (lifted_bits_[item / 64] >> item % 64 & 1) != 0;
@@ -159,6 +161,7 @@ class BoxTree {
     void mark_moved();
     [[nodiscard]] bool has_few_changes(LeafId leaf) const;
     void note_change(ItemId item);
+    [[nodiscard]] Result<ItemId> new_item(const Obb& box, std::uint32_t layer_mask);
     void place(ItemId item);
     void vacate(ItemId item);
     [[nodiscard]] LeafId best_leaf(const Aabb& bounds) const;

@@ -34,10 +34,11 @@ typedef enum crofton_status {
     CROFTON_CANCELLED = 9,        /* a callback asked to stop */
     CROFTON_BUDGET_EXCEEDED = 10, /* a time or memory budget ran out before any usable result */
     CROFTON_UNAVAILABLE = 11,     /* a device or driver is missing */
-    CROFTON_INTERNAL = 12,        /* our mistake: please report it */
-    CROFTON_BAD_HANDLE = 13,      /* NULL, of another kind, or destroyed already */
-    CROFTON_WRONG_SIZE = 14,      /* a struct's `size` is not what this library knows */
-    CROFTON_BUSY = 15             /* another thread is using the handle (with thread checks on) */
+    CROFTON_STALE_HANDLE = 12,    /* an id of something that has been removed */
+    CROFTON_INTERNAL = 13,        /* our mistake: please report it */
+    CROFTON_BAD_HANDLE = 14,      /* NULL, of another kind, or destroyed already */
+    CROFTON_WRONG_SIZE = 15,      /* a struct's `size` is not what this library knows */
+    CROFTON_BUSY = 16             /* another thread is using the handle (with thread checks on) */
 } crofton_status;
 
 /* What went wrong in this thread's last failed call, and which item of its input (CROFTON_NO_ITEM: none in particular).

@@ -4,6 +4,7 @@
 #include <crofton/collide/shapes.hpp>
 #include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/aabb.hpp>
 #include <crofton/mesh/ray.hpp>
 #include <cstdint>
 #include <optional>
@@ -21,6 +22,15 @@ void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtre
                  std::uint32_t layers = ~0u);
 void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
+
+// Told of an item whose box may be near; answers how near others must be to be of interest still: the distance of the
+// nearest so far, for instance, or a negative number to stop.
+using NearVisitor = FunctionRef<double(boxtree::ItemId item)>;
+
+// Visits all items whose boxes are no farther from `bounds` than `distance` ≥ 0 and the visitor's last answer, and some
+// that are a little farther, always in the same order. Bounds that are empty or not finite are near to nothing.
+void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tree, NearVisitor visit,
+                std::uint32_t layers = ~0u);
 
 // Told of an item whose box the ray enters at t; answers how far along the ray boxes are still of interest: the t of
 // the nearest hit so far, for instance, or a negative number to stop.

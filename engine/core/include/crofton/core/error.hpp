@@ -20,6 +20,7 @@ enum class ErrorCode : std::uint8_t {
     cancelled,         // a callback asked to stop
     budget_exceeded,   // a time or memory budget ran out before any usable result
     unavailable,       // a device or driver is missing
+    stale_handle,      // a handle of something that has been removed
     internal,          // our mistake: please report it
 };
 

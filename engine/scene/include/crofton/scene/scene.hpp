@@ -1,6 +1,7 @@
 // The scene graph: who is where, and how large.
 #pragma once
 #include <crofton/core/executor.hpp>
+#include <crofton/core/function_ref.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/obb.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
@@ -99,6 +100,9 @@ class Scene {
     [[nodiscard]] MeshId mesh_of(InstanceId instance) const;  // kNone once removed
     [[nodiscard]] NodeId parent_of(NodeId node) const;        // kNone for roots, and once removed
     [[nodiscard]] std::string_view node_name(NodeId node) const;
+    // Calls on_node for the node and all below it, parents first, and on_instance for what hangs on them. Neither may
+    // change the scene.
+    void visit_subtree(NodeId node, FunctionRef<void(NodeId)> on_node, FunctionRef<void(InstanceId)> on_instance) const;
     [[nodiscard]] const Transform& local(NodeId node) const;
     [[nodiscard]] const Transform& world(NodeId node) const;  // as of the last update()
     // By InstanceId, as of the last update(). A box contains the exact image of every vertex under the stored numbers

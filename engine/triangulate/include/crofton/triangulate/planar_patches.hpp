@@ -33,7 +33,7 @@ struct PatchOptions {
     // 0 means exactly.
     double tolerance = 0.0;
     std::span<const VertexValues> values;
-    Options triangulation;
+    TriangulateOptions triangulation;
 };
 
 // What became of one patch.

@@ -12,13 +12,20 @@ namespace crofton::triangulate {
 
 enum class Method : std::uint8_t { ear, delaunay, minimum_weight };
 
-struct Options {
+// Limits of the exact search for the minimum weight. Where one is reached, the lightest of several triangulations is
+// returned, with `optimal` false and a proven `gap`: what is proven so far completed to a constrained Delaunay one,
+// that of Method::delaunay and that of Method::ear, each improved by flips and by exact minima of windows of fifty
+// triangles. They are linear, and not counted. All but the largest and smoothest polygons (docs/triangulate.md) need a
+// small part.
+struct TriangulateOptions {
+    static constexpr std::uint64_t kUnlimitedWork = ~std::uint64_t{0};
+
     Method method = Method::minimum_weight;
-    // minimum_weight only. When the time is over or candidates would need more memory than this, what is proven and
-    // solved so far is completed to a constrained Delaunay triangulation, and returned with `optimal` false and a
-    // proven `gap`. The Delaunay triangulation itself (0.3 µs a vertex) is always made. All but the largest and
-    // smoothest polygons (docs/triangulate.md) need a small part of the time.
-    double seconds = 10.0;
+    // In elementary steps of the search, of some 10 ns each: the same answer on every machine, however busy.
+    std::uint64_t work = 1'000'000'000;
+    // By the clock: the answer depends on the machine. Infinite or above 1e9 is no limit.
+    double seconds = std::numeric_limits<double>::infinity();
+    // Of the candidates' memory.
     std::size_t bytes = std::size_t{1} << 30;
     // Called now and then with the share of the work done, between 0 and 1; returning false ends the call with the
     // error `cancelled`.
@@ -46,7 +53,7 @@ struct Triangulation {
 // - a hole of one point is a Steiner point, of two a slit, of none nothing.
 // Errors name ring, point and position: an outer ring of fewer than three points, positions not finite or differing by
 // more than 2^200 in size, edges that cross, holes outside, overlapping or nested, zero area.
-[[nodiscard]] Result<Triangulation> triangulate(const Polygon& polygon, const Options& options = {});
+[[nodiscard]] Result<Triangulation> triangulate(const Polygon& polygon, const TriangulateOptions& options = {});
 
 // The same with memory kept between calls: allocates nothing once its buffers fit the largest polygon seen.
 class Triangulator {
@@ -57,7 +64,8 @@ class Triangulator {
     Triangulator& operator=(Triangulator&&) noexcept;
 
     // On error `result` is empty.
-    [[nodiscard]] Result<void> triangulate(const Polygon& polygon, const Options& options, Triangulation& result);
+    [[nodiscard]] Result<void> triangulate(const Polygon& polygon, const TriangulateOptions& options,
+                                           Triangulation& result);
 
   private:
     struct Workspace;

@@ -1,0 +1,60 @@
+// Ear clipping: quick to understand, and what most engines do today.
+#pragma once
+#include <array>
+
+#include "domain/domain.hpp"
+#include "ear/corner_set.hpp"
+#include "ear/reflex_tree.hpp"
+
+namespace crofton::triangulate {
+
+// Joins the pieces of the boundary by the shortest Delaunay edges that do so and cuts ears off the walks that result.
+// A corner that is no ear is asked again only when its neighbours change or the vertex that it was found to hold is no
+// longer in the way: that makes bands, whose corners are nearly all flat, linear.
+class EarClipping {
+  public:
+    // Appends triangles of the caller's indices; returns the diagonals' length.
+    [[nodiscard]] double run(const Domain& domain, Vector<std::array<std::uint32_t, 3>>& triangles);
+
+  private:
+    struct Corner {
+        Index vertex;
+        Index previous, next;
+        Index input;  // the caller's index
+        bool reflex;
+    };
+    // A corner that waits for a vertex to get out of its way.
+    struct Waiting {
+        Index corner, next;
+    };
+
+    void join_pieces();
+    [[nodiscard]] bool is_wall(Index half_edge) const {
+        return simple_ ? mesh_->mark[half_edge] != 0 : wall_[half_edge] != 0;
+    }
+    [[nodiscard]] Index find(Index vertex);
+    void collect_ring(Index start);
+    void collect_walk(Index start);
+    void link_corners();
+    void clip(Vector<std::array<std::uint32_t, 3>>& triangles);
+    [[nodiscard]] bool is_reflex(const Corner& corner) const;
+    [[nodiscard]] bool is_ear(Index corner);
+    [[nodiscard]] bool opens_towards(const Corner& corner, Index vertex) const;
+    void update(Index corner);
+    void wake(Index corner);
+
+    const Domain* domain_ = nullptr;
+    const HalfEdgeMesh* mesh_ = nullptr;
+    // One ring that touches nothing: every vertex has one corner.
+    bool simple_ = false;
+    Vector<std::uint8_t> wall_, walked_;
+    Vector<Index> parent_, bridges_, reflex_count_, reflex_;
+    ReflexTree tree_;
+    Vector<Corner> corners_;
+    CornerSet awake_;
+    Vector<Index> waiting_for_;  // vertex → the first of waiting_
+    Vector<Waiting> waiting_;
+    double weight_ = 0.0;
+};
+
+}  // namespace crofton::triangulate

@@ -1,0 +1,130 @@
+// What a World is told: views of the caller's memory, and what an object is.
+#pragma once
+#include <array>
+#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/sphere.hpp>
+#include <crofton/scene/transform.hpp>
+#include <crofton/world/handle.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+namespace crofton {
+
+// `size` values of type T in the caller's memory, `stride` bytes apart: a span, or a member of an array of structs.
+template <class T>
+class Strided {
+  public:
+    Strided() = default;
+    Strided(const T* first, std::size_t size, std::size_t stride = sizeof(T))
+        : first_(reinterpret_cast<const std::byte*>(first)), size_(size), stride_(stride) {}
+    template <class Range>
+    requires std::is_convertible_v<const Range&, std::span<const T>> Strided(const Range& range)
+        : Strided(std::span<const T>(range).data(), std::span<const T>(range).size()) {}
+
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] const T& operator[](std::size_t i) const { return *reinterpret_cast<const T*>(first_ + i * stride_); }
+
+  private:
+    const std::byte* first_ = nullptr;
+    std::size_t size_ = 0, stride_ = sizeof(T);
+};
+
+// Points of three floats or three doubles each, at any alignment.
+class PointsView {
+  public:
+    PointsView() = default;
+    PointsView(const float* first, std::size_t size, std::size_t stride = 3 * sizeof(float))
+        : PointsView(first, size, stride, false) {}
+    PointsView(const double* first, std::size_t size, std::size_t stride = 3 * sizeof(double))
+        : PointsView(first, size, stride, true) {}
+    template <class Range>
+    requires std::is_convertible_v<const Range&, std::span<const glm::vec3>> PointsView(const Range& range)
+        : PointsView(std::span<const glm::vec3>(range).data(), std::span<const glm::vec3>(range).size(),
+                     sizeof(glm::vec3), false) {}
+    template <class Range>
+    requires std::is_convertible_v<const Range&, std::span<const glm::dvec3>> PointsView(const Range& range)
+        : PointsView(std::span<const glm::dvec3>(range).data(), std::span<const glm::dvec3>(range).size(),
+                     sizeof(glm::dvec3), true) {}
+
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] glm::vec3 operator[](std::size_t i) const;  // rounded to float
+
+  private:
+    PointsView(const void* first, std::size_t size, std::size_t stride, bool is_double)
+        : first_(static_cast<const std::byte*>(first)), size_(size), stride_(stride), is_double_(is_double) {}
+
+    const std::byte* first_ = nullptr;
+    std::size_t size_ = 0, stride_ = 0;
+    bool is_double_ = false;
+};
+
+// Indices of 16 or 32 bits.
+class IndicesView {
+  public:
+    IndicesView() = default;
+    IndicesView(const std::uint16_t* first, std::size_t size) : short_(first), size_(size) {}
+    IndicesView(const std::uint32_t* first, std::size_t size) : long_(first), size_(size) {}
+    template <class Range>
+    requires std::is_convertible_v<const Range&, std::span<const std::uint16_t>> IndicesView(const Range& range)
+        : IndicesView(std::span<const std::uint16_t>(range).data(), std::span<const std::uint16_t>(range).size()) {}
+    template <class Range>
+    requires std::is_convertible_v<const Range&, std::span<const std::uint32_t>> IndicesView(const Range& range)
+        : IndicesView(std::span<const std::uint32_t>(range).data(), std::span<const std::uint32_t>(range).size()) {}
+
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::uint32_t operator[](std::size_t i) const { return short_ ? short_[i] : long_[i]; }
+
+  private:
+    const std::uint16_t* short_ = nullptr;
+    const std::uint32_t* long_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+// A mesh in its own frame; World copies what it needs. Three indices a triangle (a, b, c); without indices three
+// positions are one. Outside is where cross(b − a, c − a) points: triangles are counter-clockwise seen from there in
+// right-handed coordinates, clockwise in left-handed ones.
+struct MeshDescription {
+    PointsView positions = {};
+    IndicesView indices = {};
+    // Rays and contacts ask the triangles. False spares memory and time: the mesh's box stands for it.
+    bool triangles = true;
+};
+
+struct NodeDescription {
+    NodeHandle parent = {};           // null: none
+    scene::Transform transform = {};  // relative to the parent
+    std::uint32_t layers = ~0u;       // of all below: an object is in those that it and all nodes above it have
+};
+
+enum class BoundKind : std::uint8_t { none, box, aligned_box, ball };
+
+// A bound without a mesh.
+struct Bound {
+    BoundKind kind = BoundKind::none;
+    Obb box;              // around the ball, for a ball
+    double radius = 0.0;  // of a ball
+
+    Bound() = default;
+    Bound(const Obb& oriented) : kind(BoundKind::box), box(oriented) {}
+    Bound(const Aabb& aligned);  // rounded outward to an Obb; an empty one is refused
+    Bound(const Sphere& ball);
+};
+
+// Either a mesh, which `transform` places under `node` or in the world, or a bound in the world's coordinates.
+struct ObjectDescription {
+    MeshHandle mesh = {};
+    NodeHandle node = {};
+    std::optional<scene::Transform> transform = {};  // none: the node's own
+    Bound bound = {};
+    std::uint64_t user = 0;      // given back with every answer
+    std::uint32_t layers = ~0u;  // views and queries ask for layers
+    std::uint32_t collides_with =
+        ~0u;  // two objects may be a pair where each one's layers meet what the other's has here
+};
+
+}  // namespace crofton

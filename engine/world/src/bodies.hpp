@@ -1,0 +1,67 @@
+// Objects as meshes: the trees over triangles that rays and contacts ask.
+#pragma once
+#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/scene/scene.hpp>
+
+#include "object_table.hpp"
+#include "spatial_index.hpp"
+
+namespace crofton::world {
+
+// Triangles and where they are.
+struct PosedTree {
+    const mesh::MeshTree* tree = nullptr;  // none: no valid triangle
+    RigidTransform pose;
+};
+
+// A mesh's tree serves all objects that turn and move it. An object with a scale or shear has a tree of its own, of the
+// vertices times the linear part, rounded to float; so has a box that meets a mesh. Balls are points.
+class Bodies {
+  public:
+    Bodies();
+
+    void set_wants_triangles(scene::MeshId mesh, bool wants);
+    // Builds the trees of meshes that are new or changed; true if there were any.
+    bool update(const scene::Scene& scene, Executor& executor);
+
+    // Its mesh's tree; none for a bound, and where triangles are not wanted or none is valid: then its box stands for
+    // it.
+    [[nodiscard]] const mesh::MeshTree* mesh_tree_of(const Object& object) const {
+        const bool has = object.kind == BoundKind::none && object.mesh < meshes_.size();
+        return has && meshes_[object.mesh].is_usable ? &meshes_[object.mesh].tree : nullptr;
+    }
+
+    // Objects that prepare() is called for between begin() and build() can be asked for their tree afterwards, until
+    // something changes.
+    void begin();
+    void prepare(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, std::uint32_t object);
+    void build(const scene::Scene& scene, Executor& executor);
+    [[nodiscard]] PosedTree posed_tree(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                       std::uint32_t object) const;
+    void forget(std::uint32_t object);  // it is gone, or another
+
+  private:
+    struct Mesh {
+        mesh::MeshTree tree;
+        std::uint64_t revision = 0;
+        bool wants_triangles = true, is_usable = false;
+    };
+    struct Own {
+        mesh::MeshTree tree;
+        glm::dmat3 linear{1.0};
+        glm::vec3 half_extents{0.0f};   // of a box
+        scene::MeshId mesh = kNoIndex;  // none: a box
+        std::uint64_t revision = 0;
+        bool is_usable = false;
+    };
+    void build_own(const scene::Scene& scene, Own& own) const;
+
+    Vector<Mesh> meshes_;
+    Vector<std::uint32_t> own_of_object_;  // kNoIndex: none
+    Vector<Own> own_;
+    Vector<std::uint32_t> free_, to_build_;
+    mesh::MeshTree point_;
+};
+
+}  // namespace crofton::world

@@ -1,0 +1,238 @@
+#include "contact_finder.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace crofton::world {
+namespace {
+
+constexpr std::size_t kPairsATask = 16;
+
+// Of two whose boxes meet.
+bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
+    const bool ball_a = a.kind == BoundKind::ball, ball_b = b.kind == BoundKind::ball;
+    if (ball_a && ball_b) return glm::length(box_a.center - box_b.center) <= a.radius + b.radius;
+    if (ball_a) return collide::intersects(box_b, ball_of(a, box_a));
+    if (ball_b) return collide::intersects(box_a, ball_of(b, box_b));
+    return true;
+}
+
+bool is_before(const ObjectPair& a, const ObjectPair& b) {
+    if (a.first.object.index != b.first.object.index) return a.first.object.index < b.first.object.index;
+    return a.second.object.index < b.second.object.index;
+}
+
+bool are_same(const ObjectPair& a, const ObjectPair& b) {
+    return a.first.object == b.first.object && a.second.object == b.second.object;
+}
+
+// Appends part of a list, for which there is room, and returns where it is.
+template <class T>
+std::span<const T> append(const Vector<T>& from, std::uint32_t first, std::uint32_t count, Vector<T>& to) {
+    const std::size_t begin = to.size();
+    to.insert(to.end(), from.begin() + first, from.begin() + first + count);
+    return {to.data() + begin, count};
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(const WorldOptions& options)
+    : options_(options), broadphase_({.exact_boxes = true, .max_pairs = options.max_pairs}) {}
+
+void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex& index) {
+    colliders_.clear();
+    boxes_.clear();
+    filters_.clear();
+    for (std::uint32_t i = 0; i < table.objects.size(); ++i) {
+        const Object& object = table.objects[i];
+        if (!object.alive || object.collides_with == 0 || !index.is_placed(i)) continue;
+        const std::uint32_t layers = index.layers(i);
+        if (layers == 0) continue;
+        colliders_.push_back(i);
+        boxes_.push_back(index.box(i));
+        filters_.push_back({layers, object.collides_with});
+    }
+}
+
+// Colliders ascend, so that pairs of objects are in the order of pairs of boxes.
+void ContactFinder::list_pairs(const ObjectTable& table) {
+    pairs_.clear();
+    for (const IdPair& pair : broadphase_.pairs()) {
+        const std::uint32_t first = colliders_[pair.first], second = colliders_[pair.second];
+        if (!bounds_meet(table.objects[first], boxes_[pair.first], table.objects[second], boxes_[pair.second]))
+            continue;
+        pairs_.push_back({table.ref(first), table.ref(second)});
+    }
+}
+
+void ContactFinder::touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair,
+                                 Worker& worker, Touch& touch) const {
+    const std::uint32_t i = pair.first.object.index, j = pair.second.object.index;
+    const Object &a = table.objects[i], &b = table.objects[j];
+    const Obb &box_a = index.box(i), &box_b = index.box(j);
+    const collide::Manifold manifold = a.kind == BoundKind::ball || b.kind == BoundKind::ball
+                                           ? collide::contact_manifold(convex_of(a, box_a), convex_of(b, box_b))
+                                           : collide::contact_manifold(box_a, box_b);
+    touch.hit = true;
+    touch.normal = manifold.normal;
+    touch.depth = manifold.depth;
+    touch.point_count = static_cast<std::uint32_t>(manifold.count);
+    worker.points.insert(worker.points.end(), manifold.points, manifold.points + manifold.count);
+}
+
+void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const {
+    const RigidTransform b_to_a = relative(a.pose, b.pose);
+    mesh::contacts(*a.tree, *b.tree, b_to_a, worker.found);
+    touch.hit = !worker.found.empty();
+    if (!touch.hit && options_.containment) {
+        touch.inside = mesh::containment_of_disjoint(*a.tree, *b.tree, b_to_a);
+        touch.hit = touch.inside != mesh::Containment::none;
+    }
+    if (!touch.hit) return;
+    touch.triangle_count = static_cast<std::uint32_t>(worker.found.size());
+    glm::dvec3 normals(0.0);
+    for (mesh::MeshContact contact : worker.found) {
+        contact.segment = {transform(a.pose, contact.segment.begin), transform(a.pose, contact.segment.end)};
+        contact.normal = a.pose.rotation * contact.normal;
+        normals -= contact.normal;
+        worker.triangles.push_back(contact);
+    }
+    if (options_.mesh_depth) {
+        const mesh::MeshDepth way_out = mesh::penetration(*a.tree, *b.tree, b_to_a, worker.found);
+        touch.depth = way_out.depth;
+        touch.normal = a.pose.rotation * way_out.direction;
+    } else if (const double length = glm::length(normals); length > 0.0) {
+        touch.normal = normals / length;
+    }
+}
+
+// The normal points from the mesh to the ball.
+void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, double radius, Worker& worker,
+                               Touch& touch) const {
+    const RigidTransform to_mesh = relative(mesh.pose, center.pose);
+    const mesh::MeshDistance gap = mesh::distance(*mesh.tree, *center.tree, to_mesh);
+    const bool inside = options_.containment && mesh::contains(*mesh.tree, to_mesh.translation);
+    touch.hit = inside || gap.distance <= radius;
+    if (!touch.hit) return;
+    const double signed_distance = inside ? -gap.distance : gap.distance;
+    const glm::dvec3 on_mesh = transform(mesh.pose, gap.on_a);
+    if (gap.distance > 0.0) touch.normal = (center.pose.translation - on_mesh) / signed_distance;
+    touch.depth = radius - signed_distance;
+    touch.point_count = 1;
+    worker.points.push_back({on_mesh, touch.depth});
+}
+
+void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                  Bodies& bodies, Executor& executor) {
+    const auto is_mesh = [&](const ObjectRef& object) {
+        return bodies.mesh_tree_of(table.objects[object.object.index]) != nullptr;
+    };
+    bodies.begin();
+    for (const ObjectPair& pair : pairs_) {
+        if (!is_mesh(pair.first) && !is_mesh(pair.second)) continue;
+        for (const ObjectRef& object : {pair.first, pair.second})
+            bodies.prepare(table, index, scene, object.object.index);
+    }
+    bodies.build(scene, executor);
+    workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
+    for (Worker& worker : workers_) {
+        worker.points.clear();
+        worker.triangles.clear();
+    }
+    touches_.resize(pairs_.size());
+    executor.parallel_for(pairs_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
+        Worker& worker = workers_[w];
+        for (std::size_t i = begin; i < end; ++i) {
+            const ObjectPair& pair = pairs_[i];
+            Touch& touch = touches_[i];
+            touch = {};
+            touch.worker = w;
+            touch.first_point = static_cast<std::uint32_t>(worker.points.size());
+            touch.first_triangle = static_cast<std::uint32_t>(worker.triangles.size());
+            if (!is_mesh(pair.first) && !is_mesh(pair.second)) {
+                touch_bounds(table, index, pair, worker, touch);
+                continue;
+            }
+            const std::uint32_t first = pair.first.object.index, second = pair.second.object.index;
+            const PosedTree a = bodies.posed_tree(table, index, scene, first),
+                            b = bodies.posed_tree(table, index, scene, second);
+            if (!a.tree || !b.tree) continue;
+            if (table.objects[second].kind == BoundKind::ball) {
+                touch_ball(a, b, table.objects[second].radius, worker, touch);
+            } else if (table.objects[first].kind == BoundKind::ball) {
+                touch_ball(b, a, table.objects[first].radius, worker, touch);
+                touch.normal = -touch.normal;
+            } else {
+                touch_triangles(a, b, worker, touch);
+            }
+        }
+    });
+}
+
+void ContactFinder::add_contact(const ObjectPair& pair, const Touch& touch, ContactPhase phase) {
+    Contact& contact = contacts_.emplace_back();
+    contact.first = pair.first;
+    contact.second = pair.second;
+    contact.phase = phase;
+    if (phase == ContactPhase::ended) return;
+    contact.inside = touch.inside;
+    contact.normal = touch.normal;
+    contact.depth = touch.depth;
+    const Worker& worker = workers_[touch.worker];
+    contact.points = append(worker.points, touch.first_point, touch.point_count, points_);
+    contact.triangles = append(worker.triangles, touch.first_triangle, touch.triangle_count, triangles_);
+}
+
+// In the order of the pairs, whoever tested them.
+void ContactFinder::gather() {
+    before_.clear();
+    for (const Contact& contact : contacts_)
+        if (contact.phase != ContactPhase::ended) before_.push_back({contact.first, contact.second});
+    contacts_.clear();
+    points_.clear();
+    triangles_.clear();
+    std::size_t point_count = 0, triangle_count = 0;
+    for (const Worker& worker : workers_) {
+        point_count += worker.points.size();
+        triangle_count += worker.triangles.size();
+    }
+    if (point_count > points_.capacity()) points_.reserve(point_count + point_count / 2);
+    if (triangle_count > triangles_.capacity()) triangles_.reserve(triangle_count + triangle_count / 2);
+    std::size_t old = 0;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!touches_[i].hit) continue;
+        for (; old < before_.size() && is_before(before_[old], pairs_[i]); ++old)
+            add_contact(before_[old], {}, ContactPhase::ended);
+        const bool met = old < before_.size() && !is_before(pairs_[i], before_[old]);
+        const bool stayed = met && are_same(before_[old], pairs_[i]);
+        if (met && !stayed) add_contact(before_[old], {}, ContactPhase::ended);
+        add_contact(pairs_[i], touches_[i], stayed ? ContactPhase::stayed : ContactPhase::began);
+        old += met;
+    }
+    for (; old < before_.size(); ++old) add_contact(before_[old], {}, ContactPhase::ended);
+}
+
+Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
+                                   Bodies& bodies, Executor& executor) {
+    list_colliders(table, index);
+    auto found = broadphase_.update(boxes_, filters_, executor);
+    list_pairs(table);
+    if (options_.contacts) {
+        find_contacts(table, index, scene, bodies, executor);
+        gather();
+    }
+    return found;
+}
+
+void ContactFinder::stay() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (contacts_[i].phase == ContactPhase::ended) continue;
+        contacts_[kept] = contacts_[i];
+        contacts_[kept].phase = ContactPhase::stayed;
+        ++kept;
+    }
+    contacts_.resize(kept);
+}
+
+}  // namespace crofton::world

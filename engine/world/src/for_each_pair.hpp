@@ -1,0 +1,18 @@
+// What calls for many handles share.
+#pragma once
+#include <crofton/world/inputs.hpp>
+
+namespace crofton {
+
+// Calls change(handle, value, i) for all; returns the first error.
+template <class T, class Value, class Change>
+Result<void> for_each_pair(const Strided<T>& handles, const Strided<Value>& values, Change change) {
+    if (handles.size() != values.size())
+        return fail(ErrorCode::invalid_argument, kNoItem, "world: as many values as handles are needed");
+    Result<void> first;
+    for (std::size_t i = 0; i < handles.size(); ++i)
+        if (auto changed = change(handles[i], values[i], i); !changed && first) first = std::move(changed);
+    return first;
+}
+
+}  // namespace crofton

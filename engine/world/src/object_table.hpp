@@ -1,0 +1,68 @@
+// What a World knows of its objects beside their boxes. Indices are the spatial index's.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/world/answers.hpp>
+#include <crofton/world/inputs.hpp>
+
+namespace crofton::world {
+
+struct Object {
+    BoundKind kind = BoundKind::none;  // none: a mesh
+    bool alive = false;
+    bool shown = true;
+    std::uint32_t staged = kNoIndex;  // its entry among the changes that wait for update()
+    std::uint32_t layers = ~0u;       // as they will be after the next update
+    std::uint32_t collides_with = ~0u;
+    std::uint32_t instance = kNoIndex;  // of a mesh, in the scene
+    std::uint32_t own_node = kNoIndex;  // that the object alone hangs on
+    std::uint32_t mesh = kNoIndex;      // as of the last update
+    double radius = 0.0;                // of a ball
+};
+
+// Grows the room by an eighth: what is loaded and then changes a little does not double its memory.
+template <class T>
+void resize(Vector<T>& items, std::size_t size) {
+    if (size > items.capacity()) items.reserve(size + size / 8 + 16);
+    items.resize(size);
+}
+
+struct ObjectTable {
+    Vector<Object> objects;
+    ObjectNames names;
+    std::size_t count = 0;  // alive
+
+    void add(std::uint32_t index, const Object& object, std::uint64_t user) {
+        if (index >= objects.size()) {
+            resize(objects, index + std::size_t{1});
+            resize(names.generations, index + std::size_t{1});
+            resize(names.users, index + std::size_t{1});
+        }
+        objects[index] = object;
+        objects[index].alive = true;
+        names.users[index] = user;
+        ++count;
+    }
+    // Handles become stale at once; the index is free once the spatial index has removed it too.
+    void remove(std::uint32_t index) {
+        objects[index].alive = false;
+        ++names.generations[index];
+        --count;
+    }
+    [[nodiscard]] bool contains(ObjectHandle handle) const {
+        return handle.index < objects.size() && objects[handle.index].alive &&
+               names.generations[handle.index] == handle.generation;
+    }
+    [[nodiscard]] ObjectHandle handle(std::uint32_t index) const { return {index, names.generations[index]}; }
+    [[nodiscard]] ObjectRef ref(std::uint32_t index) const { return {handle(index), names.users[index]}; }
+};
+
+[[nodiscard]] inline Sphere ball_of(const Object& object, const Obb& box) {
+    return {box.center, object.radius};
+}
+
+// An object's bound: its ball or its box.
+[[nodiscard]] inline collide::Convex convex_of(const Object& object, const Obb& box) {
+    return object.kind == BoundKind::ball ? collide::convex(ball_of(object, box)) : collide::convex(box);
+}
+
+}  // namespace crofton::world

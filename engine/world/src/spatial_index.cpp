@@ -1,0 +1,248 @@
+#include "spatial_index.hpp"
+
+#include <algorithm>
+#include <crofton/core/assert.hpp>
+#include <utility>
+
+namespace crofton::world {
+namespace {
+
+constexpr std::uint8_t kUpdatesToMove = 2;       // in a row, until an item leaves the tree
+constexpr std::size_t kAttachedPerUpdate = 256;  // one at a time, at about a microsecond each
+constexpr std::size_t kFewItems = 64;
+constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
+// Putting an item into the new tree is worth 64 (BoxTree::maintain); so the new tree gains on what changes.
+constexpr std::size_t kBudgetPerChange = 128;
+constexpr std::size_t kChangesToRebuild = 64;  // the tree is rebuilt once a part of 1 / 64 of its items has changed
+
+void must([[maybe_unused]] const Result<void>& done) {
+    CROFTON_ASSERT(done.has_value(), "the index and its tree disagree");
+}
+
+bool same(const Obb& a, const Obb& b) {
+    return a.center == b.center && a.axes == b.axes && a.half_extents == b.half_extents;
+}
+
+}  // namespace
+
+SpatialIndex::SpatialIndex() : tree_(std::move(*boxtree::BoxTree::build({}))) {}
+
+Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
+    auto item = tree_.insert_lifted(layers);
+    if (!item) return item;
+    if (*item >= items_.size()) {
+        if (items_.size() == items_.capacity()) items_.reserve(items_.size() + items_.size() / 8 + 16);
+        items_.resize(*item + std::size_t{1});
+    }
+    items_[*item] = {};
+    return item;
+}
+
+void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
+    Group& to = group(place);
+    items_[item].place = place;
+    items_[item].entry = static_cast<std::uint32_t>(to.items.size());
+    to.items.push_back(item);
+    to.boxes.push_back(box);
+    list_changed_ |= place == Place::moving;
+}
+
+// Out of its group, whose last item takes its entry.
+void SpatialIndex::take(ItemId item) {
+    const Item& taken = items_[item];
+    Group& from = group(taken.place);
+    list_changed_ |= taken.place == Place::moving;
+    items_[from.items.back()].entry = taken.entry;
+    from.items[taken.entry] = from.items.back();
+    from.boxes[taken.entry] = from.boxes.back();
+    from.items.pop_back();
+    from.boxes.pop_back();
+}
+
+void SpatialIndex::detach(ItemId item) {
+    must(tree_.lift(item));
+    ++tree_changes_;
+    wants_refit_ = true;
+}
+
+void SpatialIndex::remove(ItemId item) {
+    Item& removed = items_[item];
+    if (removed.place == Place::resting)
+        detach(item);
+    else if (removed.place != Place::nowhere)
+        take(item);
+    if (is_placed(item)) ++boxes_changed_;
+    removed = {};
+    must(tree_.remove(item));
+}
+
+const Obb& SpatialIndex::box(ItemId item) const {
+    const Item& asked = items_[item];
+    return asked.place == Place::resting ? tree_.boxes()[item] : group(asked.place).boxes[asked.entry];
+}
+
+void SpatialIndex::note_move(Item& item) {
+    const bool in_a_row = item.last_moved + 1 == now_;
+    item.streak = in_a_row ? std::min<std::uint8_t>(item.streak + 1, kUpdatesToMove) : std::uint8_t{1};
+    item.last_moved = now_;
+    ++boxes_changed_;
+}
+
+void SpatialIndex::set_box(ItemId id, const Obb& box) {
+    Item& item = items_[id];
+    switch (item.place) {
+        case Place::nowhere:
+            put(id, item.shown ? Place::entering : Place::hidden, box);
+            boxes_changed_ += item.shown;
+            return;
+        case Place::hidden:
+        case Place::entering:
+            group(item.place).boxes[item.entry] = box;
+            return;
+        case Place::moving: {
+            Obb& old = group(Place::moving).boxes[item.entry];
+            if (same(old, box)) return;
+            old = box;
+            list_changed_ = true;
+            return note_move(item);
+        }
+        case Place::resting:
+            if (same(tree_.boxes()[id], box)) return;
+            note_move(item);
+            if (item.streak == kUpdatesToMove) {
+                detach(id);
+                put(id, Place::moving, box);
+            } else {
+                moved_.push_back(id);
+                moved_boxes_.push_back(box);
+            }
+    }
+}
+
+void SpatialIndex::set_shown(ItemId id, bool shown) {
+    Item& item = items_[id];
+    if (item.shown == shown) return;
+    item.shown = shown;
+    if (item.place == Place::nowhere) return;
+    const Obb last = box(id);
+    if (item.place == Place::resting)
+        detach(id);
+    else
+        take(id);
+    put(id, shown ? Place::entering : Place::hidden, last);
+    ++boxes_changed_;
+}
+
+void SpatialIndex::set_layers(ItemId item, std::uint32_t layers) {
+    if (tree_.layer_masks()[item] == layers) return;
+    must(tree_.set_layer_mask(item, layers));
+    wants_refit_ = true;
+    ++boxes_changed_;
+}
+
+SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& executor) {
+    Changes changes{boxes_changed_, false};
+    if (!moved_.empty()) {
+        must(tree_.move(moved_, moved_boxes_));
+        tree_changes_ += moved_.size();
+        wants_refit_ = true;
+    }
+    moved_.clear();
+    moved_boxes_.clear();
+    enter(changes, executor);
+    bring_to_rest(settings, changes, executor);
+    if (wants_refit_) tree_.refit();
+    wants_refit_ = false;
+    rebuild_step(settings.rebuild_budget);
+    Group& moving = group(Place::moving);
+    if (list_changed_) must(moving_boxes_.update(tree_, moving.items, moving.boxes, executor));
+    list_changed_ = false;
+    boxes_changed_ = 0;
+    ++now_;
+    return changes;
+}
+
+// Begins once enough has changed since the last rebuild began.
+void SpatialIndex::rebuild_step(std::size_t budget) {
+    const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
+    if (budget == 0) return;
+    if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
+    if (!rebuilding_) {
+        if (tree_changes_ * kChangesToRebuild < tree_.item_count() || tree_changes_ == 0) return;
+        rebuilding_ = true;
+        changes_at_start_ = tree_changes_;
+    }
+    if (!tree_.maintain(budget + kBudgetPerChange * fresh)) return;
+    rebuilding_ = false;
+    tree_changes_ -= changes_at_start_;
+    changes_before_ = tree_changes_;
+}
+
+// What is new waits in the list until it has rested: many come and go before. What has just been loaded is built in one
+// go.
+void SpatialIndex::enter(Changes& changes, Executor& executor) {
+    Group& entering = group(Place::entering);
+    if (entering.items.size() > std::max(kFewItems, tree_.item_count() / 2)) {
+        rested_.assign(entering.items.begin(), entering.items.end());
+        build_tree(rested_, executor);
+        changes.tree_built = true;
+        return;
+    }
+    while (!entering.items.empty()) {
+        const ItemId item = entering.items.back();
+        const Obb box = entering.boxes.back();
+        take(item);
+        items_[item].last_moved = now_;
+        put(item, Place::moving, box);
+    }
+}
+
+// From its group into the tree.
+void SpatialIndex::attach(ItemId item) {
+    const Obb last = box(item);
+    take(item);
+    items_[item].place = Place::resting;
+    must(tree_.settle(item, last));
+    ++tree_changes_;
+}
+
+void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
+    rested_.clear();
+    for (const ItemId item : group(Place::moving).items)
+        if (now_ - items_[item].last_moved >= settings.updates_to_rest) rested_.push_back(item);
+    if (rested_.size() > std::max(kFewItems, tree_.item_count())) {
+        build_tree(rested_, executor);
+        changes.tree_built = true;
+        return;
+    }
+    rested_.resize(std::min(rested_.size(), kAttachedPerUpdate));
+    for (const ItemId item : rested_) attach(item);
+}
+
+// The tree of all that rests and of these, which are taken from their groups.
+void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor) {
+    Vector<Obb> boxes(tree_.boxes().begin(), tree_.boxes().end());
+    for (const ItemId item : fresh) {
+        boxes[item] = box(item);
+        take(item);
+        items_[item].place = Place::resting;
+        items_[item].streak = 0;
+    }
+    Vector<ItemId> lifted, removed;
+    for (ItemId item = 0; item < items_.size(); ++item) {
+        if (items_[item].place == Place::resting) continue;
+        lifted.push_back(item);
+        if (!tree_.is_lifted(item) && tree_.slot_of(item) == boxtree::kNone) removed.push_back(item);
+    }
+    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(), {.lifted = lifted}, executor);
+    CROFTON_ASSERT(built.has_value(), "boxes were checked before");
+    if (!built) return;
+    // The lowest ids are given first.
+    for (std::size_t i = removed.size(); i-- > 0;) must(built->remove(removed[i]));
+    tree_ = std::move(*built);
+    tree_changes_ = changes_before_ = 0;
+    rebuilding_ = false;
+    list_changed_ = true;
+}
+
+}  // namespace crofton::world

@@ -1,0 +1,83 @@
+// The boxes of a World's objects: a tree of those that rest, a list of those that move. It finds out which is which.
+#pragma once
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/cull/moving_boxes.hpp>
+#include <crofton/world/world.hpp>
+
+namespace crofton::world {
+
+using boxtree::ItemId;
+
+// Ids are the tree's. What is asked of the tree and of the list is as of the last update(). Boxes are valid.
+class SpatialIndex {
+  public:
+    struct Settings {
+        std::size_t rebuild_budget = 0;
+        std::uint32_t updates_to_rest = 0;
+    };
+    struct Changes {
+        std::uint32_t boxes = 0;
+        bool tree_built = false;
+    };
+
+    SpatialIndex();
+
+    // A new item, shown, without a box: it is nowhere until it gets one.
+    [[nodiscard]] Result<ItemId> add(std::uint32_t layers);
+    void remove(ItemId item);
+    void set_box(ItemId item, const Obb& box);
+    void set_shown(ItemId item, bool shown);
+    void set_layers(ItemId item, std::uint32_t layers);
+
+    Changes update(const Settings& settings, Executor& executor);
+
+    [[nodiscard]] std::size_t size() const { return items_.size(); }  // ids are below it
+    [[nodiscard]] bool is_placed(ItemId item) const {                 // in the tree or the list
+        return items_[item].place >= Place::entering;
+    }
+    [[nodiscard]] bool has_box(ItemId item) const { return items_[item].place != Place::nowhere; }
+    [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
+    [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.layer_masks()[item]; }
+    [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
+    [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_boxes_; }
+
+  private:
+    enum class Place : std::uint8_t { nowhere, hidden, entering, resting, moving };
+    struct Item {
+        std::uint32_t entry = 0;  // in the group of its place
+        std::uint32_t last_moved = 0;
+        std::uint8_t streak = 0;  // updates in a row in which it moved, up to kUpdatesToMove
+        Place place = Place::nowhere;
+        bool shown = true;
+    };
+    struct Group {
+        Vector<ItemId> items;
+        Vector<Obb> boxes;
+    };
+    [[nodiscard]] Group& group(Place place) { return groups_[static_cast<std::size_t>(place)]; }
+    [[nodiscard]] const Group& group(Place place) const { return groups_[static_cast<std::size_t>(place)]; }
+    void put(ItemId item, Place place, const Obb& box);
+    void take(ItemId item);
+    void detach(ItemId item);
+    void note_move(Item& item);
+    void rebuild_step(std::size_t budget);
+    void attach(ItemId item);
+    void enter(Changes& changes, Executor& executor);
+    void bring_to_rest(const Settings& settings, Changes& changes, Executor& executor);
+    void build_tree(std::span<const ItemId> entering, Executor& executor);
+
+    Vector<Item> items_;
+    Group groups_[5];  // by Place; items that rest have theirs in the tree
+    boxtree::BoxTree tree_;
+    cull::MovingBoxes moving_boxes_;
+    Vector<ItemId> moved_, rested_;
+    Vector<Obb> moved_boxes_;
+    std::uint32_t now_ = 1;  // counts updates
+    std::uint32_t boxes_changed_ = 0;
+    // Since the last rebuild began; of them those before the last update, and those when the one under way began.
+    std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
+    bool rebuilding_ = false, list_changed_ = false, wants_refit_ = false;
+};
+
+}  // namespace crofton::world

@@ -1,0 +1,128 @@
+#include <crofton/core/memory.hpp>
+#include <new>
+
+#include "world_state.hpp"
+
+namespace crofton {
+
+World::World(const WorldOptions& options)
+    : state_(new (detail::allocate(sizeof(State), alignof(State))) State(options)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+void World::Deleter::operator()(State* state) const {
+    state->~State();
+    detail::release(state, sizeof(State), alignof(State));
+}
+
+bool World::contains(ObjectHandle object) const {
+    return state_->table.contains(object);
+}
+bool World::contains(MeshHandle mesh) const {
+    return state_->meshes.contains(mesh);
+}
+bool World::contains(NodeHandle node) const {
+    return state_->nodes.contains(node);
+}
+std::size_t World::object_count() const {
+    return state_->table.count;
+}
+const WorldStatistics& World::statistics() const {
+    return state_->statistics;
+}
+std::span<const ObjectPair> World::pairs() const {
+    return state_->finder.pairs();
+}
+std::span<const Contact> World::contacts() const {
+    return state_->finder.contacts();
+}
+
+Result<std::uint64_t> World::user_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    return state_->table.names.users[object.index];
+}
+
+Result<Obb> World::box_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    if (!state_->index.has_box(object.index))
+        return fail(ErrorCode::empty, object.index,
+                    "world: the object has no box before the first update after it was added");
+    return state_->index.box(object.index);
+}
+
+Result<scene::Transform> World::transform_of(ObjectHandle object) const {
+    if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
+    const std::uint32_t instance = state_->table.objects[object.index].instance;
+    if (instance == kNoIndex)
+        return fail(ErrorCode::invalid_argument, object.index, "world: the object is a bound and has no transform");
+    return state_->scene.world(state_->scene.node_of(instance));
+}
+
+void World::State::apply_changes() {
+    for (const std::uint32_t object : removed) {
+        index.remove(object);
+        bodies.forget(object);
+    }
+    pairs_changed |= !removed.empty();
+    removed.clear();
+    for (const StagedChange& change : staged) {
+        world::Object& object = table.objects[change.object];
+        object.staged = kNoIndex;
+        if (!object.alive) continue;
+        if (object.instance != kNoIndex) {
+            object.mesh = scene.mesh_of(object.instance);
+            index.set_shown(change.object, object.shown && scene.layer_masks()[object.instance] != 0);
+            pairs_changed = true;
+            continue;
+        }
+        index.set_layers(change.object, object.layers);
+        index.set_shown(change.object, object.shown);
+        if (!change.has_bound) continue;
+        pairs_changed |= object.kind != change.bound.kind || object.radius != change.bound.radius;
+        object.kind = change.bound.kind;
+        object.radius = change.bound.radius;
+        index.set_box(change.object, change.bound.box);
+    }
+    staged.clear();
+}
+
+// What the scene's nodes have moved.
+void World::State::apply_scene(Executor& executor) {
+    const scene::UpdateStatistics updated = scene.update(executor);
+    statistics.nodes_updated = updated.nodes_updated;
+    statistics.out_of_range = updated.instances_invalid;
+    apply_changes();
+    for (const scene::InstanceId instance : scene.relayered_instances()) {
+        const std::uint32_t object = object_of_instance[instance], layers = scene.layer_masks()[instance];
+        index.set_shown(object, table.objects[object].shown && layers != 0);
+        if (layers != 0) index.set_layers(object, layers);
+    }
+    for (const scene::InstanceId instance : scene.moved_instances())
+        index.set_box(object_of_instance[instance], scene.world_boxes()[instance]);
+    pairs_changed |= bodies.update(scene, executor);
+}
+
+Result<void> World::update(Executor& executor) {
+    State& s = *state_;
+    s.statistics = {};
+    s.apply_scene(executor);
+    const auto changes = s.index.update(
+        {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
+    Result<void> found;
+    const bool changed = changes.boxes > 0 || s.pairs_changed;
+    s.pairs_changed = false;
+    if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, s.scene, s.bodies, executor);
+    if (!changed) s.finder.stay();
+    if (!found) s.pairs_changed = true;
+    s.statistics.objects = s.table.count;
+    s.statistics.resting = s.index.tree().item_count();
+    s.statistics.moving = s.index.moving().size();
+    s.statistics.boxes_changed = changes.boxes;
+    s.statistics.tree_built = changes.tree_built;
+    s.statistics.box_pairs_tested = changed ? s.finder.box_pairs_tested() : 0;
+    s.statistics.contact_pairs_tested = changed ? s.finder.pairs().size() : 0;
+    return found;
+}
+
+}  // namespace crofton
