@@ -11,7 +11,7 @@
 
 namespace crofton::pipeline {
 
-// As the GPU counted them (docs/render.md says what each counts on lavapipe).
+// As the GPU counted them (docs/notes/render.md says what each counts on lavapipe).
 struct GpuCounts {
     std::uint64_t input_assembly_primitives = 0;
     std::uint64_t clipping_invocations = 0;
