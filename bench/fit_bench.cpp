@@ -82,7 +82,8 @@ void excess(benchmark::State& state, fit::Quality quality) {
                 const Points turned =
                     turns == 0 ? *points : bench::turned(*points, static_cast<std::uint32_t>(turn + 1));
                 const Obb box = fit::fit_obb(std::span<const glm::vec3>(turned), {criterion, quality}).value();
-                const double over = criterion(measure::of_box(box)) / optimum(turned, criterion) - 1.0;
+                const double over =
+                    criterion(measure::intrinsic_volumes_of_box(box)) / optimum(turned, criterion) - 1.0;
                 sum += over;
                 worst = std::max(worst, over);
                 ++count;
@@ -110,7 +111,9 @@ void many(benchmark::State& state, const std::optional<bench::ClusteredMesh>& in
     double sum = 0.0, worst = 0.0, counted = 0.0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (state.range(1) == 0 && volume(best[i]) < 1e-6 * std::pow(edge_sum(best[i]), 3.0)) continue;
-        const double over = criterion(measure::of_box(boxes[i])) / criterion(measure::of_box(best[i])) - 1.0;
+        const double over = criterion(measure::intrinsic_volumes_of_box(boxes[i])) /
+                                criterion(measure::intrinsic_volumes_of_box(best[i])) -
+                            1.0;
         sum += over;
         worst = std::max(worst, over);
         counted += 1.0;

@@ -32,7 +32,7 @@ using study::Visit;
 struct World {
     std::vector<Obb> boxes;
     std::vector<Camera> views;
-    sampling::Ball region;
+    Sphere region;
 };
 
 void enclose(World& world) {
@@ -121,7 +121,7 @@ Criterion by_frustum(const World& world) {
 }
 // How often a bound straddles: μ(hits) − μ(is contained) = 2V + 2·F_B·M/4π to first order; F drops out.
 Criterion by_straddling(const World& world) {
-    const auto b = *measure::of_frustum(finite(world.views[0], world));
+    const auto b = *measure::intrinsic_volumes_of_frustum(finite(world.views[0], world));
     return {1.0, 0.0, b.area / (4.0 * std::numbers::pi)};
 }
 
@@ -141,12 +141,12 @@ constexpr Strategy kStrategies[] = {
     {"inserted_kinematic", Build::inserted, by_frustum, false},
 };
 
-VisitTree build(const World& world, const Strategy& strategy) {
+BinaryTree build(const World& world, const Strategy& strategy) {
     const Criterion criterion = strategy.criterion(world);
     study::BinaryTreeOptions options{
         .split_criterion = criterion, .criterion = criterion, .oriented = strategy.oriented};
     if (strategy.build == Build::inserted) {
-        VisitTree tree = *VisitTree::build({}, options);
+        BinaryTree tree = *BinaryTree::build({}, options);
         for (const Obb& box : world.boxes) (void)*tree.insert(box);
         return tree;
     }
@@ -158,7 +158,7 @@ VisitTree build(const World& world, const Strategy& strategy) {
         queries = *study::QuerySample::frusta(finite(world.views[0], world), world.region, 4096, 1);
         options.queries = &queries;
     }
-    return *VisitTree::build(world.boxes, options);
+    return *BinaryTree::build(world.boxes, options);
 }
 
 struct Tally {
@@ -170,7 +170,7 @@ struct Below {
     std::uint32_t met = 0, inside = 0, all = 0;
 };
 
-Tally tally(const World& world, const VisitTree& tree) {
+Tally tally(const World& world, const BinaryTree& tree) {
     Tally sum;
     std::vector<Below> below(2 * world.boxes.size());
     for (const Camera& view : world.views) {
@@ -185,7 +185,7 @@ Tally tally(const World& world, const VisitTree& tree) {
             }
         }
         const auto node_of = [&](const Obb& bound) {
-            const auto* node = reinterpret_cast<const VisitTree::Node*>(&bound);  // `bound` is a node's first member
+            const auto* node = reinterpret_cast<const BinaryTree::Node*>(&bound);  // `bound` is a node's first member
             return static_cast<std::size_t>(node - &tree.node(0));
         };
         sum.tests += static_cast<double>(tree.visit(
@@ -209,7 +209,7 @@ Tally tally(const World& world, const VisitTree& tree) {
     return {sum.tests / n, sum.tests_without_taking / n, sum.improper_outside / n, sum.improper_inside / n};
 }
 
-double tests_per_line(const World& world, const VisitTree& tree) {
+double tests_per_line(const World& world, const BinaryTree& tree) {
     const auto lines = *study::QuerySample::lines(world.region, 1024, 2);
     std::size_t tests = 0;
     for (std::uint32_t i = 0; i < lines.size(); ++i)
@@ -222,7 +222,7 @@ void hierarchy(benchmark::State& state, const std::string& world_name, const Str
     const World& world = world_named(world_name);
     if (world.boxes.empty() || world.views.empty()) return state.SkipWithError("scene not found");
     for (auto _ : state) benchmark::DoNotOptimize(build(world, strategy));
-    const VisitTree tree = build(world, strategy);
+    const BinaryTree tree = build(world, strategy);
     const Tally result = tally(world, tree);
     state.counters["boxes"] = static_cast<double>(world.boxes.size());
     state.counters["tests"] = result.tests;
@@ -248,7 +248,7 @@ void bound_given_ancestors(benchmark::State& state, const study::QuerySample& qu
             for (std::size_t k = 0; k < levels; ++k)
                 ancestors.push_back(*fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>()))));
             const auto found = *study::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
-            plain += found.plain_hits, given += found.hits, reaching += found.reaching;
+            plain += found.plain_hits, given += found.hits, reaching += found.ancestor_hits;
         }
     }
     state.counters["plain"] = plain / reaching;
@@ -256,7 +256,7 @@ void bound_given_ancestors(benchmark::State& state, const study::QuerySample& qu
 }
 
 const bool kRegistered = [] {
-    const sampling::Ball region{glm::dvec3(0.0), 2.5};
+    const Sphere region{glm::dvec3(0.0), 2.5};
     Camera camera;
     camera.far_distance = 20.0;
     const std::pair<const char*, study::QuerySample> samples[] = {

@@ -100,10 +100,10 @@ void lines_hitting_three_boxes(benchmark::State& state) {
 }
 BENCHMARK(lines_hitting_three_boxes)->RangeMultiplier(8)->Range(64, 1 << 15)->Unit(benchmark::kMicrosecond);
 
-template <Line (*kSample)(const Ball&, const std::array<double, 4>&)>
+template <Line (*kSample)(const Sphere&, const std::array<double, 4>&)>
 void line_sampler(benchmark::State& state) {
     Random random(5);
-    const Ball ball;
+    const Sphere ball{glm::dvec3(0.0), 1.0};
     for (auto _ : state) benchmark::DoNotOptimize(kSample(ball, random.point<4>()));
 }
 BENCHMARK(line_sampler<line_through_two_sphere_points>);

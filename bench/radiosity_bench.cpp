@@ -58,7 +58,7 @@ const char* scene_name(int which) {
 void lines_one_by_one(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
     const LineSource source(s.lines.bounds(), LineMethod::walls, 3, sampling::Sequence::quasi_random);
-    Vector<sampling::Line> lines;
+    Vector<Line> lines;
     LineHits hits;
     double count = 0.0, crossings = 0.0;
     std::uint64_t block = 0;
@@ -196,7 +196,7 @@ BENCHMARK(factors_by_bundles)
 
 void factors_by_global_lines(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
-    Vector<sampling::Line> lines;
+    Vector<Line> lines;
     LineHits hits;
     measure_factors(state, s, kSeconds, [&](std::uint64_t seed, std::uint64_t k, SampledRows& rows) {
         const auto start = Clock::now();
@@ -216,7 +216,7 @@ template <class Cast>
 void factors_by_local_lines(benchmark::State& state, Cast&& cast) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
     constexpr std::uint32_t kBatch = 1024;
-    std::vector<Ray> rays;
+    std::vector<FirstHitQuery> rays;
     std::vector<Hit> hits(kBatch);
     const auto count = static_cast<std::uint32_t>(s.patches.count());
     const std::uint32_t batches = (count + kBatch - 1) / kBatch;
@@ -237,7 +237,7 @@ void factors_by_local_lines(benchmark::State& state, Cast&& cast) {
                 {{a + x * u + y * v, sampling::cosine_direction(glm::normalize(glm::cross(u, v)), random.point<2>())},
                  i});
         }
-        cast(s, std::span<const Ray>(rays), std::span(hits).first(rays.size()));
+        cast(s, std::span<const FirstHitQuery>(rays), std::span(hits).first(rays.size()));
         const double spent = seconds_since(start);
         for (std::size_t r = 0; r < rays.size(); ++r)
             rows.add(begin + static_cast<std::uint32_t>(r), hits[r].triangle == Hit::kNothing ? kSky

@@ -45,14 +45,14 @@ EmbreeScene::~EmbreeScene() {
     rtcReleaseDevice(data_->device);
 }
 
-void EmbreeScene::first_hits(std::span<const radiosity::Ray> rays, std::span<radiosity::Hit> result) const {
+void EmbreeScene::first_hits(std::span<const radiosity::FirstHitQuery> rays, std::span<radiosity::Hit> result) const {
     for (std::size_t begin = 0; begin < rays.size(); begin += 16) {
         const std::size_t count = std::min<std::size_t>(16, rays.size() - begin);
         alignas(64) int valid[16];
         RTCRayHit16 packet;
         for (std::size_t i = 0; i < 16; ++i) {
             valid[i] = i < count ? -1 : 0;
-            const sampling::Line& line = rays[begin + std::min(i, count - 1)].line;
+            const Line& line = rays[begin + std::min(i, count - 1)].line;
             packet.ray.org_x[i] = static_cast<float>(line.point.x);
             packet.ray.org_y[i] = static_cast<float>(line.point.y);
             packet.ray.org_z[i] = static_cast<float>(line.point.z);
@@ -91,7 +91,7 @@ bool EmbreeScene::available() {
 }
 EmbreeScene::EmbreeScene(const TriangleMesh&) {}
 EmbreeScene::~EmbreeScene() = default;
-void EmbreeScene::first_hits(std::span<const radiosity::Ray>, std::span<radiosity::Hit>) const {}
+void EmbreeScene::first_hits(std::span<const radiosity::FirstHitQuery>, std::span<radiosity::Hit>) const {}
 
 }  // namespace crofton::bench
 #endif

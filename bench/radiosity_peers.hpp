@@ -15,7 +15,7 @@ class EmbreeScene {
 
     // As LineTracer::first_hits, sixteen rays at a time, one thread; `skip` is replaced by a start 10^-6 of the scene's
     // size away.
-    void first_hits(std::span<const radiosity::Ray> rays, std::span<radiosity::Hit> result) const;
+    void first_hits(std::span<const radiosity::FirstHitQuery> rays, std::span<radiosity::Hit> result) const;
 
   private:
     struct Data;

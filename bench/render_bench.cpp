@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <crofton/geometry/clip_space.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <optional>
 #include <random>

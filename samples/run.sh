@@ -4,13 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 third_party/install.sh
-[[ -x build/release/bin/crofton ]] || echo "Building; the first time this takes ten minutes of one core." >&2
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-if ! { cmake --preset release && cmake --build --preset release --target crofton_cli; } >"$log" 2>&1; then
-    tail -n 60 "$log" >&2
-    exit 1
-fi
+cmake --preset release >/dev/null
+# Ninja's progress on one line, or a line a step where there is no terminal; warnings and errors as they come.
+cmake --build --preset release --target crofton_cli >&2
 mkdir -p out/frames
 build/release/bin/crofton frames town --csv out/frames.csv --json out/frames.json --png out/frames "$@"
 echo "Written: out/frames.csv, out/frames.json and pictures in out/frames/"

@@ -3,6 +3,7 @@
 #   third_party/install.sh            what building, running and testing need
 #   third_party/install.sh --tests    also a browser, in which the tests open the report page
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
+#   third_party/install.sh --checks   also clang, its formatter and its linter, for .ci/run and .ci/long
 #   third_party/install.sh --engines  also the engines, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
 
@@ -19,6 +20,7 @@ packages=(
     doctest-dev libgmp-dev xvfb xauth xdotool libx11-dev
 )
 test_packages=(chromium)
+check_packages=(clang libclang-rt-dev clang-format clang-tidy)
 engine_packages=(libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 
@@ -26,8 +28,9 @@ for argument in "$@"; do
     case "$argument" in
         --tests) packages+=("${test_packages[@]}") ;;
         --bench) packages+=("${bench_packages[@]}") ;;
+        --checks) packages+=("${check_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--tests] [--bench] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--engines]" >&2; exit 2 ;;
     esac
 done
 

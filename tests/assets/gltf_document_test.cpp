@@ -3,11 +3,13 @@
 #include <filesystem>
 
 #include "gltf_asset.hpp"
+#include "messages.hpp"
 
 using namespace crofton;
 using assets::GltfDocument;
 using test_files::Asset;
 using test_files::Json;
+using test_files::says;
 using test_files::TemporaryFile;
 
 namespace {
@@ -25,10 +27,6 @@ std::string message(const std::string& name, const std::string& contents) {
     if (document) return "read";
     CHECK(document.error().message.find(name) != std::string::npos);
     return document.error().message;
-}
-
-bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 std::string with_u32(std::string bytes, std::size_t at, std::uint32_t value) {

@@ -4,11 +4,14 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "messages.hpp"
 #include "test_files.hpp"
 
 using namespace crofton;
 using test_files::glb;
 using test_files::gltf_json;
+using test_files::message;
+using test_files::says;
 using test_files::TemporaryFile;
 
 namespace {
@@ -18,30 +21,45 @@ Result<assets::SceneSource> load_glb(const std::string& json) {
     return assets::load_scene(file.path());
 }
 
-std::string message(const Result<assets::SceneSource>& source) {
-    return source ? "loaded" : source.error().message;
-}
-
-bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 const std::string kShared = std::string(CROFTON_SHARED_DATA) + "/scenes/";
 
 }  // namespace
 
 TEST_SUITE("assets/gltf_loader") {
-    TEST_CASE("nodes with NaN, singular, projective or damaged transforms are named") {
-        const std::string flat = message(load_glb(gltf_json("[{\"name\":\"flat\",\"mesh\":0,\"scale\":[1,0,1]}]")));
-        CHECK(says(flat, "scene.glb"));
-        CHECK(says(flat, "node 0 'flat'"));
-        CHECK(says(flat, "singular"));
+    TEST_CASE("nodes with NaN, projective or damaged transforms are named") {
+        const std::string huge = message(load_glb(gltf_json("[{\"name\":\"huge\",\"mesh\":0,\"scale\":[1,1e16,1]}]")));
+        CHECK(says(huge, "scene.glb"));
+        CHECK(says(huge, "node 0 'huge'"));
+        CHECK(says(huge, "more than 1e15"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"matrix\":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]}]"))),
                    "projective"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"rotation\":[0,0,0,0]}]"))), "quaternion"));
         CHECK(says(message(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[1e300,0,0]}]"))), "exceeds"));
         CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[1e999,0,0]}]")).has_value());
         CHECK_FALSE(load_glb(gltf_json("[{\"mesh\":0,\"translation\":[NaN,0,0]}]")).has_value());
+    }
+
+    TEST_CASE("one bad object is left out with a warning that names it, and the rest is loaded") {
+        const auto source =
+            load_glb(gltf_json("[{\"children\":[1,2,3]},{\"mesh\":0,\"translation\":[1,0,0]},"
+                               "{\"name\":\"bad\",\"mesh\":0,\"rotation\":[0,0,0,0],\"children\":[4]},"
+                               "{\"mesh\":0,\"translation\":[3,0,0]},{\"mesh\":0}]"));
+        REQUIRE(source.has_value());
+        CHECK(source->scene.node_count() == 3);
+        CHECK(source->scene.instance_count() == 2);
+        REQUIRE(source->warnings.size() == 1);
+        CHECK(says(source->warnings[0], "node 2 'bad'"));
+        CHECK(says(source->warnings[0], "quaternion"));
+    }
+
+    TEST_CASE("a scale that flattens is data: flat things are flat, a zero scale hides") {
+        for (const bool hidden : {false, true}) {
+            const std::string scale = hidden ? "[0,0,0]" : "[1,0,1]";
+            auto source = load_glb(gltf_json("[{\"mesh\":0,\"scale\":" + scale + "}]"));
+            REQUIRE(source.has_value());
+            source->scene.update();
+            CHECK(source->scene.layer_masks()[0] == (hidden ? 0 : ~0u));
+        }
     }
 
     TEST_CASE("cycles, missing nodes, meshes and accessors are named") {

@@ -6,11 +6,13 @@
 #include <set>
 
 #include "gltf_asset.hpp"
+#include "messages.hpp"
 
 using namespace crofton;
 using assets::PrimitivePatches;
 using test_files::Asset;
 using test_files::Json;
+using test_files::says;
 using test_files::strip_indices;
 using test_files::strip_positions;
 using test_files::TemporaryFile;
@@ -60,10 +62,6 @@ double area(const std::vector<float>& xyz, const std::vector<std::uint32_t>& ind
 
 std::string why(const PrimitivePatches& p) {
     return p.error ? p.error->message : p.left_alone;
-}
-
-bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 // All that a vertex may carry, linear in the position or constant, and all that a document may hold besides.

@@ -2,40 +2,36 @@
 #include <assets/scene_source.hpp>
 #include <filesystem>
 
+#include "messages.hpp"
 #include "test_files.hpp"
 
 using namespace crofton;
+using test_files::message;
+using test_files::says;
 using test_files::TemporaryFile;
 
 namespace {
 
-Result<assets::SceneSource> load(const std::string& text) {
+Result<assets::SceneSource> load_obj(const std::string& text) {
     const TemporaryFile file("shape.obj", text);
     return assets::load_scene(file.path());
-}
-
-std::string message(const Result<assets::SceneSource>& source) {
-    return source ? "loaded" : source.error().message;
-}
-bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace
 
 TEST_SUITE("assets/obj_loader") {
     TEST_CASE("bad lines are named by number, and nothing is loaded") {
-        CHECK(says(message(load("v 0 0 0\nv 1 0 nan\n")), "line 2: vertex 2"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0\n")), "line 2"));
-        CHECK(says(message(load("v 1e99 0 0\n")), "line 1"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")), "line 4: face: vertex 4 of 3"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n")), "vertex 0"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -4\n")), "vertex -4"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nf 1 2\n")), "fewer than three"));
-        CHECK(says(message(load("v 0 0 0\nf 1 x 1\n")), "'x'"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n")), "line 4"));
-        CHECK(says(message(load("v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "nothing to draw"));
-        CHECK(says(message(load("")), "the file is empty"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 nan\n")), "line 2: vertex 2"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0\n")), "line 2"));
+        CHECK(says(message(load_obj("v 1e99 0 0\n")), "line 1"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")), "line 4: face: vertex 4 of 3"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n")), "vertex 0"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -4\n")), "vertex -4"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 0\nf 1 2\n")), "fewer than three"));
+        CHECK(says(message(load_obj("v 0 0 0\nf 1 x 1\n")), "'x'"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n")), "line 4"));
+        CHECK(says(message(load_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "nothing to draw"));
+        CHECK(says(message(load_obj("")), "the file is empty"));
     }
 
     TEST_CASE("missing files, folders and unknown kinds of file are refused by name") {
@@ -52,7 +48,7 @@ TEST_SUITE("assets/obj_loader") {
     }
 
     TEST_CASE("polygons become fans, negative indices count from the end, parts have their own vertices") {
-        const auto source = load(
+        const auto source = load_obj(
             "o quad\nv 0 0 0\nv 2 0 0 \r\nv 2 1 0\nv 0 1 0\nf 1/1/1 2//2 3 4\n"
             "o tri\nv 5 5 5 0.25 0.5 0.75\nv 6 5 5\nv 5 6 5\nf -3 -2 -1\n");
         REQUIRE_MESSAGE(source.has_value(), message(source));
@@ -71,7 +67,7 @@ TEST_SUITE("assets/obj_loader") {
                 const auto at = [&](int a, int b) { return std::to_string(61 * a + b) + " "; };
                 text += "f " + at(i, j) + at(i, j + 1) + at(i + 1, j + 1) + at(i + 1, j) + "\n";
             }
-        const auto source = load(text);
+        const auto source = load_obj(text);
         REQUIRE_MESSAGE(source.has_value(), message(source));
         std::size_t triangles = 0;
         double area = 0.0;

@@ -8,26 +8,22 @@
 #include <glm/geometric.hpp>
 #include <sstream>
 
+#include "messages.hpp"
 #include "test_files.hpp"
 
 using namespace crofton;
+using test_files::message;
+using test_files::says;
 using test_files::TemporaryFile;
 using test_files::Wad;
 
 namespace {
 
-Result<assets::SceneSource> load(const std::string& bytes, const std::string& map = {}) {
+Result<assets::SceneSource> load_wad(const std::string& bytes, const std::string& map = {}) {
     const TemporaryFile file("level.wad", bytes);
     assets::LoadOptions options;
     options.map = map;
     return assets::load_scene(file.path(), options);
-}
-
-std::string message(const Result<assets::SceneSource>& source) {
-    return source ? "loaded" : source.error().message;
-}
-bool says(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 double area(const Polygon& polygon) {
@@ -72,36 +68,36 @@ assets::WadLevel board(int columns, const std::vector<int>& sectors) {
 
 TEST_SUITE("assets/wad_loader") {
     TEST_CASE("damaged archives and levels are named by lump, line, side and sector") {
-        CHECK(says(message(load("")), "level.wad: the file is empty"));
-        CHECK(says(message(load("PWAD\xff\xff\xff\xff\x0c\0\0\0")), "not a WAD"));
+        CHECK(says(message(load_wad("")), "level.wad: the file is empty"));
+        CHECK(says(message(load_wad("PWAD\xff\xff\xff\xff\x0c\0\0\0")), "not a WAD"));
         std::string file = Wad().file();
-        CHECK(says(message(load(file.substr(0, file.size() - 5))), "directory"));
-        CHECK(says(message(load(file, "E1M2")), "no level 'E1M2'; there are: E1M1"));
+        CHECK(says(message(load_wad(file.substr(0, file.size() - 5))), "directory"));
+        CHECK(says(message(load_wad(file, "E1M2")), "no level 'E1M2'; there are: E1M1"));
         Wad wad;
         wad.lines.pop_back();
-        CHECK(says(message(load(wad.file())), "LINEDEFS: its size"));
+        CHECK(says(message(load_wad(wad.file())), "LINEDEFS: its size"));
         wad = Wad();
         wad.line(0, 99, 0, 0xFFFF);
-        CHECK(says(message(load(wad.file())), "line 8: vertex 99 of 8"));
+        CHECK(says(message(load_wad(wad.file())), "line 8: vertex 99 of 8"));
         wad = Wad();
         wad.line(0, 1, 200, 0xFFFF);
-        CHECK(says(message(load(wad.file())), "line 8: side 200 of 8"));
+        CHECK(says(message(load_wad(wad.file())), "line 8: side 200 of 8"));
         wad = Wad();
         wad.side(5);
-        CHECK(says(message(load(wad.file())), "side 8: sector 5 of 1"));
+        CHECK(says(message(load_wad(wad.file())), "side 8: sector 5 of 1"));
         wad = Wad();
         wad.sectors.clear();
-        CHECK_FALSE(load(wad.file()).has_value());
+        CHECK_FALSE(load_wad(wad.file()).has_value());
         file = Wad().file();
         file[file.size() - 16] = '\x7f';  // the last lump's offset
         file[file.size() - 14] = '\x7f';
-        CHECK(says(message(load(file)), "SECTORS: ends beyond"));
+        CHECK(says(message(load_wad(file)), "SECTORS: ends beyond"));
     }
 
     TEST_CASE("a sector whose lines do not close is reported and left out, its walls are not") {
         Wad wad;
         wad.lines.resize(wad.lines.size() - 14);  // the column's last side
-        const auto source = load(wad.file());
+        const auto source = load_wad(wad.file());
         REQUIRE_MESSAGE(source.has_value(), message(source));
         REQUIRE(source->warnings.size() == 1);
         CHECK(says(source->warnings[0], "sector 0"));
@@ -110,7 +106,7 @@ TEST_SUITE("assets/wad_loader") {
     }
 
     TEST_CASE("a room with a column: floor and ceiling have a hole, walls face the room") {
-        const auto source = load(Wad().file(), "e1m1");
+        const auto source = load_wad(Wad().file(), "e1m1");
         REQUIRE_MESSAGE(source.has_value(), message(source));
         CHECK(source->warnings.empty());
         const scene::Scene& scene = source->scene;

@@ -13,7 +13,7 @@ using namespace crofton::bake;
 
 namespace {
 
-// Two meshes, one of them a polygon, on a chain of nodes; one instance removed.
+// Two meshes, one of them a polygon, on a chain of nodes; an instance and a node removed.
 scene::Scene sample_scene(unsigned nodes) {
     scene::Scene scene;
     TriangleMesh mesh;
@@ -36,6 +36,10 @@ scene::Scene sample_scene(unsigned nodes) {
         REQUIRE(scene.add_instance(*node, i % 2));
     }
     if (nodes > 3) REQUIRE(scene.remove_instance(3));
+    if (nodes > 20) {
+        REQUIRE(scene.remove_node(15));
+        REQUIRE(scene.set_parent(12, 19));  // a parent of a greater id
+    }
     scene.update();
     return scene;
 }

@@ -64,7 +64,10 @@ TEST_SUITE("capi/geometry") {
         CHECK(turned.center[1] == doctest::Approx(1.0));
         CHECK(turned.center[2] == doctest::Approx(3.0));
         const crofton_transform flat{{0, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-        CHECK(crofton_box_transform(&flat, &box, &turned) != CROFTON_OK);
+        REQUIRE(crofton_box_transform(&flat, &box, &turned) == CROFTON_OK);
+        CHECK(*std::min_element(turned.half_extents, turned.half_extents + 3) < 1e-5f);
+        const crofton_transform huge{{1e16, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+        CHECK(crofton_box_transform(&huge, &box, &turned) != CROFTON_OK);
         CHECK(crofton_box_transform(&transform, nullptr, &turned) == CROFTON_INVALID_ARGUMENT);
     }
 }

@@ -12,7 +12,7 @@
 int main() {
     crofton::Obb box;
     box.half_extents = {1.0f, 2.0f, 3.0f};
-    const double edges = crofton::measure::minimal_perimeter()(crofton::measure::of_box(box));
+    const double edges = crofton::measure::minimal_perimeter()(crofton::measure::intrinsic_volumes_of_box(box));
     bool good = edges > 11.999 && edges < 12.001 && crofton::contains(box, {1.0, 2.0, 3.0});
     good = good && crofton::collide::intersects(box, box);
     const glm::vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -21,13 +21,13 @@ std::uint64_t in_space() {
     Random random(61);
     for (int trial = 0; trial < 20; ++trial) {
         const Camera camera = random_camera(random, 0.0);
-        const auto volumes = *measure::of_frustum(camera);
+        const auto volumes = *measure::intrinsic_volumes_of_frustum(camera);
         const auto criterion = *measure::for_frustum(camera);
         digest.add(volumes.volume).add(volumes.area).add(volumes.mean_curvature);
         digest.add(criterion.volume_weight).add(criterion.area_weight).add(criterion.mean_curvature_weight);
         std::vector<glm::dvec3> points;
         for (int i = 0; i < 60; ++i) points.push_back(sampling::ball_point(random.point<3>()));
-        const auto hull = *measure::of_hull(points);
+        const auto hull = *measure::intrinsic_volumes_of_hull(points);
         digest.add(hull.volume).add(hull.area).add(hull.mean_curvature);
     }
     const std::vector<study::ConvexBody> bodies{study::ConvexBody::ball(glm::dvec3(0.0), 1.0),
@@ -40,7 +40,7 @@ std::uint64_t in_space() {
 std::uint64_t in_the_plane() {
     Digest digest;
     Random random(62);
-    std::vector<measure::Disc> discs;
+    std::vector<Disc> discs;
     std::vector<study::PlanarSupport> figures;
     for (int i = 0; i < 4; ++i) {
         discs.push_back({0.5 * sampling::disc_point(random.point<2>()), random.uniform(0.6, 1.0)});
@@ -49,7 +49,7 @@ std::uint64_t in_the_plane() {
     digest.add(study::measure_of_lines_hitting_all(figures)).add(study::measure_of_lines_by_tangents(discs));
     std::vector<glm::dvec2> object;
     for (int i = 0; i < 20; ++i) object.push_back(0.5 * sampling::disc_point(random.point<2>()));
-    const study::PlanarSupport ancestor(measure::Disc{{0.0, 0.0}, 2.0});
+    const study::PlanarSupport ancestor(Disc{{0.0, 0.0}, 2.0});
     const auto disc = *study::optimal_disc(object, ancestor);
     const auto rectangle = *study::optimal_rectangle(object, ancestor);
     digest.add(disc.bound.center).add(disc.bound.radius).add(disc.measure);

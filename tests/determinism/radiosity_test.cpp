@@ -55,7 +55,7 @@ std::uint64_t crossings() {
     const radiosity::Patches scene = patches();
     const auto tracer = *radiosity::LineTracer::build(scene.mesh);
     const auto bundles = *radiosity::BundleTracer::build(scene.mesh);
-    Vector<sampling::Line> lines;
+    Vector<Line> lines;
     radiosity::LineHits hits;
     const auto add = [&] {
         for (const radiosity::Hit& hit : hits.hits)

@@ -67,7 +67,7 @@ TEST_SUITE("fit/fit_many") {
         const Input input = patches(300, 24);
         ThreadPool pool(4);
         for (const auto quality : {fit::Quality::fast, fit::Quality::tight}) {
-            const fit::Options options{measure::minimal_area(), quality};
+            const fit::FitOptions options{measure::minimal_area(), quality};
             std::vector<Obb> alone(300), together(300);
             REQUIRE(fit::fit_many(input.clusters(), options, serial_executor(), alone));
             REQUIRE(fit::fit_many(input.clusters(), options, pool, together));
@@ -94,10 +94,10 @@ TEST_SUITE("fit/fit_many") {
             REQUIRE(fit::fit_many(input.clusters(), {criterion, fit::Quality::exact}, serial_executor(), exact));
             double fast_excess = 0.0, tight_excess = 0.0;
             for (std::size_t i = 0; i < 300; ++i) {
-                const double best = criterion(measure::of_box(exact[i]));
-                fast_excess += criterion(measure::of_box(fast[i])) / best - 1.0;
-                tight_excess += criterion(measure::of_box(tight[i])) / best - 1.0;
-                CHECK(criterion(measure::of_box(tight[i])) >= best * (1.0 - 1e-6));
+                const double best = criterion(measure::intrinsic_volumes_of_box(exact[i]));
+                fast_excess += criterion(measure::intrinsic_volumes_of_box(fast[i])) / best - 1.0;
+                tight_excess += criterion(measure::intrinsic_volumes_of_box(tight[i])) / best - 1.0;
+                CHECK(criterion(measure::intrinsic_volumes_of_box(tight[i])) >= best * (1.0 - 1e-6));
             }
             CHECK(fast_excess / 300.0 <= 0.01);
             CHECK(tight_excess / 300.0 <= 0.001);

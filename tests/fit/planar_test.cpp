@@ -20,7 +20,7 @@ std::span<const glm::dvec2> view(const Points& points) {
 }
 
 // In extended precision: rounding of the test itself must not matter.
-bool contains(const fit::Rectangle& r, const glm::dvec2& p) {
+bool contains(const Rectangle& r, const glm::dvec2& p) {
     const long double x = static_cast<long double>(p.x) - static_cast<long double>(r.center.x);
     const long double y = static_cast<long double>(p.y) - static_cast<long double>(r.center.y);
     const long double u = static_cast<long double>(r.axis.x), v = static_cast<long double>(r.axis.y);
@@ -28,14 +28,14 @@ bool contains(const fit::Rectangle& r, const glm::dvec2& p) {
            std::fabs(u * y - v * x) <= static_cast<long double>(r.half_extents.y);
 }
 
-bool contains(const fit::Circle& c, const glm::dvec2& p) {
+bool contains(const Disc& c, const glm::dvec2& p) {
     const long double x = static_cast<long double>(p.x) - static_cast<long double>(c.center.x);
     const long double y = static_cast<long double>(p.y) - static_cast<long double>(c.center.y);
     return std::sqrt(x * x + y * y) <= static_cast<long double>(c.radius);
 }
 
-double measure_of(const fit::Rectangle& r, PlanarCriterion criterion) {
-    return criterion == PlanarCriterion::area ? r.area() : r.perimeter();
+double measure_of(const Rectangle& r, PlanarCriterion criterion) {
+    return criterion == PlanarCriterion::area ? area(r) : perimeter(r);
 }
 
 // The least over many directions.
@@ -63,40 +63,40 @@ double by_brute_force(const Points& points, PlanarCriterion criterion, int steps
 TEST_SUITE("fit/planar") {
     TEST_CASE("no points and bad points are refused by their first index") {
         CHECK(fit::minimal_rectangle({}, PlanarCriterion::area).error().code == ErrorCode::empty);
-        CHECK(fit::minimal_circle({}).error().code == ErrorCode::empty);
+        CHECK(fit::minimal_disc({}).error().code == ErrorCode::empty);
         Points points(4, glm::dvec2(1.0));
         points[2].x = std::numeric_limits<double>::quiet_NaN();
         CHECK(fit::minimal_rectangle(view(points), PlanarCriterion::area).error().item == 2);
-        CHECK(fit::minimal_circle(view(points)).error().item == 2);
+        CHECK(fit::minimal_disc(view(points)).error().item == 2);
         points[1].y = 1e31;
-        CHECK(fit::minimal_circle(view(points)).error().code == ErrorCode::out_of_range);
+        CHECK(fit::minimal_disc(view(points)).error().code == ErrorCode::out_of_range);
     }
 
-    TEST_CASE("a point and a segment have rectangles and circles of no more than their size") {
+    TEST_CASE("a point and a segment have rectangles and discs of no more than their size") {
         const Points point(3, glm::dvec2(1e8, -3.0));
         CHECK(fit::minimal_rectangle(view(point), PlanarCriterion::area)->half_extents == glm::dvec2(0.0));
-        CHECK(fit::minimal_circle(view(point))->radius == 0.0);
+        CHECK(fit::minimal_disc(view(point))->radius == 0.0);
         const Points flat = {{0.0, 2.0}, {3.0, 2.0}, {1.0, 2.0}};
-        const fit::Rectangle r = fit::minimal_rectangle(view(flat), PlanarCriterion::perimeter).value();
-        CHECK(r.perimeter() == doctest::Approx(6.0).epsilon(1e-15));
-        CHECK(r.area() == 0.0);
-        CHECK(fit::minimal_circle(view(flat))->radius == doctest::Approx(1.5).epsilon(1e-15));
+        const Rectangle r = fit::minimal_rectangle(view(flat), PlanarCriterion::perimeter).value();
+        CHECK(perimeter(r) == doctest::Approx(6.0).epsilon(1e-15));
+        CHECK(area(r) == 0.0);
+        CHECK(fit::minimal_disc(view(flat))->radius == doctest::Approx(1.5).epsilon(1e-15));
     }
 
     TEST_CASE("known figures: an equilateral triangle, a regular hexagon") {
         const double h = std::sqrt(3.0) / 2.0;
         const Points triangle = {{0.0, 0.0}, {1.0, 0.0}, {0.5, h}};
-        CHECK(fit::minimal_rectangle(view(triangle), PlanarCriterion::area)->area() ==
+        CHECK(area(fit::minimal_rectangle(view(triangle), PlanarCriterion::area).value()) ==
               doctest::Approx(h).epsilon(1e-14));
-        CHECK(fit::minimal_rectangle(view(triangle), PlanarCriterion::perimeter)->perimeter() ==
+        CHECK(perimeter(fit::minimal_rectangle(view(triangle), PlanarCriterion::perimeter).value()) ==
               doctest::Approx(2.0 + 2.0 * h).epsilon(1e-14));
-        CHECK(fit::minimal_circle(view(triangle))->radius == doctest::Approx(1.0 / std::sqrt(3.0)).epsilon(1e-14));
+        CHECK(fit::minimal_disc(view(triangle))->radius == doctest::Approx(1.0 / std::sqrt(3.0)).epsilon(1e-14));
         Points hexagon;
         for (int i = 0; i < 6; ++i)
             hexagon.emplace_back(std::cos(i * std::numbers::pi / 3.0), std::sin(i * std::numbers::pi / 3.0));
-        CHECK(fit::minimal_rectangle(view(hexagon), PlanarCriterion::area)->area() ==
+        CHECK(area(fit::minimal_rectangle(view(hexagon), PlanarCriterion::area).value()) ==
               doctest::Approx(4.0 * h).epsilon(1e-14));
-        CHECK(fit::minimal_circle(view(hexagon))->radius == doctest::Approx(1.0).epsilon(1e-14));
+        CHECK(fit::minimal_disc(view(hexagon))->radius == doctest::Approx(1.0).epsilon(1e-14));
     }
 
     TEST_CASE("rectangles contain every point and no direction of a fine grid does better") {
@@ -109,22 +109,22 @@ TEST_SUITE("fit/planar") {
                 points.push_back(
                     (glm::dvec2(3.0 * normal(random) + normal(random), normal(random)) + glm::dvec2(offset)) * scale);
             for (const auto criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
-                const fit::Rectangle r = fit::minimal_rectangle(view(points), criterion).value();
+                const Rectangle r = fit::minimal_rectangle(view(points), criterion).value();
                 for (const glm::dvec2& p : points) CHECK(contains(r, p));
                 CHECK(measure_of(r, criterion) <= by_brute_force(points, criterion, 2000) * (1.0 + 1e-9));
             }
         }
     }
 
-    TEST_CASE("circles contain every point and are the smallest through two or three of them") {
+    TEST_CASE("discs contain every point and are the smallest through two or three of them") {
         std::mt19937 random(2);
         std::normal_distribution<double> normal;
         for (int run = 0; run < 200; ++run) {
             Points points;
             for (int i = 0; i < 2 + run % 12; ++i) points.emplace_back(normal(random), normal(random));
-            const fit::Circle circle = fit::minimal_circle(view(points)).value();
-            for (const glm::dvec2& p : points) CHECK(contains(circle, p));
-            // Brute force: the largest over all pairs and triples of the smallest circle around them alone (Helly).
+            const Disc disc = fit::minimal_disc(view(points)).value();
+            for (const glm::dvec2& p : points) CHECK(contains(disc, p));
+            // Brute force: the largest over all pairs and triples of the smallest disc around them alone (Helly).
             double needed = 0.0;
             for (const glm::dvec2& a : points)
                 for (const glm::dvec2& b : points)
@@ -136,7 +136,7 @@ TEST_SUITE("fit/planar") {
                         needed = std::max(
                             needed, obtuse ? 0.5 * sides[2] : sides[0] * sides[1] * sides[2] / (2.0 * twice_area));
                     }
-            CHECK(circle.radius == doctest::Approx(needed).epsilon(1e-9));
+            CHECK(disc.radius == doctest::Approx(needed).epsilon(1e-9));
         }
     }
 }

@@ -1,5 +1,5 @@
 // Polygon files of every format, and what triangulating them leads to: the first byte says which format and method.
-#include <cli/polygon_files.hpp>
+#include <commands/polygon_files.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <cstdlib>
 

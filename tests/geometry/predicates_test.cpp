@@ -96,8 +96,16 @@ TEST_SUITE("geometry/predicates") {
         CHECK(orientation(glm::dvec2(0.1, 0.1), glm::dvec2(0.2, 0.2), glm::dvec2(up, 0.3)) == -1);
     }
 
+    TEST_CASE("the unit tetrahedron: z below the counter-clockwise triangle o, x, y is positive, above it negative") {
+        const glm::dvec3 o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+        CHECK(orientation(o, x, y, -z) == 1);
+        CHECK(orientation(o, x, y, z) == -1);
+        CHECK(orientation(o, y, x, z) == 1);
+    }
+
     TEST_CASE("d below a counter-clockwise triangle is positive") {
         const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+        CHECK(orientation(a, b, c, glm::dvec3(1, 1, -1e-300)) == 1);
         CHECK(orientation(a, b, c, glm::dvec3(0.3, 0.3, -1)) == 1);
         CHECK(orientation(a, b, c, glm::dvec3(0.3, 0.3, 1e-60)) == -1);
         CHECK(orientation(a, b, c, glm::dvec3(7, 9, 0)) == 0);

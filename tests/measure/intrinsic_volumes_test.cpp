@@ -23,18 +23,19 @@ TEST_SUITE("measure/intrinsic_volumes") {
     TEST_CASE("a surface that is open, torn or not finite is no polytope, and the culprit is named") {
         const std::vector<glm::dvec3> v = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
         const std::vector<std::uint32_t> open = {0, 2, 1, 0, 1, 3, 1, 2, 3}, out = {0, 2, 9};
-        CHECK(of_polytope(v, open).error().code == ErrorCode::degenerate);
-        CHECK(of_polytope(v, out).error().item == 2);
-        CHECK(of_polytope(v, {}).error().code == ErrorCode::invalid_argument);
+        CHECK(intrinsic_volumes_of_polytope(v, open).error().code == ErrorCode::degenerate);
+        CHECK(intrinsic_volumes_of_polytope(v, out).error().item == 2);
+        CHECK(intrinsic_volumes_of_polytope(v, {}).error().code == ErrorCode::invalid_argument);
         std::vector<glm::dvec3> bad = v;
         bad[3].z = std::nan("");
-        CHECK(of_polytope(bad, open).error().item == 3);
+        CHECK(intrinsic_volumes_of_polytope(bad, open).error().item == 3);
     }
 
     TEST_CASE("a flat triangle given by both sides is a flat polygon") {
         const std::vector<glm::dvec3> v = {{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}};
         const std::vector<std::uint32_t> sides = {0, 1, 2, 0, 2, 1};
-        const IntrinsicVolumes triangle = *of_polytope(v, sides), flat = of_flat_polygon(6.0, 12.0);
+        const IntrinsicVolumes triangle = *intrinsic_volumes_of_polytope(v, sides),
+                               flat = intrinsic_volumes_of_flat_polygon(6.0, 12.0);
         CHECK(triangle.volume == 0.0);
         CHECK(triangle.area == doctest::Approx(flat.area));
         CHECK(triangle.mean_curvature == doctest::Approx(flat.mean_curvature));
@@ -44,44 +45,49 @@ TEST_SUITE("measure/intrinsic_volumes") {
         const std::vector<glm::dvec3> v = {{1.0, 1.0, 1.0}, {1.0, -1.0, -1.0}, {-1.0, 1.0, -1.0}, {-1.0, -1.0, 1.0}};
         const std::vector<std::uint32_t> faces = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
         const double edge = std::sqrt(8.0);
-        const IntrinsicVolumes k = *of_polytope(v, faces);
+        const IntrinsicVolumes k = *intrinsic_volumes_of_polytope(v, faces);
         CHECK(k.volume == doctest::Approx(8.0 / 3.0));
         CHECK(k.area == doctest::Approx(std::sqrt(3.0) * edge * edge));
         CHECK(k.mean_curvature == doctest::Approx(3.0 * edge * std::acos(-1.0 / 3.0)));
     }
 
     TEST_CASE("hulls of points, segments and flat clouds have the measures of their dimension") {
-        CHECK(of_hull({}).error().code == ErrorCode::empty);
+        CHECK(intrinsic_volumes_of_hull({}).error().code == ErrorCode::empty);
         const std::vector<glm::dvec3> same(5, glm::dvec3(3.0));
-        CHECK(of_hull(same)->mean_curvature == 0.0);
+        CHECK(intrinsic_volumes_of_hull(same)->mean_curvature == 0.0);
         std::vector<glm::dvec3> line, plane;
         for (int i = 0; i < 7; ++i) line.push_back(static_cast<double>(i * i) * glm::dvec3(1.0, 2.0, 2.0));
-        CHECK(of_hull(line)->mean_curvature == doctest::Approx(of_segment(108.0).mean_curvature));
+        CHECK(intrinsic_volumes_of_hull(line)->mean_curvature ==
+              doctest::Approx(intrinsic_volumes_of_segment(108.0).mean_curvature));
         for (int i = 0; i < 25; ++i) plane.emplace_back(i % 5, 3 * (i / 5), 4 * (i / 5));  // a rectangle of 4 by 20
-        const IntrinsicVolumes flat = of_flat_polygon(80.0, 48.0);
-        CHECK(of_hull(plane)->area == doctest::Approx(flat.area));
-        CHECK(of_hull(plane)->mean_curvature == doctest::Approx(flat.mean_curvature));
-        CHECK(of_hull(plane)->volume == 0.0);
+        const IntrinsicVolumes flat = intrinsic_volumes_of_flat_polygon(80.0, 48.0);
+        CHECK(intrinsic_volumes_of_hull(plane)->area == doctest::Approx(flat.area));
+        CHECK(intrinsic_volumes_of_hull(plane)->mean_curvature == doctest::Approx(flat.mean_curvature));
+        CHECK(intrinsic_volumes_of_hull(plane)->volume == 0.0);
     }
 
     TEST_CASE("the hull of a full grid is its box, and of points in a ball nearly the ball") {
         std::vector<glm::dvec3> grid;
         for (int i = 0; i < 5 * 4 * 3; ++i) grid.emplace_back(i % 5, (i / 5) % 4, i / 20);
-        const IntrinsicVolumes box = of_box(4.0, 3.0, 2.0), hull = *of_hull(grid);
+        const IntrinsicVolumes box = intrinsic_volumes_of_box(4.0, 3.0, 2.0), hull = *intrinsic_volumes_of_hull(grid);
         CHECK(hull.volume == doctest::Approx(box.volume));
         CHECK(hull.area == doctest::Approx(box.area));
         CHECK(hull.mean_curvature == doctest::Approx(box.mean_curvature));
         Random random(1);
         std::vector<glm::dvec3> cloud;
         for (int i = 0; i < 2000; ++i) cloud.push_back(direction(random.point<2>()));
-        CHECK(of_hull(cloud)->volume == doctest::Approx(of_ball(1.0).volume).epsilon(0.01));
-        CHECK(of_hull(cloud)->area == doctest::Approx(of_ball(1.0).area).epsilon(0.01));
-        CHECK(of_hull(cloud)->mean_curvature == doctest::Approx(of_ball(1.0).mean_curvature).epsilon(0.005));
+        CHECK(intrinsic_volumes_of_hull(cloud)->volume ==
+              doctest::Approx(intrinsic_volumes_of_sphere(1.0).volume).epsilon(0.01));
+        CHECK(intrinsic_volumes_of_hull(cloud)->area ==
+              doctest::Approx(intrinsic_volumes_of_sphere(1.0).area).epsilon(0.01));
+        CHECK(intrinsic_volumes_of_hull(cloud)->mean_curvature ==
+              doctest::Approx(intrinsic_volumes_of_sphere(1.0).mean_curvature).epsilon(0.005));
         // Agrees with the frustum's own closed forms.
         Camera camera;
         camera.near_distance = 1.0, camera.far_distance = 9.0;
         const auto c = *frustum_corners(*frustum_of(camera));
-        CHECK(of_hull(c)->mean_curvature == doctest::Approx(of_frustum(camera)->mean_curvature));
+        CHECK(intrinsic_volumes_of_hull(c)->mean_curvature ==
+              doctest::Approx(intrinsic_volumes_of_frustum(camera)->mean_curvature));
     }
 
     TEST_CASE("measures are additive over a convex union, grow with the body and scale by their degree") {
@@ -91,20 +97,22 @@ TEST_SUITE("measure/intrinsic_volumes") {
             for (int i = 0; i < 12; ++i) points.push_back(ball_point(random.point<3>()));
             more = points;
             more.push_back(2.0 * direction(random.point<2>()));
-            const IntrinsicVolumes k = *of_hull(points), larger = *of_hull(more);
+            const IntrinsicVolumes k = *intrinsic_volumes_of_hull(points), larger = *intrinsic_volumes_of_hull(more);
             CHECK(larger.volume >= k.volume);
             CHECK(larger.area >= k.area);
             CHECK(larger.mean_curvature >= k.mean_curvature);
-            const Motion move{rotation(random.point<3>()), glm::dvec3(5.0)};
-            for (glm::dvec3& p : points) p = move(3.0 * p);
-            const IntrinsicVolumes moved = *of_hull(points);
+            const RigidTransform move{rotation(random.point<3>()), glm::dvec3(5.0)};
+            for (glm::dvec3& p : points) p = transform(move, 3.0 * p);
+            const IntrinsicVolumes moved = *intrinsic_volumes_of_hull(points);
             CHECK(moved.volume == doctest::Approx(27.0 * k.volume));
             CHECK(moved.area == doctest::Approx(9.0 * k.area));
             CHECK(moved.mean_curvature == doctest::Approx(3.0 * k.mean_curvature));
         }
         // A box cut in two: union and the common rectangle against the halves.
-        const IntrinsicVolumes whole = of_box(5.0, 2.0, 1.0), left = of_box(3.0, 2.0, 1.0),
-                               right = of_box(2.0, 2.0, 1.0), cut = of_flat_polygon(2.0, 6.0);
+        const IntrinsicVolumes whole = intrinsic_volumes_of_box(5.0, 2.0, 1.0),
+                               left = intrinsic_volumes_of_box(3.0, 2.0, 1.0),
+                               right = intrinsic_volumes_of_box(2.0, 2.0, 1.0),
+                               cut = intrinsic_volumes_of_flat_polygon(2.0, 6.0);
         CHECK(whole.volume + cut.volume == doctest::Approx(left.volume + right.volume));
         CHECK(whole.area + cut.area == doctest::Approx(left.area + right.area));
         CHECK(whole.mean_curvature + cut.mean_curvature == doctest::Approx(left.mean_curvature + right.mean_curvature));
@@ -118,9 +126,9 @@ TEST_SUITE("measure/intrinsic_volumes") {
         camera.aspect = 1.5;
         camera.near_distance = 1.0;
         camera.far_distance = 5.0;
-        const auto measures = of_frustum(camera);
+        const auto measures = intrinsic_volumes_of_frustum(camera);
         REQUIRE(measures.has_value());
-        const IntrinsicVolumes box = of_box(3.0, 2.0, 4.0);
+        const IntrinsicVolumes box = intrinsic_volumes_of_box(3.0, 2.0, 4.0);
         CHECK(measures->volume == doctest::Approx(box.volume));
         CHECK(measures->area == doctest::Approx(box.area));
         CHECK(measures->mean_curvature == doctest::Approx(box.mean_curvature));
@@ -132,7 +140,7 @@ TEST_SUITE("measure/intrinsic_volumes") {
         camera.aspect = 0.6;
         camera.near_distance = 0.1;
         camera.far_distance = 10.0;
-        const auto measures = of_frustum(camera);
+        const auto measures = intrinsic_volumes_of_frustum(camera);
         REQUIRE(measures.has_value());
         const auto face = [](double d) { return 4.0 * 0.6 * d * d; };
         CHECK(measures->volume == doctest::Approx((face(10.0) * 10.0 - face(0.1) * 0.1) / 3.0));
@@ -142,16 +150,16 @@ TEST_SUITE("measure/intrinsic_volumes") {
     }
 
     TEST_CASE("the kinematic formula is symmetric and gives Steiner's formula for a ball") {
-        const IntrinsicVolumes box = of_box(1.0, 2.0, 3.0);
+        const IntrinsicVolumes box = intrinsic_volumes_of_box(1.0, 2.0, 3.0);
         const double r = 0.5;
         const double steiner = box.volume + box.area * r + box.mean_curvature * r * r + 4.0 / 3.0 * pi * r * r * r;
-        CHECK(kinematic_measure(of_ball(r), box) == doctest::Approx(steiner));
-        CHECK(kinematic_measure(box, of_ball(r)) == doctest::Approx(steiner));
+        CHECK(kinematic_measure(intrinsic_volumes_of_sphere(r), box) == doctest::Approx(steiner));
+        CHECK(kinematic_measure(box, intrinsic_volumes_of_sphere(r)) == doctest::Approx(steiner));
     }
 
     TEST_CASE("long rays rank boxes by area, large bodies by edge sum") {
-        const Criterion rays = for_rays(1e9), body = for_partner(of_ball(1e9));
-        const auto cube = of_box(1.0, 1.0, 1.0), plate = of_box(2.4, 0.7, 0.05);
+        const Criterion rays = for_rays(1e9), body = for_partner(intrinsic_volumes_of_sphere(1e9));
+        const auto cube = intrinsic_volumes_of_box(1.0, 1.0, 1.0), plate = intrinsic_volumes_of_box(2.4, 0.7, 0.05);
         CHECK(rays(cube) / rays(plate) == doctest::Approx(cube.area / plate.area));
         CHECK(body(cube) / body(plate) == doctest::Approx(cube.mean_curvature / plate.mean_curvature));
     }

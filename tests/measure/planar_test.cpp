@@ -24,8 +24,8 @@ TEST_SUITE("measure/planar") {
         for (int i = 0; i < 9; ++i) line.emplace_back((i * 4) % 9, 2 * ((i * 4) % 9));
         const auto hull = convex_hull(line);
         REQUIRE(hull->size() == 2);
-        CHECK(of_convex_polygon(*hull).perimeter == doctest::Approx(2.0 * 8.0 * std::sqrt(5.0)));
-        CHECK(of_convex_polygon(*hull).area == 0.0);
+        CHECK(planar_measures_of_convex_polygon(*hull).perimeter == doctest::Approx(2.0 * 8.0 * std::sqrt(5.0)));
+        CHECK(planar_measures_of_convex_polygon(*hull).area == 0.0);
     }
 
     TEST_CASE("the hull of a filled square is its four corners, counter-clockwise") {
@@ -41,26 +41,27 @@ TEST_SUITE("measure/planar") {
     TEST_CASE("a polygon of many corners has the measures of its circle") {
         std::vector<glm::dvec2> points;
         for (int i = 0; i < 4096; ++i) points.push_back(3.0 * circle_point(i / 4096.0) + glm::dvec2(10.0, -7.0));
-        const PlanarMeasures polygon = of_convex_polygon(points), disc = of_disc(3.0);
+        const PlanarMeasures polygon = planar_measures_of_convex_polygon(points), disc = planar_measures_of_disc(3.0);
         CHECK(polygon.area == doctest::Approx(disc.area).epsilon(1e-5));
         CHECK(polygon.perimeter == doctest::Approx(disc.perimeter).epsilon(1e-6));
     }
 
     TEST_CASE("the kinematic formula gives Steiner's formula for a disc and the Minkowski sum of two segments") {
-        const PlanarMeasures rectangle = of_rectangle(2.0, 3.0);
+        const PlanarMeasures rectangle = planar_measures_of_rectangle(2.0, 3.0);
         const double steiner = 6.0 + 10.0 * 0.5 + pi * 0.25;
-        CHECK(kinematic_measure(of_disc(0.5), rectangle) == doctest::Approx(steiner));
-        CHECK(kinematic_measure(rectangle, of_disc(0.5)) == doctest::Approx(steiner));
+        CHECK(kinematic_measure(planar_measures_of_disc(0.5), rectangle) == doctest::Approx(steiner));
+        CHECK(kinematic_measure(rectangle, planar_measures_of_disc(0.5)) == doctest::Approx(steiner));
         // Segments a and b at angle φ: |ab sin φ|, whose mean is 2ab/π.
-        CHECK(kinematic_measure(of_planar_segment(2.0), of_planar_segment(5.0)) == doctest::Approx(2.0 * 10.0 / pi));
+        CHECK(kinematic_measure(planar_measures_of_segment(2.0), planar_measures_of_segment(5.0)) ==
+              doctest::Approx(2.0 * 10.0 / pi));
     }
 
     TEST_CASE("the kinematic formula is additive where the union is convex") {
         // Two rectangles side by side share a segment: f(A ∪ B) + f(A ∩ B) = f(A) + f(B).
-        const PlanarMeasures b = of_disc(0.7);
-        const double whole = kinematic_measure(b, of_rectangle(5.0, 2.0)),
-                     common = kinematic_measure(b, of_planar_segment(2.0));
-        CHECK(whole + common == doctest::Approx(kinematic_measure(b, of_rectangle(3.0, 2.0)) +
-                                                kinematic_measure(b, of_rectangle(2.0, 2.0))));
+        const PlanarMeasures b = planar_measures_of_disc(0.7);
+        const double whole = kinematic_measure(b, planar_measures_of_rectangle(5.0, 2.0)),
+                     common = kinematic_measure(b, planar_measures_of_segment(2.0));
+        CHECK(whole + common == doctest::Approx(kinematic_measure(b, planar_measures_of_rectangle(3.0, 2.0)) +
+                                                kinematic_measure(b, planar_measures_of_rectangle(2.0, 2.0))));
     }
 }

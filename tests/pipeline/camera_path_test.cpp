@@ -1,18 +1,24 @@
 #include <doctest/doctest.h>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 
 using namespace crofton;
 using namespace crofton::pipeline;
 
+static Json parsed(const std::string& text) {
+    Json document;
+    REQUIRE(parse_json(text, document));
+    return document;
+}
+
 TEST_SUITE("pipeline/camera_path") {
     TEST_CASE("entries that are no cameras are refused with their number") {
-        CHECK(camera_from_json(nlohmann::json::parse("[1]"), 4).error().item == 4);
-        CHECK(camera_from_json(nlohmann::json::parse(R"({"position": [1, 2]})"), 5).error().item == 5);
-        CHECK(camera_from_json(nlohmann::json::parse(R"({"near": -1})"), 6).error().code == ErrorCode::out_of_range);
-        CHECK(camera_from_json(nlohmann::json::parse(R"({"up": [0, 0, 1]})"), 7).error().code == ErrorCode::degenerate);
+        CHECK(camera_from_json(parsed("[1]"), 4).error().item == 4);
+        CHECK(camera_from_json(parsed(R"({"position": [1, 2]})"), 5).error().item == 5);
+        CHECK(camera_from_json(parsed(R"({"near": -1})"), 6).error().code == ErrorCode::out_of_range);
+        CHECK(camera_from_json(parsed(R"({"up": [0, 0, 1]})"), 7).error().code == ErrorCode::degenerate);
     }
 
     TEST_CASE("an empty scene, an unknown kind and a missing file are refused") {
@@ -25,7 +31,7 @@ TEST_SUITE("pipeline/camera_path") {
         camera.position = {1e7 + 0.1, -1.0 / 3.0, 2e-9};
         camera.forward = {0.1, 0.2, -0.7};
         camera.far_distance = INFINITY;
-        const auto again = camera_from_json(nlohmann::json::parse(to_json(camera).dump()), 0);
+        const auto again = camera_from_json(parsed(to_json(camera).dump()), 0);
         REQUIRE(again.has_value());
         CHECK(again->position == camera.position);
         CHECK(again->forward == camera.forward);

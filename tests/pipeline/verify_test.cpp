@@ -63,8 +63,8 @@ TEST_SUITE("pipeline/verify") {
         ++miscounted.triangles_passed;
         CHECK(mismatches(miscounted).wrong_counts > 0);
         FrameStatistics misdrawn = *frame;
-        misdrawn.gpu =
-            GpuCounts{frame->triangles_submitted, frame->triangles_submitted, frame->triangles_clipped + 1, 0};
+        misdrawn.gpu = render::GpuCounters{frame->triangles_submitted, frame->triangles_submitted,
+                                           frame->triangles_clipped + 1, 0};
         CHECK(mismatches(misdrawn).wrong_counts == 1);
         // Another camera than the one the pipeline answered for: verdicts and counts cannot fit.
         FrameStatistics elsewhere = *frame;

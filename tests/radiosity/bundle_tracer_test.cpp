@@ -22,7 +22,7 @@ Difference compare(const TriangleMesh& mesh, double cell_area, const std::array<
     const auto by_line = LineTracer::build(mesh);
     REQUIRE(by_bundle.has_value());
     const Bundle bundle = make_bundle(by_bundle->bounds(), cell_area, u, seed);
-    std::vector<sampling::Line> lines;
+    std::vector<Line> lines;
     for (std::size_t i = 0; i < bundle.cells(); ++i) lines.push_back(bundle.line(i));
     BundleTracer::Scratch scratch;
     LineHits ours, theirs;

@@ -62,7 +62,7 @@ TEST_SUITE("radiosity/line_source") {
         const auto tracer = LineTracer::build(shape.mesh);
         for (const LineMethod method : kMethods) {
             const LineSource source(tracer->bounds(), method, 3);
-            Vector<sampling::Line> a, b;
+            Vector<Line> a, b;
             source.draw(7, a);
             source.draw(8, b);
             CHECK_FALSE(a[0].direction == b[0].direction);

@@ -14,7 +14,7 @@ using namespace crofton::radiosity;
 namespace {
 
 // By signed volumes in double: t, or NaN where the line misses.
-double crossing(const TriangleMesh& mesh, std::size_t t, const sampling::Line& line) {
+double crossing(const TriangleMesh& mesh, std::size_t t, const Line& line) {
     const glm::dvec3 a(mesh.positions[mesh.indices[3 * t]]), b(mesh.positions[mesh.indices[3 * t + 1]]),
         c(mesh.positions[mesh.indices[3 * t + 2]]);
     const auto side = [&](const glm::dvec3& p, const glm::dvec3& q) {
@@ -46,7 +46,7 @@ TEST_SUITE("radiosity/line_tracer") {
         const auto tracer = LineTracer::build(mesh);
         REQUIRE(tracer.has_value());
         LineHits hits;
-        const sampling::Line line{{0.2, 0.2, -5.0}, {0.0, 0.0, 1.0}};
+        const Line line{{0.2, 0.2, -5.0}, {0.0, 0.0, 1.0}};
         tracer->all_hits({&line, 1}, hits);
         REQUIRE(hits.hits.size() == 100'000);
         CHECK(std::is_sorted(hits.hits.begin(), hits.hits.end(),
@@ -59,7 +59,7 @@ TEST_SUITE("radiosity/line_tracer") {
         const auto tracer = LineTracer::build(room.mesh);
         REQUIRE(tracer.has_value());
         for (int axis = 0; axis < 3; ++axis) {
-            sampling::Line line{{0.7, 0.9, 0.6}, glm::dvec3(0.0)};
+            Line line{{0.7, 0.9, 0.6}, glm::dvec3(0.0)};
             line.direction[axis] = 1.0;
             LineHits hits;
             tracer->all_hits({&line, 1}, hits);
@@ -76,7 +76,7 @@ TEST_SUITE("radiosity/line_tracer") {
             const auto tracer = LineTracer::build(mesh);
             REQUIRE(tracer.has_value());
             const sampling::UnitPoints points(3);
-            std::vector<sampling::Line> lines;
+            std::vector<Line> lines;
             for (std::uint64_t i = 0; i < 300; ++i)
                 lines.push_back(sampling::line_through_disc({glm::dvec3(0.0), 2.0}, points.at<4>(i)));
             LineHits hits;
@@ -114,13 +114,13 @@ TEST_SUITE("radiosity/line_tracer") {
         const sampling::UnitPoints points(5);
         std::size_t compared = 0;
         for (std::uint64_t i = 0; i < 500; ++i) {
-            sampling::Line line = sampling::line_through_disc({glm::dvec3(0.0), 1.0}, points.at<4>(i));
+            Line line = sampling::line_through_disc({glm::dvec3(0.0), 1.0}, points.at<4>(i));
             LineHits all;
             tracer->all_hits({&line, 1}, all);
             std::vector<Hit> ahead;
             for (const Hit& hit : all.hits)
                 if (hit.t > 0.0f) ahead.push_back(hit);
-            Ray ray{line, Hit::kNothing};
+            FirstHitQuery ray{line, Hit::kNothing};
             Hit first;
             tracer->first_hits({&ray, 1}, {&first, 1});
             CHECK(first.triangle == (ahead.empty() ? Hit::kNothing : ahead[0].triangle));

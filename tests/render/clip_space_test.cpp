@@ -1,5 +1,5 @@
 // ClipPredictor against lavapipe's own counter. The predictor is the CPU's half of `crofton frames --verify`.
-#include <crofton/geometry/clip_space.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <random>

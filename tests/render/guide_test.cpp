@@ -1,5 +1,5 @@
 // The example of docs/render.md, compiled and run.
-#include <crofton/geometry/clip_space.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <cstdio>
 
 #include "lavapipe.hpp"

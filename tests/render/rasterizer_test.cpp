@@ -1,5 +1,5 @@
 #include <cmath>
-#include <crofton/geometry/clip_space.hpp>
+#include <crofton/render/clip_space.hpp>
 #include <random>
 
 #include "lavapipe.hpp"

@@ -12,7 +12,7 @@ using std::numbers::pi;
 
 namespace {
 
-const Ball kBall{glm::dvec3(1.0, -2.0, 0.5), 2.0};
+const Sphere kSphere{glm::dvec3(1.0, -2.0, 0.5), 2.0};
 constexpr int kLines = 100'000;
 
 bool meets(const Line& line, const glm::dvec3& center, double radius) {
@@ -26,7 +26,7 @@ bool plausible(double hits, double n, double p) {
     return std::abs(hits - n * p) <= 4.5 * std::sqrt(n * p * (1.0 - p));
 }
 
-// Uniform lines through kBall hit a ball of radius r anywhere inside with chance r²/R².
+// Uniform lines through kSphere hit a ball of radius r anywhere inside with chance r²/R².
 template <class Sample>
 bool sees_every_place_alike(Sample sample) {
     const glm::dvec3 places[] = {{0.0, 0.0, 0.0}, {1.2, 0.0, 0.0}, {0.0, -1.2, 0.0}, {0.6, 0.6, 0.85}, {0.0, 0.0, 1.6}};
@@ -34,7 +34,7 @@ bool sees_every_place_alike(Sample sample) {
         Random random(seed, 77);
         const double r = 0.4;
         int hits = 0;
-        for (int i = 0; i < kLines; ++i) hits += meets(sample(random), kBall.center + places[seed], r);
+        for (int i = 0; i < kLines; ++i) hits += meets(sample(random), kSphere.center + places[seed], r);
         if (!plausible(hits, kLines, r * r / 4.0)) return false;
     }
     return true;
@@ -54,10 +54,10 @@ TEST_SUITE("sampling/global_lines") {
     }
 
     TEST_CASE("lines through the ball by two sphere points see every place alike") {
-        CHECK(sees_every_place_alike([](Random& r) { return line_through_two_sphere_points(kBall, r.point<4>()); }));
+        CHECK(sees_every_place_alike([](Random& r) { return line_through_two_sphere_points(kSphere, r.point<4>()); }));
     }
     TEST_CASE("lines through the ball by a disc point see every place alike") {
-        CHECK(sees_every_place_alike([](Random& r) { return line_through_disc(kBall, r.point<4>()); }));
+        CHECK(sees_every_place_alike([](Random& r) { return line_through_disc(kSphere, r.point<4>()); }));
     }
     TEST_CASE("cosine-weighted lines from a box's surface see every place alike, in proportion to the areas") {
         const Aabb box{glm::dvec3(-1.0, -2.0, -0.5), glm::dvec3(3.0, 1.0, 0.5)};
@@ -112,22 +112,22 @@ TEST_SUITE("sampling/global_lines") {
         Vector<Line> lines;
         const double cell = 0.05;
         const int bundles = 2'000;
-        for (int i = 0; i < bundles; ++i) append_line_bundle(kBall, cell, random, lines);
+        for (int i = 0; i < bundles; ++i) append_line_bundle(kSphere, cell, random, lines);
         const double expected = pi * 4.0 / cell;
         CHECK(static_cast<double>(lines.size()) / bundles == doctest::Approx(expected).epsilon(0.003));
         const double r = 0.4;
         double hits = 0.0;
-        for (const Line& line : lines) hits += meets(line, kBall.center + glm::dvec3(0.0, 1.2, 0.9), r);
+        for (const Line& line : lines) hits += meets(line, kSphere.center + glm::dvec3(0.0, 1.2, 0.9), r);
         CHECK(hits / bundles == doctest::Approx(pi * r * r / cell).epsilon(0.02));
     }
 
     TEST_CASE("a patch of area A expects N·A/(2πR²) crossings") {
         Random random(6);
-        const glm::dvec3 corner = kBall.center + glm::dvec3(-0.9, 0.3, 0.2), normal = glm::dvec3(0.0, 0.6, 0.8);
+        const glm::dvec3 corner = kSphere.center + glm::dvec3(-0.9, 0.3, 0.2), normal = glm::dvec3(0.0, 0.6, 0.8);
         const glm::dvec3 u(1.0, 0.0, 0.0), v(0.0, 0.8, -0.6);  // a 1.5 × 1 rectangle
         int hits = 0;
         for (int i = 0; i < kLines; ++i) {
-            const Line line = line_through_disc(kBall, random.point<4>());
+            const Line line = line_through_disc(kSphere, random.point<4>());
             const glm::dvec3 p = line.point + line.direction * (glm::dot(corner - line.point, normal) /
                                                                 glm::dot(line.direction, normal));
             const double s = glm::dot(p - corner, u), t = glm::dot(p - corner, v);
@@ -138,7 +138,7 @@ TEST_SUITE("sampling/global_lines") {
 
     TEST_CASE("the wrong densities are told from the right ones") {
         CHECK_FALSE(sees_every_place_alike(
-            [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kBall, r.point<4>()); }));
+            [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kSphere, r.point<4>()); }));
         const Aabb box{glm::dvec3(-1.0), glm::dvec3(1.0)};
         Random random(7);
         int hits = 0;

@@ -9,7 +9,7 @@ using namespace crofton::study;
 
 TEST_SUITE("study/bound_given_ancestors") {
     TEST_CASE("no points and bad criteria are refused") {
-        const auto queries = *study::QuerySample::planes({}, 64, 1);
+        const auto queries = *study::QuerySample::planes({glm::dvec3(0.0), 1.0}, 64, 1);
         CHECK(bound_given_ancestors({}, {}, queries, measure::minimal_area()).error().code == ErrorCode::empty);
         const std::vector<glm::dvec3> point = {glm::dvec3(0.0)};
         CHECK_FALSE(bound_given_ancestors(point, {}, queries, {}).has_value());
@@ -19,7 +19,7 @@ TEST_SUITE("study/bound_given_ancestors") {
         sampling::Random random(2);
         Camera camera;
         camera.far_distance = 10.0;
-        const sampling::Ball region{glm::dvec3(0.0), 3.0};
+        const Sphere region{glm::dvec3(0.0), 3.0};
         const study::QuerySample samples[] = {*study::QuerySample::planes(region, 4096, 1),
                                               *study::QuerySample::lines(region, 4096, 1),
                                               *study::QuerySample::frusta(camera, region, 4096, 1)};
@@ -35,7 +35,7 @@ TEST_SUITE("study/bound_given_ancestors") {
                 const auto result = bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
                 REQUIRE(result.has_value());
                 CHECK(result->hits <= result->plain_hits);
-                CHECK(result->plain_hits <= result->reaching);
+                CHECK(result->plain_hits <= result->ancestor_hits);
                 for (const glm::dvec3& p : points) CHECK(contains(result->bound, p));
                 CHECK(queries.hitting(queries.hitting(queries.all(), ancestors[0]), result->bound).size() ==
                       result->hits);

@@ -151,7 +151,7 @@ TEST_SUITE("study/planar_lines") {
         Random random(5);
         for (int trial = 0; trial < 100; ++trial) {
             std::vector<PlanarSupport> here, there;
-            const glm::dmat2 turn = rotation2(random.uniform());
+            const glm::dmat2 turn = planar_rotation(random.uniform());
             const glm::dvec2 shift(random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0));
             double last = std::numeric_limits<double>::infinity();
             for (int k = 0; k < 6; ++k) {

@@ -34,32 +34,34 @@ TEST_SUITE("study/query_sample") {
     TEST_CASE("empty regions, no queries and endless frusta are refused") {
         CHECK(QuerySample::planes({glm::dvec3(0.0), 0.0}, 10, 1).error().code == ErrorCode::invalid_argument);
         CHECK(QuerySample::lines({glm::dvec3(std::nan("")), 1.0}, 10, 1).error().code == ErrorCode::invalid_argument);
-        CHECK(QuerySample::lines({}, 0, 1).error().code == ErrorCode::out_of_range);
+        CHECK(QuerySample::lines({glm::dvec3(0.0), 1.0}, 0, 1).error().code == ErrorCode::out_of_range);
         Camera endless;
         endless.far_distance = std::numeric_limits<double>::infinity();
-        CHECK_FALSE(QuerySample::frusta(endless, {}, 10, 1).has_value());
+        CHECK_FALSE(QuerySample::frusta(endless, {glm::dvec3(0.0), 1.0}, 10, 1).has_value());
     }
 
     TEST_CASE("planes, lines and frusta hit a box as often as M, F and the kinematic formula say") {
-        const Ball region{glm::dvec3(0.1, 0.0, 0.2), 2.0};
+        const Sphere region{glm::dvec3(0.1, 0.0, 0.2), 2.0};
         const Obb box = turned_box();
-        const IntrinsicVolumes k = of_box(box);
+        const IntrinsicVolumes k = intrinsic_volumes_of_box(box);
         const std::uint32_t n = 1 << 16;
         check(*QuerySample::planes(region, n, 1), box, k.mean_curvature);
         check(*QuerySample::lines(region, n, 2), box, measure_of_lines(k.area));
         Camera camera;
         camera.near_distance = 0.5, camera.far_distance = 8.0;
         camera.position = glm::dvec3(100.0);  // where the prototype stands does not matter
-        check(*QuerySample::frusta(camera, region, n, 3), box, kinematic_measure(*of_frustum(camera), k));
+        check(*QuerySample::frusta(camera, region, n, 3), box,
+              kinematic_measure(*intrinsic_volumes_of_frustum(camera), k));
         camera.projection = Projection::orthographic;
         camera.height = 1.0;
-        check(*QuerySample::frusta(camera, region, n, 4), box, kinematic_measure(*of_frustum(camera), k));
+        check(*QuerySample::frusta(camera, region, n, 4), box,
+              kinematic_measure(*intrinsic_volumes_of_frustum(camera), k));
     }
 
     TEST_CASE("a frustum straddles what it meets and does not contain, planes and lines contain nothing") {
         Camera camera;
         camera.near_distance = 0.5, camera.far_distance = 8.0;
-        const Ball region{glm::dvec3(0.0), 2.0};
+        const Sphere region{glm::dvec3(0.0), 2.0};
         const auto frusta = *QuerySample::frusta(camera, region, 4096, 1);
         const auto planes = *QuerySample::planes(region, 4096, 1);
         Obb large = turned_box(), point;

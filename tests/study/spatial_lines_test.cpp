@@ -45,19 +45,21 @@ TEST_SUITE("study/spatial_lines") {
         CHECK(std::abs(measure_of_planes_hitting_all(point)->value) < 1e-12);
         CHECK(measure_of_lines_hitting_all(point)->value == 0.0);
         const std::vector<ConvexBody> segment = {{{glm::dvec3(0.0), glm::dvec3(0.0, 3.0, 4.0)}, 0.0}};
-        check(measure_of_planes_hitting_all(segment), of_segment(5.0).mean_curvature);
+        check(measure_of_planes_hitting_all(segment), intrinsic_volumes_of_segment(5.0).mean_curvature);
         CHECK(measure_of_lines_hitting_all(segment, {.tolerance = 1e-2, .max_cells = 2000})->value == 0.0);
     }
 
     TEST_CASE("planes that hit one body have measure M, to the error promised") {
-        check(cauchy_mean_curvature(ConvexBody::ball(glm::dvec3(3.0, -1.0, 2.0), 1.5)), of_ball(1.5).mean_curvature);
+        check(cauchy_mean_curvature(ConvexBody::ball(glm::dvec3(3.0, -1.0, 2.0), 1.5)),
+              intrinsic_volumes_of_sphere(1.5).mean_curvature);
         const auto m = cauchy_mean_curvature(box(glm::dvec3(0.0), glm::dvec3(1.0, 2.0, 3.0)));
         check(m, 6.0 * pi);
         CHECK(m->error <= 1e-4 * 6.0 * pi);
         Camera camera;
         camera.near_distance = 1.0, camera.far_distance = 20.0;
         camera.forward = glm::dvec3(1.0, 0.3, -0.2);
-        check(cauchy_mean_curvature(*ConvexBody::frustum(camera)), of_frustum(camera)->mean_curvature);
+        check(cauchy_mean_curvature(*ConvexBody::frustum(camera)),
+              intrinsic_volumes_of_frustum(camera)->mean_curvature);
     }
 
     TEST_CASE("Cauchy: the mean shadow gives the surface area") {
@@ -70,8 +72,8 @@ TEST_SUITE("study/spatial_lines") {
         Camera camera;
         camera.near_distance = 1.0, camera.far_distance = 5.0;
         const auto f = cauchy_area(*ConvexBody::frustum(camera));
-        check(f, of_frustum(camera)->area);
-        CHECK(f->value == doctest::Approx(of_frustum(camera)->area).epsilon(2e-3));
+        check(f, intrinsic_volumes_of_frustum(camera)->area);
+        CHECK(f->value == doctest::Approx(intrinsic_volumes_of_frustum(camera)->area).epsilon(2e-3));
     }
 
     TEST_CASE("planes that hit two bodies that meet have measure M1 + M2 - M_hull") {
@@ -108,7 +110,7 @@ TEST_SUITE("study/spatial_lines") {
             turned.axes = glm::mat3(rotation(random.point<3>()));
             turned.half_extents = glm::vec3(size);
             turned.center = glm::dvec3(random.uniform(-1.0, 1.0), 0.3, 0.0);
-            const IntrinsicVolumes k = of_box(turned);
+            const IntrinsicVolumes k = intrinsic_volumes_of_box(turned);
             const std::vector<ConvexBody> bodies = {ConvexBody::box(turned),
                                                     ConvexBody::ball(glm::dvec3(turned.center), 2.0)};
             for (const std::uint64_t cells : {4u, 16u, 100u, 1000u}) {

@@ -51,7 +51,7 @@ TEST_SUITE("triangulate/triangles_passed") {
         camera.aspect = 1.5;
         camera.near_distance = 0.5;
         camera.far_distance = 12.0;
-        const auto b = measure::of_frustum(camera);
+        const auto b = measure::intrinsic_volumes_of_frustum(camera);
         REQUIRE(b.has_value());
         // Every camera whose frustum may reach the façade stands in this box.
         const double half_far = camera.far_distance * std::tan(camera.fov_y / 2);

@@ -1,4 +1,4 @@
-// The viewer's parts that need no window: picking, views, journal, shapes.
+// The viewer's parts that need no window: picking, views, the frame history, shapes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/retriangulate.hpp"
+#include "viewer/camera_controller.hpp"
 #include "viewer/contact_finder.hpp"
-#include "viewer/eye.hpp"
-#include "viewer/journal.hpp"
+#include "viewer/frame_history.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/picking.hpp"
 #include "viewer/shape_colors.hpp"
@@ -248,7 +248,7 @@ TEST_SUITE("viewer/shape_colors") {
 
 TEST_SUITE("viewer/eye") {
     TEST_CASE("frame-all sees the whole focus, and keys move the camera by speed times time") {
-        Eye eye;
+        CameraController eye;
         eye.frame_all({}, {});  // empty: nothing happens
         const Aabb box{{-10, 0, -10}, {30, 20, 50}};
         eye.frame_all(box, box);
@@ -276,7 +276,7 @@ TEST_SUITE("viewer/eye") {
         CHECK(glm::distance(eye.camera.position, before + eye.camera.forward * (0.5 * eye.speed)) < 1e-9);
     }
     TEST_CASE("a bookmark brings the camera back, and an empty one changes nothing") {
-        Eye eye;
+        CameraController eye;
         eye.camera.position = {1, 2, 3};
         eye.store_bookmark(4);
         eye.camera.position = {7, 7, 7};
@@ -286,10 +286,10 @@ TEST_SUITE("viewer/eye") {
         CHECK(eye.camera.position.x == 1.0);
     }
     TEST_CASE("orbiting keeps the distance from its centre") {
-        Eye eye;
+        CameraController eye;
         const Aabb box{{-1, -1, -1}, {1, 1, 1}};
         eye.frame_all(box, box);
-        eye.mode = EyeMode::orbit;
+        eye.mode = CameraMode::orbit;
         const double distance = glm::length(eye.camera.position);
         eye.handle({Event::Kind::button_down, "", 1, {100, 100}});
         eye.handle({Event::Kind::cursor, "", 0, {180, 130}});
@@ -299,29 +299,29 @@ TEST_SUITE("viewer/eye") {
     }
 }
 
-TEST_SUITE("viewer/journal") {
-    TEST_CASE("an empty journal has no history, and exports valid files all the same") {
-        const Journal journal;
-        CHECK(journal.history([](const JournalEntry& e) { return e.frame_us; }).empty());
-        CHECK(journal.json()["frames"].empty());
-        CHECK(nlohmann::json::parse(journal.chrome_trace())["traceEvents"].empty());
+TEST_SUITE("viewer/frame_history") {
+    TEST_CASE("an empty history of frames has no values, and exports valid files all the same") {
+        const FrameHistory frame_history;
+        CHECK(frame_history.history([](const HistoryEntry& e) { return e.frame_us; }).empty());
+        CHECK(frame_history.json().find("frames")->size() == 0);
+        CHECK(nlohmann::json::parse(frame_history.chrome_trace())["traceEvents"].empty());
     }
     TEST_CASE("history keeps the last frames, bins count them, and the trace's spans do not overlap") {
-        Journal journal;
+        FrameHistory frame_history;
         for (int i = 0; i < 300; ++i) {
-            JournalEntry entry;
+            HistoryEntry entry;
             entry.frame_us = 1000.0 * i;
             entry.frame.cull_us = 10.0;
-            journal.add(entry);
+            frame_history.add(entry);
         }
-        const auto history = journal.history([](const JournalEntry& e) { return e.frame_us * 1e-3; });
-        REQUIRE(history.size() == Journal::kHistory);
+        const auto history = frame_history.history([](const HistoryEntry& e) { return e.frame_us * 1e-3; });
+        REQUIRE(history.size() == FrameHistory::kHistory);
         CHECK(history.front() == 60.0f);
         CHECK(history.back() == 299.0f);
-        const auto bins = journal.frame_time_histogram();
+        const auto bins = frame_history.frame_time_histogram();
         CHECK(bins[12] == 5.0f);            // 60 to 64 ms
         CHECK(bins[19] == 300.0f - 95.0f);  // 95 ms and more
-        const auto trace = nlohmann::json::parse(journal.chrome_trace());
+        const auto trace = nlohmann::json::parse(frame_history.chrome_trace());
         double end = 0.0;
         for (const auto& event : trace["traceEvents"]) {
             if (event["name"] != "frame") continue;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "../cli/run_cli.hpp"
-#include "cli/html_chart.hpp"
+#include "commands/html_chart.hpp"
 #include "pipeline/frame_statistics.hpp"
 
 using namespace crofton::test;

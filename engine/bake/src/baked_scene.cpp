@@ -66,11 +66,18 @@ Result<void> BakedScene::check_meshes() const {
 Result<void> BakedScene::check_instances() const {
     if (tree_->boxes().size() != instances_.size()) return damaged("the tree is not over the instances", kNoItem);
     for (std::size_t i = 0; i < instances_.size(); ++i)
-        if (instances_[i].mesh >= meshes_.size() || instances_[i].node >= nodes_.size())
+        if ((instances_[i].mesh >= meshes_.size() || instances_[i].node >= nodes_.size()) &&
+            !(instances_[i].mesh == scene::kNone && instances_[i].node == scene::kNone))
             return damaged("an instance names a mesh or a node that is not there", i);
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-        if (nodes_[i].parent != scene::kNone && nodes_[i].parent >= i)
-            return damaged("a node does not come after its parent", i);
+    // The way up from each node ends at a root or where an earlier way has passed, never where it has been itself.
+    Vector<std::uint32_t> passed(nodes_.size(), scene::kNone);
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i)
+        for (std::uint32_t at = i; at != scene::kNone; at = nodes_[at].parent) {
+            if (at >= nodes_.size()) return damaged("a node names a parent that is not there", i);
+            if (passed[at] == i) return damaged("a node is its own ancestor", i);
+            if (passed[at] != scene::kNone) break;
+            passed[at] = i;
+        }
     return {};
 }
 

@@ -18,7 +18,7 @@ crofton_criterion to_c(const measure::Criterion& criterion) {
     return {criterion.volume_weight, criterion.area_weight, criterion.mean_curvature_weight};
 }
 
-crofton_status to_options(const crofton_fit_options* options, const char* function, fit::Options& result) {
+crofton_status to_options(const crofton_fit_options* options, const char* function, fit::FitOptions& result) {
     CROFTON_CHECK(check_optional(options, function));
     if (!options) return CROFTON_OK;
     if (options->quality > CROFTON_FIT_EXACT) return report(CROFTON_INVALID_ARGUMENT, function, "unknown quality");
@@ -38,7 +38,7 @@ crofton_status fit_points(const Number* points, std::size_t count, const crofton
                           const char* function) {
     CROFTON_CHECK(check_array(points, count, function, 3));
     CROFTON_CHECK(check_pointer(box, function));
-    fit::Options choice;
+    fit::FitOptions choice;
     CROFTON_CHECK(to_options(options, function, choice));
     return give(fit::fit_obb(std::span(reinterpret_cast<const Point*>(points), count), choice), box, function);
 }

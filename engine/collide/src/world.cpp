@@ -13,6 +13,7 @@ namespace {
 struct Body {
     mesh::MeshTree tree;
     glm::dmat3 linear{1.0};  // that the vertices were multiplied by
+    std::uint64_t revision = 0;
     bool built = false, usable = false;
 };
 
@@ -24,8 +25,9 @@ bool is_rotation(const glm::dmat3& m) {
     return true;
 }
 
-void build(const TriangleMesh& mesh, const glm::dmat3& linear, Body& body) {
+void build(const TriangleMesh& mesh, std::uint64_t revision, const glm::dmat3& linear, Body& body) {
     body.built = true;
+    body.revision = revision;
     body.linear = linear;
     Result<mesh::MeshTree> tree = [&] {
         if (linear == glm::dmat3(1.0)) return mesh::MeshTree::build(mesh);
@@ -108,8 +110,8 @@ Body& World::State::prepare(const scene::Scene& scene, std::uint32_t instance) {
     const bool rigid = is_rotation(linear);
     Body& body = rigid ? by_mesh[mesh] : by_instance[instance];
     const glm::dmat3 wanted = rigid ? glm::dmat3(1.0) : linear;
-    if (!body.built || body.linear != wanted) {
-        build(scene.mesh(mesh), wanted, body);
+    if (!body.built || body.linear != wanted || body.revision != scene.mesh_revision(mesh)) {
+        build(scene.mesh(mesh), scene.mesh_revision(mesh), wanted, body);
         ++statistics.trees_built;
     }
     return body;

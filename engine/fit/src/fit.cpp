@@ -1,14 +1,14 @@
 #include <crofton/fit/fit.hpp>
 
-#include "enclose.hpp"
+#include "cloud/enclose.hpp"
 #include "fitter.hpp"
 
 namespace crofton::fit {
 
-Result<Obb> fit_obb(std::span<const glm::vec3> points, const Options& options) {
+Result<Obb> fit_obb(std::span<const glm::vec3> points, const FitOptions& options) {
     return Fitter().fit(points, options);
 }
-Result<Obb> fit_obb(std::span<const glm::dvec3> points, const Options& options) {
+Result<Obb> fit_obb(std::span<const glm::dvec3> points, const FitOptions& options) {
     return Fitter().fit(points, options);
 }
 
@@ -21,7 +21,7 @@ Result<Obb> around(std::span<const Point> points, const glm::mat3& axes) {
     if (auto valid = validate(shape); !valid) return tl::unexpected(valid.error());
     PointCloud cloud;
     if (auto valid = cloud.assign(points); !valid) return tl::unexpected(valid.error());
-    return points.size() <= kFew ? enclose_few(cloud, axes) : enclose(cloud, axes);
+    return points.size() <= kSmallSet ? enclose_small_set(cloud, axes) : enclose(cloud, axes);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Worker {
     Error error;
 };
 
-Result<Obb> fit_cluster(const Clusters& clusters, std::size_t i, const Options& options, Worker& worker) {
+Result<Obb> fit_cluster(const Clusters& clusters, std::size_t i, const FitOptions& options, Worker& worker) {
     const std::size_t begin = i == 0 ? 0 : clusters.ends[i - 1], end = clusters.ends[i];
     worker.points.clear();
     for (std::size_t j = begin; j < end; ++j) {
@@ -31,7 +31,7 @@ Result<Obb> fit_cluster(const Clusters& clusters, std::size_t i, const Options& 
 
 }  // namespace
 
-Result<void> fit_many(const Clusters& clusters, const Options& options, Executor& executor, std::span<Obb> boxes) {
+Result<void> fit_many(const Clusters& clusters, const FitOptions& options, Executor& executor, std::span<Obb> boxes) {
     CROFTON_ASSERT(boxes.size() == clusters.ends.size(), "fit_many: one box per cluster");
     if (auto valid = measure::validate(options.criterion); !valid) return valid;
     if (clusters.ends.empty()) return {};

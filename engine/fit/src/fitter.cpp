@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "enclose.hpp"
-#include "polish.hpp"
+#include "cloud/enclose.hpp"
+#include "search/polish.hpp"
 
 namespace crofton::fit {
 namespace {
@@ -18,18 +18,19 @@ const glm::dmat3 kDirections[] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                   {{0, 1, 1}, {1, -1, 0}, {1, 0, -1}},
                                   {{0, 1, -1}, {1, 0.5, 0}, {0, 0.5, -1}}};
 
-// Flat and straight sets have boxes of no volume in many frames: among these the surface area chooses.
+// A flat or straight set has a box of volume 0 in many frames. Volumes up to this count as 0 (the set's largest half
+// extent is between 1/2 and 1); the surface area then chooses.
 constexpr double kFlat = 1e-13;
 constexpr Weights kArea{0.0, 1.0, 0.0};
 
-// What the rounding of axes to float may cost, relatively, before neighbouring floats are tried.
+// Rounding the axes to float may raise the criterion by this much, relatively, before neighbouring floats are tried.
 constexpr double kAxisTolerance = 1e-5;
 
-// A box this thin, relatively, is searched again in double: float coordinates are too coarse across it.
+// A box whose thinnest edge is below this part of its longest is searched again in double: float is too coarse for it.
 constexpr double kThin = 1e-3;
 
-constexpr FewEffort kFastFew{1, 6, 2}, kTightFew{2, 9, 4}, kTightFewByVolume{3, 9, 4};
-constexpr Effort kFast{kFastFew, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
+constexpr SmallSetEffort kFastSmallSet{1, 6, 2}, kTightSmallSet{2, 9, 4}, kTightSmallSetByVolume{3, 9, 4};
+constexpr Effort kFast{kFastSmallSet, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
 
 class Deadline {
   public:
@@ -46,7 +47,7 @@ class Deadline {
 
 }  // namespace
 
-void Fitter::gather(std::size_t triples) {
+void Fitter::gather_extremes(std::size_t triples) {
     subset_.clear();
     for (const glm::dmat3& triple : std::span(kDirections).first(triples)) {
         const Supports supports = cloud_.supports(triple);
@@ -55,7 +56,7 @@ void Fitter::gather(std::size_t triples) {
     make_canonical(subset_);
 }
 
-Candidate Fitter::rough(const Weights& weights) {
+Candidate Fitter::best_tetrahedral_frame(const Weights& weights) {
     frames_.assign(1, glm::dmat3(1.0));
     tetrahedral_frames(subset_, frames_);
     Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
@@ -64,16 +65,17 @@ Candidate Fitter::rough(const Weights& weights) {
     return best;
 }
 
-// By volume all frames of a flat set may look alike: there the area decides.
-Weights Fitter::effective(const Weights& weights) {
+Weights Fitter::search_weights(const Weights& weights) {
     if (weights.pairs + weights.sum > 0.0) return weights;
-    gather(5);
-    return rough(weights).value <= kFlat ? kArea : weights;
+    gather_extremes(5);
+    return best_tetrahedral_frame(weights).value <= kFlat ? kArea : weights;
 }
 
-FewSearch::Found Fitter::search_subset(const Weights& weights, const FewEffort& effort, const glm::dmat3* near) {
-    few_.assign(subset_);
-    FewSearch::Found found = near == nullptr ? few_.search(weights, effort) : few_.improve(weights, effort, *near);
+SmallSetSearch::Found Fitter::search_subset(const Weights& weights, const SmallSetEffort& effort,
+                                            const glm::dmat3* near) {
+    small_set_search_.assign(subset_);
+    SmallSetSearch::Found found =
+        near == nullptr ? small_set_search_.search(weights, effort) : small_set_search_.improve(weights, effort, *near);
     const glm::dvec3 extent = found.extent;
     if (std::min({extent.x, extent.y, extent.z}) < kThin * std::max({extent.x, extent.y, extent.z})) {
         Candidate candidate{found.axes, found.value};
@@ -84,14 +86,14 @@ FewSearch::Found Fitter::search_subset(const Weights& weights, const FewEffort& 
     return found;
 }
 
-// The subset's best frame looks at least as good as it is. Where all points agree, it is the best of all that the
-// search can tell.
-Candidate Fitter::local(const Weights& weights, const Effort& effort) {
-    gather(effort.triples);
+// The value of a frame for the subset is a lower bound of its value for all points. The search ends when both agree, or
+// when the subset has all support points.
+Candidate Fitter::local_search(const Weights& weights, const Effort& effort) {
+    gather_extremes(effort.triples);
     Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
     for (int query = 0; query < effort.queries; ++query) {
         const bool anew = query < effort.searches;
-        const FewSearch::Found found = search_subset(weights, effort.few, anew ? nullptr : &best.axes);
+        const SmallSetSearch::Found found = search_subset(weights, effort.small_set, anew ? nullptr : &best.axes);
         const Supports supports = cloud_.supports(found.axes);
         const double value = value_of(weights, supports, found.axes);
         if (value < best.value) best = {found.axes, value};
@@ -103,20 +105,20 @@ Candidate Fitter::local(const Weights& weights, const Effort& effort) {
     return best;
 }
 
-Obb Fitter::fit_few(const Weights& weights, const FewEffort& effort) {
+Obb Fitter::fit_small_set(const Weights& weights, const SmallSetEffort& effort) {
     cloud_.sorted(subset_);
-    FewSearch::Found found = search_subset(weights, effort, nullptr);
+    SmallSetSearch::Found found = search_subset(weights, effort, nullptr);
     Weights by = weights;
     if (weights.pairs + weights.sum == 0.0 && found.value <= kFlat) {
         by = kArea;
         found = search_subset(by, effort, nullptr);
     }
-    return enclose_few(cloud_, rounded(found.axes, found.extent, by, kAxisTolerance));
+    return enclose_small_set(cloud_, rounded(found.axes, found.extent, by, kAxisTolerance));
 }
 
-SearchResult Fitter::global(const Weights& weights, const SearchLimits& limits) {
-    gather(5);
-    return branch_and_bound(cloud_, weights, subset_, rough(weights).axes, limits, buffers_);
+SearchResult Fitter::global_search(const Weights& weights, const SearchLimits& limits) {
+    gather_extremes(5);
+    return branch_and_bound(cloud_, weights, subset_, best_tetrahedral_frame(weights).axes, limits, buffers_);
 }
 
 Obb Fitter::box_of(const glm::dmat3& axes, const Weights& weights, double tolerance) {
@@ -125,7 +127,7 @@ Obb Fitter::box_of(const glm::dmat3& axes, const Weights& weights, double tolera
 }
 
 template <class Point>
-Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
+Result<Obb> Fitter::fit(std::span<const Point> points, const FitOptions& options) {
     if (options.quality == Quality::exact) {
         ExactOptions exact_options;
         exact_options.criterion = options.criterion;
@@ -135,14 +137,16 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const Options& options) {
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
     const bool fast = options.quality == Quality::fast;
-    if (points.size() <= kFew)
-        return fit_few(asked, fast ? kFastFew : asked.product > 0.0 ? kTightFewByVolume : kTightFew);
-    const Weights weights = effective(asked);
-    return box_of(local(weights, fast ? kFast : kTight).axes, weights, kAxisTolerance);
+    if (points.size() <= kSmallSet)
+        return fit_small_set(asked, fast                  ? kFastSmallSet
+                                    : asked.product > 0.0 ? kTightSmallSetByVolume
+                                                          : kTightSmallSet);
+    const Weights weights = search_weights(asked);
+    return box_of(local_search(weights, fast ? kFast : kTight).axes, weights, kAxisTolerance);
 }
 
-template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const Options&);
-template Result<Obb> Fitter::fit(std::span<const glm::dvec3>, const Options&);
+template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const FitOptions&);
+template Result<Obb> Fitter::fit(std::span<const glm::dvec3>, const FitOptions&);
 
 template <class Point>
 Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions& options) {
@@ -153,7 +157,7 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
         return fail(ErrorCode::invalid_argument, kNoItem, "fit_exact: the time budget is negative or NaN");
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const NormalisedWeights normalised = normalised_weights(options.criterion, cloud_.unit());
-    const Weights weights = effective(normalised.weights);
+    const Weights weights = search_weights(normalised.weights);
     const bool flat = weights.product == 0.0 && normalised.weights.product > 0.0 && normalised.weights.pairs == 0.0 &&
                       normalised.weights.sum == 0.0;
 
@@ -164,13 +168,13 @@ Result<ExactFit> Fitter::exact(std::span<const Point> points, const ExactOptions
             return false;
         return !deadline.passed();
     };
-    const FunctionRef<bool(double, double, std::uint64_t)> go_on(keep_going);
-    SearchLimits limits{options.gap, options.max_cells, &go_on};
-    const SearchResult found = global(weights, limits);
+    const FunctionRef<bool(double, double, std::uint64_t)> callback(keep_going);
+    SearchLimits limits{options.gap, options.max_cells, &callback};
+    const SearchResult found = global_search(weights, limits);
 
     ExactFit fit;
     fit.box = box_of(found.best.axes, weights, 3e-7);
-    fit.value = options.criterion(measure::of_box(fit.box));
+    fit.value = options.criterion(measure::intrinsic_volumes_of_box(fit.box));
     fit.lower_bound = flat ? 0.0 : std::min(found.lower_bound * normalised.scale, fit.value);
     fit.gap = fit.value > 0.0 ? (fit.value - fit.lower_bound) / fit.value : 0.0;
     const double unrounded = flat ? 0.0 : found.best.value * normalised.scale;

@@ -1,50 +1,52 @@
-// Everything a fit needs besides the points; memory is kept from one fit to the next.
+// Runs the fits of all qualities. Keeps its memory from one fit to the next.
 #pragma once
 #include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
 
-#include "branch_and_bound.hpp"
-#include "few_search.hpp"
-#include "local_search.hpp"
-#include "point_cloud.hpp"
+#include "cloud/point_cloud.hpp"
+#include "exact/branch_and_bound.hpp"
+#include "search/local_search.hpp"
+#include "small_set/search.hpp"
 
 namespace crofton::fit {
 
-// How much a local search on many points may cost.
+// Limits of the work of a local search on many points.
 struct Effort {
-    FewEffort few;
-    std::size_t triples;  // of directions that give the first extreme points
-    int searches;         // from all frames; after them only from the best
-    int queries;          // times it may ask all points for the support points of a frame
+    SmallSetEffort small_set;
+    std::size_t triples;  // of k-DOP directions whose extreme points begin the subset
+    int searches;         // rounds that search from all frames; later rounds search from the best frame only
+    int queries;          // rounds; each asks all points for the support points of one frame
 };
 
 class Fitter {
   public:
     template <class Point>
-    [[nodiscard]] Result<Obb> fit(std::span<const Point> points, const Options& options);
+    [[nodiscard]] Result<Obb> fit(std::span<const Point> points, const FitOptions& options);
     template <class Point>
     [[nodiscard]] Result<ExactFit> exact(std::span<const Point> points, const ExactOptions& options);
 
   private:
-    // Into subset_: extreme points along `triples` triples of the directions of a k-DOP, at most 5.
-    void gather(std::size_t triples);
-    // Of the frames built from subset_, the best for it.
-    [[nodiscard]] Candidate rough(const Weights& weights);
-    // A good frame for subset_; near a given one, if any.
-    [[nodiscard]] FewSearch::Found search_subset(const Weights& weights, const FewEffort& effort,
-                                                 const glm::dmat3* near);
-    // A good frame for all: few extreme points are searched, and grow by the support points of the frames found.
-    [[nodiscard]] Candidate local(const Weights& weights, const Effort& effort);
-    [[nodiscard]] Obb fit_few(const Weights& weights, const FewEffort& effort);
-    [[nodiscard]] SearchResult global(const Weights& weights, const SearchLimits& limits);
+    // Writes to subset_ the extreme points along `triples` triples of directions of a k-DOP, at most 5.
+    void gather_extremes(std::size_t triples);
+    // The best for subset_ of the frames that extreme points of subset_ span.
+    [[nodiscard]] Candidate best_tetrahedral_frame(const Weights& weights);
+    // A locally best frame for subset_, found from `near` or, if that is null, from all orientations.
+    [[nodiscard]] SmallSetSearch::Found search_subset(const Weights& weights, const SmallSetEffort& effort,
+                                                      const glm::dmat3* near);
+    // A locally best frame for all points. Searches on subset_ and asks all points for the support points of the frame
+    // found; those that subset_ lacks join it, and the search is repeated.
+    [[nodiscard]] Candidate local_search(const Weights& weights, const Effort& effort);
+    [[nodiscard]] Obb fit_small_set(const Weights& weights, const SmallSetEffort& effort);
+    [[nodiscard]] SearchResult global_search(const Weights& weights, const SearchLimits& limits);
     [[nodiscard]] Obb box_of(const glm::dmat3& axes, const Weights& weights, double tolerance);
-    [[nodiscard]] Weights effective(const Weights& weights);
+    // The weights to search by: those asked for, or those of the area where the volume is 0 in many frames.
+    [[nodiscard]] Weights search_weights(const Weights& weights);
 
     PointCloud cloud_;
     SearchBuffers buffers_;
     Vector<glm::dvec3> subset_;
     Vector<glm::dmat3> frames_;
-    FewSearch few_;
+    SmallSetSearch small_set_search_;
 };
 
 }  // namespace crofton::fit

@@ -24,9 +24,9 @@ Result<Obb> merge(std::span<const Obb> boxes, const measure::Criterion& criterio
     if (!merged) return merged;
     // A corner is a sum of four exact terms, none larger than 2 · `largest`, rounded three times: it is off by less
     // than 3 · 2^-52 · largest in each coordinate, less than twice that along an axis of the merged box.
-    const double slack = 12.0 * 0x1p-52 * largest;
+    const double error_bound = 12.0 * 0x1p-52 * largest;
     for (int k = 0; k < 3; ++k) {
-        const double half = static_cast<double>(merged->half_extents[k]) + slack;
+        const double half = static_cast<double>(merged->half_extents[k]) + error_bound;
         float grown = static_cast<float>(half);
         if (static_cast<double>(grown) < half) grown = std::nextafter(grown, std::numeric_limits<float>::infinity());
         merged->half_extents[k] = grown;

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "calipers.hpp"
+#include "search/calipers.hpp"
 
 namespace crofton::fit {
 namespace {
@@ -25,8 +25,8 @@ Result<void> check(std::span<const glm::dvec2> points) {
     return {};
 }
 
-// The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: off by
-// less than 4 units of Σ|axis_i d_i|, which is added; nothing is where the terms are zero.
+// The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: the
+// error is less than 4 units of Σ|axis_i d_i|, and 5 are added.
 Rectangle around(std::span<const glm::dvec2> points, const glm::dvec2& axis) {
     const glm::dvec2 axes[2] = {axis, {-axis.y, axis.x}};
     const glm::dvec2 first = points[0];
@@ -47,23 +47,23 @@ Rectangle around(std::span<const glm::dvec2> points, const glm::dvec2& axis) {
         for (const glm::dvec2& p : points) {
             const glm::dvec2 d = p - rectangle.center;
             const double x = axes[k].x * d.x, y = axes[k].y * d.y;
-            const double reach = std::abs(x + y) + 5.0 * kUnit * (std::abs(x) + std::abs(y));
-            rectangle.half_extents[k] = std::max(rectangle.half_extents[k], reach);
+            const double half = std::abs(x + y) + 5.0 * kUnit * (std::abs(x) + std::abs(y));
+            rectangle.half_extents[k] = std::max(rectangle.half_extents[k], half);
         }
     return rectangle;
 }
 
-Circle through(const glm::dvec2& a, const glm::dvec2& b) {
+Disc through(const glm::dvec2& a, const glm::dvec2& b) {
     return {0.5 * (a + b), 0.5 * glm::distance(a, b)};
 }
 
-Circle through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+Disc through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const glm::dvec2 p = b - a, q = c - a;
     const double twice = 2.0 * (p.x * q.y - p.y * q.x);
     if (twice == 0.0) {
         // Collinear: the longest of the three segments.
-        Circle longest = through(a, b);
-        for (const Circle& other : {through(b, c), through(c, a)})
+        Disc longest = through(a, b);
+        for (const Disc& other : {through(b, c), through(c, a)})
             if (other.radius > longest.radius) longest = other;
         return longest;
     }
@@ -88,12 +88,12 @@ Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygo
     return around(polygon, best.direction);
 }
 
-Result<Circle> minimal_circle(std::span<const glm::dvec2> points) {
+Result<Disc> minimal_disc(std::span<const glm::dvec2> points) {
     if (auto valid = check(points); !valid) return tl::unexpected(valid.error());
     auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     Vector<glm::dvec2>& corners = *hull;
-    // A fixed shuffle: what it must avoid is the order around the hull, not an adversary.
+    // A fixed shuffle suffices: the order around the hull is the bad case.
     std::uint64_t state = 0x9e3779b97f4a7c15u;
     for (std::size_t i = corners.size(); i > 1; --i) {
         state = state * 6364136223846793005u + 1442695040888963407u;
@@ -102,26 +102,26 @@ Result<Circle> minimal_circle(std::span<const glm::dvec2> points) {
     // Work near the origin, so that squares do not lose what the coordinates hold.
     const glm::dvec2 origin = corners[0];
     for (glm::dvec2& p : corners) p -= origin;
-    Circle circle;
+    Disc disc;
     const auto outside = [&](const glm::dvec2& p) {
-        return glm::distance(p, circle.center) > circle.radius * (1.0 + 1e-14);
+        return glm::distance(p, disc.center) > disc.radius * (1.0 + 1e-14);
     };
     for (std::size_t i = 1; i < corners.size(); ++i) {
         if (!outside(corners[i])) continue;
-        circle = {corners[i], 0.0};
+        disc = {corners[i], 0.0};
         for (std::size_t j = 0; j < i; ++j) {
             if (!outside(corners[j])) continue;
-            circle = through(corners[i], corners[j]);
+            disc = through(corners[i], corners[j]);
             for (std::size_t k = 0; k < j; ++k)
-                if (outside(corners[k])) circle = through(corners[i], corners[j], corners[k]);
+                if (outside(corners[k])) disc = through(corners[i], corners[j], corners[k]);
         }
     }
-    circle.center += origin;
-    circle.radius = 0.0;
+    disc.center += origin;
+    disc.radius = 0.0;
     // Differences, squares, sum and root round by less than 4 units together.
     for (const glm::dvec2& p : points)
-        circle.radius = std::max(circle.radius, glm::distance(p, circle.center) * (1.0 + 5.0 * kUnit));
-    return circle;
+        disc.radius = std::max(disc.radius, glm::distance(p, disc.center) * (1.0 + 5.0 * kUnit));
+    return disc;
 }
 
 }  // namespace crofton::fit

@@ -1,4 +1,5 @@
 #include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/plane_filter.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <cstdint>
 #include <initializer_list>
@@ -6,9 +7,6 @@
 
 namespace crofton {
 namespace {
-
-// Shewchuk 1997, figure 23 (bound A of the three-dimensional orientation test).
-constexpr double kOrientation3Bound = (7.0 + 56.0 * detail::kRounding) * detail::kRounding;
 
 template <std::size_t N>
 auto cross(const Expansion<N>& ax, const Expansion<N>& ay, const Expansion<N>& bx, const Expansion<N>& by) {
@@ -80,15 +78,8 @@ int detail::in_circle_exact(const glm::dvec2& a, const glm::dvec2& b, const glm:
 }
 
 int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
-    const glm::dvec3 ad = a - d, bd = b - d, cd = c - d;
-    const double bxcy = bd.x * cd.y, cxby = cd.x * bd.y;
-    const double cxay = cd.x * ad.y, axcy = ad.x * cd.y;
-    const double axby = ad.x * bd.y, bxay = bd.x * ad.y;
-    const double determinant = ad.z * (bxcy - cxby) + bd.z * (cxay - axcy) + cd.z * (axby - bxay);
-    const double permanent = (std::fabs(bxcy) + std::fabs(cxby)) * std::fabs(ad.z) +
-                             (std::fabs(cxay) + std::fabs(axcy)) * std::fabs(bd.z) +
-                             (std::fabs(axby) + std::fabs(bxay)) * std::fabs(cd.z);
-    if (std::fabs(determinant) >= kOrientation3Bound * permanent) return detail::sign_of(determinant);
+    const int sign = PlaneFilter(a, b, c).side(d);
+    if (sign != kUnknownSign) return sign;
     const auto ax = exact_difference(a.x, d.x), ay = exact_difference(a.y, d.y), az = exact_difference(a.z, d.z);
     const auto bx = exact_difference(b.x, d.x), by = exact_difference(b.y, d.y), bz = exact_difference(b.z, d.z);
     const auto cx = exact_difference(c.x, d.x), cy = exact_difference(c.y, d.y), cz = exact_difference(c.z, d.z);

@@ -16,14 +16,14 @@ Criterion minimal_perimeter() {
     return {0.0, 0.0, 1.0 / pi};
 }
 Criterion for_rays(double length) {
-    return for_partner(of_segment(length));
+    return for_partner(intrinsic_volumes_of_segment(length));
 }
 Criterion for_partner(const IntrinsicVolumes& b) {
     return {1.0, b.mean_curvature / (4.0 * pi), b.area / (4.0 * pi)};
 }
 
 Result<Criterion> for_frustum(const Camera& camera) {
-    return of_frustum(camera).map([](const IntrinsicVolumes& b) { return for_partner(b); });
+    return intrinsic_volumes_of_frustum(camera).map([](const IntrinsicVolumes& b) { return for_partner(b); });
 }
 
 Result<void> validate(const Criterion& criterion) {

@@ -4,7 +4,7 @@
 
 namespace crofton::measure {
 
-Result<IntrinsicVolumes> of_hull(std::span<const glm::dvec3> points) {
+Result<IntrinsicVolumes> intrinsic_volumes_of_hull(std::span<const glm::dvec3> points) {
     const auto hull = crofton::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     const auto corner = [&](std::size_t i) { return points[hull->vertices[i]]; };
@@ -12,7 +12,7 @@ Result<IntrinsicVolumes> of_hull(std::span<const glm::dvec3> points) {
         case 0:
             return IntrinsicVolumes{};
         case 1:
-            return of_segment(glm::length(corner(1) - corner(0)));
+            return intrinsic_volumes_of_segment(glm::length(corner(1) - corner(0)));
         case 2: {
             glm::dvec3 twice_area(0.0);
             double perimeter = 0.0;
@@ -21,10 +21,10 @@ Result<IntrinsicVolumes> of_hull(std::span<const glm::dvec3> points) {
                 twice_area += glm::cross(corner(i) - corner(0), corner((i + 1) % n) - corner(0));
                 perimeter += glm::length(corner((i + 1) % n) - corner(i));
             }
-            return of_flat_polygon(0.5 * glm::length(twice_area), perimeter);
+            return intrinsic_volumes_of_flat_polygon(0.5 * glm::length(twice_area), perimeter);
         }
         default:
-            return of_polytope(points, hull->triangles);
+            return intrinsic_volumes_of_polytope(points, hull->triangles);
     }
 }
 

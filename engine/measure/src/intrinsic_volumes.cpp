@@ -10,27 +10,27 @@ namespace crofton::measure {
 
 using std::numbers::pi;
 
-IntrinsicVolumes of_box(double a, double b, double c) {
+IntrinsicVolumes intrinsic_volumes_of_box(double a, double b, double c) {
     return {a * b * c, 2.0 * (a * b + b * c + c * a), pi * (a + b + c)};
 }
 
-IntrinsicVolumes of_box(const Obb& box) {
+IntrinsicVolumes intrinsic_volumes_of_box(const Obb& box) {
     return {volume(box), surface_area(box), pi * edge_sum(box)};
 }
 
-IntrinsicVolumes of_ball(double radius) {
+IntrinsicVolumes intrinsic_volumes_of_sphere(double radius) {
     return {4.0 / 3.0 * pi * radius * radius * radius, 4.0 * pi * radius * radius, 4.0 * pi * radius};
 }
 
-IntrinsicVolumes of_segment(double length) {
+IntrinsicVolumes intrinsic_volumes_of_segment(double length) {
     return {0.0, 0.0, pi * length};
 }
 
-IntrinsicVolumes of_flat_polygon(double area, double perimeter) {
+IntrinsicVolumes intrinsic_volumes_of_flat_polygon(double area, double perimeter) {
     return {0.0, 2.0 * area, 0.5 * pi * perimeter};
 }
 
-Result<IntrinsicVolumes> of_frustum(const Camera& camera) {
+Result<IntrinsicVolumes> intrinsic_volumes_of_frustum(const Camera& camera) {
     if (!std::isfinite(camera.far_distance))
         return fail(ErrorCode::invalid_argument, kNoItem, "frustum: its measures need a finite far distance");
     auto frustum = frustum_of(camera);

@@ -19,17 +19,17 @@ bool before(const glm::dvec2& a, const glm::dvec2& b) {
 
 using std::numbers::pi;
 
-PlanarMeasures of_disc(double radius) {
+PlanarMeasures planar_measures_of_disc(double radius) {
     return {pi * radius * radius, 2.0 * pi * radius};
 }
-PlanarMeasures of_rectangle(double a, double b) {
+PlanarMeasures planar_measures_of_rectangle(double a, double b) {
     return {a * b, 2.0 * (a + b)};
 }
-PlanarMeasures of_planar_segment(double length) {
+PlanarMeasures planar_measures_of_segment(double length) {
     return {0.0, 2.0 * length};
 }
 
-PlanarMeasures of_convex_polygon(std::span<const glm::dvec2> points) {
+PlanarMeasures planar_measures_of_convex_polygon(std::span<const glm::dvec2> points) {
     PlanarMeasures result;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::dvec2& a = points[i];

@@ -19,7 +19,8 @@ bool same_edge(const HalfEdge& a, const HalfEdge& b) {
 
 }  // namespace
 
-Result<IntrinsicVolumes> of_polytope(std::span<const glm::dvec3> vertices, std::span<const std::uint32_t> triangles) {
+Result<IntrinsicVolumes> intrinsic_volumes_of_polytope(std::span<const glm::dvec3> vertices,
+                                                       std::span<const std::uint32_t> triangles) {
     for (std::size_t i = 0; i < vertices.size(); ++i)
         if (!std::isfinite(vertices[i].x) || !std::isfinite(vertices[i].y) || !std::isfinite(vertices[i].z))
             return fail(ErrorCode::non_finite, i, "polytope: a vertex is NaN or infinite");
@@ -64,11 +65,11 @@ Result<IntrinsicVolumes> of_polytope(std::span<const glm::dvec3> vertices, std::
     return result;
 }
 
-Result<IntrinsicVolumes> of_polytope(const TriangleMesh& surface) {
+Result<IntrinsicVolumes> intrinsic_volumes_of_polytope(const TriangleMesh& surface) {
     Vector<glm::dvec3> vertices;
     vertices.reserve(surface.positions.size());
     for (const glm::vec3& p : surface.positions) vertices.emplace_back(p);
-    return of_polytope(vertices, surface.indices);
+    return intrinsic_volumes_of_polytope(vertices, surface.indices);
 }
 
 }  // namespace crofton::measure

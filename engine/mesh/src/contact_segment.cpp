@@ -40,8 +40,8 @@ void add_edge_points(const Triangle& t, const Triangle& other, SegmentOfContact&
         const glm::dvec3 &p = t[k], &q = t[(k + 1) % 3];
         if (!segment_meets_triangle(p, q, other)) continue;
         const double at_p = glm::dot(n, p - other[0]), at_q = glm::dot(n, q - other[0]);
-        const bool crosses = orientation_sign(other[0], other[1], other[2], p) != 0 ||
-                             orientation_sign(other[0], other[1], other[2], q) != 0;
+        const bool crosses =
+            orientation(other[0], other[1], other[2], p) != 0 || orientation(other[0], other[1], other[2], q) != 0;
         if (crosses && at_p != at_q) {
             add_point(best, count, p + std::clamp(at_p / (at_p - at_q), 0.0, 1.0) * (q - p));
             continue;

@@ -26,8 +26,8 @@ Crossing crossing(const glm::dvec3& p, const Triangle& t) {
     const bool covers = is_right_of(p, t[0], t[1]) ^ is_right_of(p, t[1], t[2]) ^ is_right_of(p, t[2], t[0]);
     if (!covers) return Crossing::none;
     const int turn = orientation_2d(t[0], t[1], t[2], 0, 1);
-    const int side = orientation_sign(t[0], t[1], t[2], p) * turn;
-    return side < 0 ? Crossing::crosses : Crossing::none;
+    const int side = orientation(t[0], t[1], t[2], p) * turn;
+    return side > 0 ? Crossing::crosses : Crossing::none;
 }
 
 struct Ray {

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/plane_filter.hpp>
 #include <crofton/mesh/ray.hpp>
 #include <glm/geometric.hpp>
 
 #include <crofton/mesh/ray_box.hpp>
 #include "posed_mesh.hpp"
 #include "ray_mesh.hpp"
-#include "sign_filter.hpp"
 
 namespace crofton::mesh {
 namespace {
@@ -27,7 +27,7 @@ int side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
 int filtered_side_of_edge(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b) {
     const PlaneFilter plane(ray.origin, a, b);
     const double determinant = glm::dot(plane.normal, ray.direction);
-    const double error = kOrientationError * glm::dot(plane.magnitude, glm::abs(ray.direction)) + 1e-280;
+    const double error = PlaneFilter::kErrorBound * glm::dot(plane.magnitude, glm::abs(ray.direction)) + 1e-280;
     if (std::abs(determinant) > error) return determinant > 0.0 ? 1 : -1;
     return side_of_edge(ray, a, b);
 }

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/plane_filter.hpp>
 #include <crofton/mesh/triangle_triangle.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
 #include "exact_signs.hpp"
-#include "sign_filter.hpp"
 
 namespace crofton::mesh {
 namespace {
@@ -49,18 +49,18 @@ bool segment_meets_triangle(const glm::dvec3& p, const glm::dvec3& q, const Tria
     if (is_degenerate(t)) {
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec3 &a = t[k], &b = t[(k + 1) % 3];
-            if (orientation_sign(p, q, a, b) == 0 && segments_meet_2d(p, q, a, b, 0, 1) &&
+            if (orientation(p, q, a, b) == 0 && segments_meet_2d(p, q, a, b, 0, 1) &&
                 segments_meet_2d(p, q, a, b, 1, 2) && segments_meet_2d(p, q, a, b, 2, 0))
                 return true;
         }
         return false;
     }
-    const int side_p = orientation_sign(t[0], t[1], t[2], p), side_q = orientation_sign(t[0], t[1], t[2], q);
+    const int side_p = orientation(t[0], t[1], t[2], p), side_q = orientation(t[0], t[1], t[2], q);
     if (side_p * side_q > 0) return false;
     if (side_p == 0 && side_q == 0) return coplanar_segment_meets_triangle(p, q, t);
     int low = 1, high = -1;
     for (std::size_t k = 0; k < 3; ++k) {
-        const int turn = orientation_sign(p, q, t[k], t[(k + 1) % 3]);
+        const int turn = orientation(p, q, t[k], t[(k + 1) % 3]);
         low = std::min(low, turn);
         high = std::max(high, turn);
     }
@@ -114,11 +114,11 @@ bool intersects(const Triangle& a, const Triangle& b) {
     Triangle p = a, q = b;
     const int lone_a = turn_to_lone_vertex(p, side_a), lone_b = turn_to_lone_vertex(q, side_b);
     // The lone vertex of each is to lie above the other's plane: flip the other where it does not.
-    if (lone_a < 0) std::swap(q[1], q[2]);
-    if (lone_b < 0) std::swap(p[1], p[2]);
-    const int first = orientation_filter(p[1], q[0], p[0], q[1]), second = orientation_filter(p[0], q[0], p[2], q[2]);
+    if (lone_a > 0) std::swap(q[1], q[2]);
+    if (lone_b > 0) std::swap(p[1], p[2]);
+    const int first = PlaneFilter(p[1], q[0], p[0]).side(q[1]), second = PlaneFilter(p[0], q[0], p[2]).side(q[2]);
     if (first == kUnknownSign || second == kUnknownSign) return intersects_exactly(a, b);
-    return first < 0 && second < 0;
+    return first > 0 && second > 0;
 }
 
 }  // namespace crofton::mesh

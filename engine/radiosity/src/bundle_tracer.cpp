@@ -131,7 +131,7 @@ Bundle make_bundle(const Aabb& bounds, double cell_area, const std::array<double
     return bundle;
 }
 
-sampling::Line Bundle::line(std::size_t cell_number) const {
+Line Bundle::line(std::size_t cell_number) const {
     const auto row = static_cast<std::uint32_t>(cell_number / columns);
     Vector<float> x(columns + 8), y(columns + 8);
     detail::jitter_row(short_seed(seed), row * columns, columns, row, x.data(), y.data());

@@ -39,7 +39,7 @@ FactorRow factors_by_local_lines(const LineTracer& tracer, const Patches& patche
     row.lines = lines;
     Vector<double> squares(patches.count(), 0.0);
     row.factors.assign(patches.count(), 0.0);
-    Vector<Ray> rays;
+    Vector<FirstHitQuery> rays;
     Vector<double> weights;
     Vector<Hit> hits;
     for (std::uint64_t begin = 0; begin < lines; begin += kBatch) {
@@ -99,7 +99,7 @@ Result<FactorMatrix> factors_by_global_lines(const LineTracer& tracer, const Pat
     for (std::uint64_t first = 0; first < blocks; first += kWave) {
         const std::size_t count = static_cast<std::size_t>(std::min(kWave, blocks - first));
         executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<sampling::Line> lines;
+            Vector<Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
                 source.draw(first + b, lines);
                 tracer.all_hits(lines, hits[b]);

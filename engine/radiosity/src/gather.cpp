@@ -84,7 +84,7 @@ void Solver::gather_lines(const Gathering& what, Light& arrived, Executor& execu
     for (std::uint64_t first = 0; first < blocks; first += kWave) {
         const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(kWave, blocks - first));
         executor.parallel_for(now, 1, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<sampling::Line> lines;
+            Vector<Line> lines;
             for (std::size_t b = begin; b < end; ++b) {
                 source.draw(runs_ * blocks + first + b, lines);
                 tracer_.all_hits(lines, hits[b]);

@@ -118,7 +118,8 @@ void Solver::look_for_sun(Light& arrived, Executor& executor) {
         tracer_, looks.size(), executor,
         [&](std::uint64_t i) {
             const Look& look = looks[static_cast<std::size_t>(i)];
-            Ray ray = local_ray(p, look.triangle, static_cast<double>(look.u), static_cast<double>(look.v), 1.0, 0.0);
+            FirstHitQuery ray =
+                local_ray(p, look.triangle, static_cast<double>(look.u), static_cast<double>(look.v), 1.0, 0.0);
             ray.line.direction = to_sun;
             return ray;
         },

@@ -7,7 +7,7 @@
 namespace crofton::radiosity {
 namespace {
 
-sampling::Ball ball_around(const Aabb& box) {
+Sphere ball_around(const Aabb& box) {
     return {box.center(), glm::length(box.half_extents())};
 }
 
@@ -37,7 +37,7 @@ double LineSource::surface_area() const {
     return 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x);
 }
 
-void LineSource::draw(std::uint64_t block, Vector<sampling::Line>& lines) const {
+void LineSource::draw(std::uint64_t block, Vector<Line>& lines) const {
     lines.clear();
     if (method_ == LineMethod::bundles) {
         sampling::Random random(seed_, block);
@@ -62,7 +62,7 @@ VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineS
     };
     Vector<Counts> counts(static_cast<std::size_t>(blocks));
     executor.parallel_for(counts.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        Vector<sampling::Line> lines;
+        Vector<Line> lines;
         LineHits hits;
         for (std::size_t b = begin; b < end; ++b) {
             source.draw(b, lines);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-detail::FlatRay flat(const sampling::Line& line, const glm::dvec3& origin, std::uint32_t skip) {
+detail::FlatRay flat(const Line& line, const glm::dvec3& origin, std::uint32_t skip) {
     detail::FlatRay ray;
     const glm::dvec3 point = line.point - origin;
     for (int k = 0; k < 3; ++k) {
@@ -55,7 +55,7 @@ std::size_t LineTracer::bytes() const {
     return nodes_.capacity() * sizeof(detail::TracerNode) + leaves_.capacity() * sizeof(detail::TracerLeaf);
 }
 
-void LineTracer::all_hits(std::span<const sampling::Line> lines, LineHits& result) const {
+void LineTracer::all_hits(std::span<const Line> lines, LineHits& result) const {
     const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
     std::array<detail::FlatRay, kBatch> rays;
     std::array<std::uint32_t, kBatch> ends;
@@ -78,7 +78,7 @@ void LineTracer::all_hits(std::span<const sampling::Line> lines, LineHits& resul
     }
 }
 
-void LineTracer::first_hits(std::span<const Ray> rays, std::span<Hit> result) const {
+void LineTracer::first_hits(std::span<const FirstHitQuery> rays, std::span<Hit> result) const {
     CROFTON_ASSERT(rays.size() == result.size(), "one result per ray");
     const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
     std::array<detail::FlatRay, kBatch> flat_rays;

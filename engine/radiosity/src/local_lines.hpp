@@ -21,13 +21,14 @@ inline Corners corners_of(const Patches& patches, std::uint32_t triangle) {
 }
 
 // A uniform point of a triangle, and a direction over its front whose cosine against the normal is `cosine`.
-inline Ray local_ray(const Patches& patches, std::uint32_t triangle, double u, double v, double cosine, double turn) {
+inline FirstHitQuery local_ray(const Patches& patches, std::uint32_t triangle, double u, double v, double cosine,
+                               double turn) {
     const Corners t = corners_of(patches, triangle);
     const double root = std::sqrt(u);
     const glm::dvec3 point = t.a + root * (1.0 - v) * (t.b - t.a) + root * v * (t.c - t.a);
     const glm::dvec3 normal = glm::normalize(glm::cross(t.b - t.a, t.c - t.a)), side = glm::normalize(t.b - t.a);
     const glm::dvec2 around = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) * sampling::circle_point(turn);
-    Ray ray;
+    FirstHitQuery ray;
     ray.line.point = point;
     ray.line.direction = cosine * normal + around.x * side + around.y * glm::cross(normal, side);
     ray.skip = triangle;

@@ -25,7 +25,7 @@ void trace_in_order(const LineTracer& tracer, std::uint64_t count, Executor& exe
     for (std::uint64_t first = 0; first < count; first += hits.size()) {
         const std::size_t now = static_cast<std::size_t>(std::min<std::uint64_t>(hits.size(), count - first));
         executor.parallel_for(now, kRayBatch, [&](std::size_t begin, std::size_t end, unsigned) {
-            Vector<Ray> rays;
+            Vector<FirstHitQuery> rays;
             for (std::size_t i = begin; i < end; ++i) rays.push_back(make(first + i));
             tracer.first_hits(rays, std::span(hits).subspan(begin, end - begin));
         });

@@ -47,21 +47,21 @@ double measure_of_lines(double surface_area) {
     return 0.5 * std::numbers::pi * surface_area;
 }
 
-Line line_through_two_sphere_points(const Ball& ball, const std::array<double, 4>& u) {
+Line line_through_two_sphere_points(const Sphere& ball, const std::array<double, 4>& u) {
     const glm::dvec3 a = direction({u[0], u[1]}), b = direction({u[2], u[3]});
     Line line = through(a, b);
     line.point = ball.center + ball.radius * a;
     return line;
 }
 
-Line line_through_disc(const Ball& ball, const std::array<double, 4>& u) {
+Line line_through_disc(const Sphere& ball, const std::array<double, 4>& u) {
     const glm::dvec3 d = direction({u[0], u[1]});
     const glm::dvec2 p = ball.radius * disc_point({u[2], u[3]});
     const auto [x, y] = orthonormal_frame(d);
     return {ball.center + p.x * x + p.y * y, d};
 }
 
-void append_line_bundle(const Ball& ball, double cell_area, Random& random, Vector<Line>& lines) {
+void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Vector<Line>& lines) {
     CROFTON_ASSERT(cell_area > 0.0, "a bundle's cells need an area");
     const glm::dvec3 d = direction(random.point<2>());
     const auto [x, y] = orthonormal_frame(d);

@@ -52,7 +52,7 @@ glm::dmat3 rotation(const std::array<double, 3>& u) {
             glm::dvec3(2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y))};
 }
 
-glm::dmat2 rotation2(double u) {
+glm::dmat2 planar_rotation(double u) {
     const glm::dvec2 c = circle_point(u);
     return {c, glm::dvec2(-c.y, c.x)};
 }
@@ -61,16 +61,16 @@ glm::dvec3 box_point(const Aabb& box, const std::array<double, 3>& u) {
     return box.min + glm::dvec3(u[0], u[1], u[2]) * (box.max - box.min);
 }
 
-Motion motion(const Aabb& translations, const std::array<double, 6>& u) {
+RigidTransform motion(const Aabb& translations, const std::array<double, 6>& u) {
     return {rotation({u[0], u[1], u[2]}), box_point(translations, {u[3], u[4], u[5]})};
 }
 
-Motion2 motion2(const glm::dvec2& low, const glm::dvec2& high, const std::array<double, 3>& u) {
-    return {rotation2(u[0]), low + glm::dvec2(u[1], u[2]) * (high - low)};
+PlanarMotion planar_motion(const glm::dvec2& low, const glm::dvec2& high, const std::array<double, 3>& u) {
+    return {planar_rotation(u[0]), low + glm::dvec2(u[1], u[2]) * (high - low)};
 }
 
 Camera random_camera(const Camera& prototype, const Aabb& positions, const std::array<double, 6>& u) {
-    const Motion move = motion(positions, u);
+    const RigidTransform move = motion(positions, u);
     Camera camera = prototype;
     camera.position = move.translation;
     camera.forward = move.rotation[0];

@@ -1,129 +1,100 @@
 #include <crofton/core/assert.hpp>
-#include <crofton/fit/fit.hpp>
+#include <new>
 #include <utility>
 
-#include "scene_state.hpp"
+#include "scene_checks.hpp"
 
 namespace crofton::scene {
 namespace {
 
-constexpr std::size_t kMaxItems = std::size_t{1} << 31;
-
-template <class T>
-Result<void> check_room(const Vector<T>& items, const char* what) {
-    if (items.size() < kMaxItems) return {};
-    return fail(ErrorCode::out_of_range, items.size(), std::string("scene: more than 2^31 ") + what);
-}
-
-Result<void> check_id(std::uint32_t id, std::size_t count, const char* what) {
-    if (id < count) return {};
-    return fail(ErrorCode::out_of_range, id,
-                std::string("scene: ") + what + " " + std::to_string(id) + " does not exist, there are " +
-                    std::to_string(count));
-}
-
-Result<MeshRecord> make_record(TriangleMesh mesh, std::string name, const measure::Criterion& criterion) {
-    if (mesh.indices.empty() || mesh.positions.empty())
-        return fail(ErrorCode::empty, kNoItem, "mesh: it has no triangles" + (name.empty() ? "" : " (" + name + ")"));
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    auto box = fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::Options{.criterion = criterion});
-    if (!box) return tl::unexpected(box.error());
-    MeshRecord record;
-    record.mesh = std::move(mesh);
-    record.box = *box;
-    record.name = std::move(name);
-    return record;
+// An id for a new item: one given back, or the next of all arrays, which `grow` lengthens by one.
+template <class Grow>
+std::uint32_t take_id(Vector<std::uint32_t>& free, std::size_t count, Grow grow) {
+    if (free.empty()) {
+        grow();
+        return static_cast<std::uint32_t>(count);
+    }
+    const std::uint32_t id = free.back();
+    free.pop_back();
+    return id;
 }
 
 }  // namespace
 
-Scene::Scene(const SceneOptions& options) : state_(std::make_unique<State>()) {
+Scene::Scene(const SceneOptions& options) : state_(new (detail::allocate(sizeof(State), alignof(State))) State) {
     CROFTON_ASSERT(measure::validate(options.criterion).has_value(), "the criterion's weights are invalid");
     state_->options = options;
+}
+void Scene::Release::operator()(State* state) const {
+    state->~State();
+    detail::release(state, sizeof(State), alignof(State));
 }
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
-Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string name) {
-    if (auto room = check_room(state_->meshes, "meshes"); !room) return tl::unexpected(room.error());
-    auto record = make_record(std::move(mesh), std::move(name), state_->options.criterion);
+Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string_view name) {
+    State& s = *state_;
+    if (auto room = check_room(s.meshes, s.free_meshes, "meshes"); !room) return tl::unexpected(room.error());
+    auto record = make_record(std::move(mesh), name, s.options.criterion);
     if (!record) return tl::unexpected(record.error());
-    state_->meshes.push_back(std::move(*record));
-    return static_cast<MeshId>(state_->meshes.size() - 1);
-}
-
-Result<MeshId> Scene::add_polygon(PlanarPolygon polygon, std::span<const std::array<std::uint32_t, 3>> triangles,
-                                  std::string name) {
-    auto mesh = to_mesh(polygon, triangles);
-    if (!mesh) return tl::unexpected(mesh.error());
-    auto id = add_mesh(std::move(*mesh), std::move(name));
-    if (id) state_->meshes[*id].polygon = std::make_unique<PlanarPolygon>(std::move(polygon));
+    const MeshId id = take_id(s.free_meshes, s.meshes.size(), [&] { s.meshes.emplace_back(); });
+    record->revision = ++s.last_revision;
+    s.meshes[id] = std::move(*record);
     return id;
 }
 
-Result<NodeId> Scene::add_node(NodeId parent, const Transform& local, std::uint32_t layer_mask, std::string name) {
+Result<MeshId> Scene::add_polygon(PlanarPolygon polygon, std::span<const std::array<std::uint32_t, 3>> triangles,
+                                  std::string_view name) {
+    auto mesh = to_mesh(polygon, triangles);
+    if (!mesh) return tl::unexpected(mesh.error());
+    auto id = add_mesh(std::move(*mesh), name);
+    if (id) state_->meshes[*id].polygon = std::move(polygon);
+    return id;
+}
+
+Result<NodeId> Scene::add_node(NodeId parent, const Transform& local, std::uint32_t layer_mask, std::string_view name) {
     State& s = *state_;
-    if (auto room = check_room(s.nodes, "nodes"); !room) return tl::unexpected(room.error());
+    if (auto room = check_room(s.nodes, s.free_nodes, "nodes"); !room) return tl::unexpected(room.error());
     if (parent != kNone)
-        if (auto known = check_id(parent, s.nodes.size(), "parent node"); !known) return tl::unexpected(known.error());
-    if (auto valid = validate(local, s.nodes.size()); !valid) return tl::unexpected(valid.error());
-    const NodeId id = static_cast<NodeId>(s.nodes.size());
-    Node node;
-    node.local = local;
-    node.parent = parent;
-    node.own_mask = layer_mask;
-    if (parent != kNone) node.next_sibling = std::exchange(s.nodes[parent].first_child, id);
-    s.nodes.push_back(node);
-    s.node_names.push_back(std::move(name));
+        if (auto known = check_node(s.nodes, parent, "parent node"); !known) return tl::unexpected(known.error());
+    if (auto valid = validate(local, s.free_nodes.empty() ? s.nodes.size() : s.free_nodes.back()); !valid)
+        return tl::unexpected(valid.error());
+    const NodeId id = take_id(s.free_nodes, s.nodes.size(), [&] {
+        s.nodes.emplace_back();
+        s.locals.emplace_back();
+        s.worlds.emplace_back();
+        s.node_names.emplace_back();
+    });
+    s.nodes[id].own_mask = layer_mask;
+    s.locals[id] = local;
+    s.node_names[id] = name;
+    s.link_to_parent(id, parent);
+    s.append_to_order(id);
     s.mark_dirty(id);
     return id;
 }
 
 Result<InstanceId> Scene::add_instance(NodeId node, MeshId mesh) {
     State& s = *state_;
-    if (auto room = check_room(s.instances, "instances"); !room) return tl::unexpected(room.error());
-    if (auto known = check_id(node, s.nodes.size(), "node"); !known) return tl::unexpected(known.error());
-    if (auto known = check_id(mesh, s.meshes.size(), "mesh"); !known) return tl::unexpected(known.error());
-    const InstanceId id = static_cast<InstanceId>(s.instances.size());
-    Instance instance;
+    if (auto room = check_room(s.instances, s.free_instances, "instances"); !room) return tl::unexpected(room.error());
+    if (auto known = check_node(s.nodes, node); !known) return tl::unexpected(known.error());
+    if (auto known = check_mesh(s.meshes, mesh); !known) return tl::unexpected(known.error());
+    const InstanceId id = take_id(s.free_instances, s.instances.size(), [&] {
+        s.instances.emplace_back();
+        s.boxes.emplace_back();
+        s.masks.push_back(0);
+        s.touched.resize(s.instances.size());
+    });
+    s.boxes[id] = Obb();
+    Instance& instance = s.instances[id];
+    instance = Instance();
     instance.node = node;
-    instance.mesh = mesh;
     instance.next_on_node = std::exchange(s.nodes[node].first_instance, id);
-    s.instances.push_back(instance);
-    s.boxes.emplace_back();
-    s.masks.push_back(0);
-    s.added_instances.push_back(id);
+    if (instance.next_on_node != kNone) s.instances[instance.next_on_node].previous_on_node = id;
+    s.link_to_mesh(id, mesh);
+    s.touched.insert(id);
     return id;
-}
-
-Result<void> Scene::set_local(NodeId node, const Transform& local) {
-    if (auto known = check_id(node, state_->nodes.size(), "node"); !known) return known;
-    if (auto valid = validate(local, node); !valid) return valid;
-    state_->nodes[node].local = local;
-    state_->mark_dirty(node);
-    return {};
-}
-
-Result<void> Scene::set_layer_mask(NodeId node, std::uint32_t layer_mask) {
-    if (auto known = check_id(node, state_->nodes.size(), "node"); !known) return known;
-    state_->nodes[node].own_mask = layer_mask;
-    state_->mark_dirty(node);
-    return {};
-}
-
-Result<void> Scene::remove_instance(InstanceId instance) {
-    State& s = *state_;
-    if (auto known = check_id(instance, s.instances.size(), "instance"); !known) return known;
-    if (s.instances[instance].removed)
-        return fail(ErrorCode::invalid_argument, instance,
-                    "scene: instance " + std::to_string(instance) + " was removed before");
-    s.instances[instance].removed = true;
-    s.masks[instance] = 0;
-    InstanceId* link = &s.nodes[s.instances[instance].node].first_instance;
-    while (*link != instance) link = &s.instances[*link].next_on_node;
-    *link = s.instances[instance].next_on_node;
-    return {};
 }
 
 std::size_t Scene::node_count() const {
@@ -136,19 +107,29 @@ std::size_t Scene::instance_count() const {
     return state_->instances.size();
 }
 bool Scene::is_removed(InstanceId instance) const {
-    return state_->instances[instance].removed;
+    return state_->instances[instance].node == kRemoved;
+}
+bool Scene::is_node_removed(NodeId node) const {
+    return state_->nodes[node].position == kRemoved;
+}
+bool Scene::is_mesh_removed(MeshId mesh) const {
+    return state_->meshes[mesh].revision == 0;
 }
 const TriangleMesh& Scene::mesh(MeshId mesh) const {
     return state_->meshes[mesh].mesh;
 }
 const PlanarPolygon* Scene::polygon(MeshId mesh) const {
-    return state_->meshes[mesh].polygon.get();
+    const auto& polygon = state_->meshes[mesh].polygon;
+    return polygon ? &*polygon : nullptr;
 }
 const Obb& Scene::mesh_box(MeshId mesh) const {
     return state_->meshes[mesh].box;
 }
-const std::string& Scene::mesh_name(MeshId mesh) const {
+std::string_view Scene::mesh_name(MeshId mesh) const {
     return state_->meshes[mesh].name;
+}
+std::uint64_t Scene::mesh_revision(MeshId mesh) const {
+    return state_->meshes[mesh].revision;
 }
 NodeId Scene::node_of(InstanceId instance) const {
     return state_->instances[instance].node;
@@ -159,14 +140,14 @@ MeshId Scene::mesh_of(InstanceId instance) const {
 NodeId Scene::parent_of(NodeId node) const {
     return state_->nodes[node].parent;
 }
-const std::string& Scene::node_name(NodeId node) const {
+std::string_view Scene::node_name(NodeId node) const {
     return state_->node_names[node];
 }
 const Transform& Scene::local(NodeId node) const {
-    return state_->nodes[node].local;
+    return state_->locals[node];
 }
 const Transform& Scene::world(NodeId node) const {
-    return state_->nodes[node].world;
+    return state_->worlds[node];
 }
 std::span<const Obb> Scene::world_boxes() const {
     return state_->boxes;
@@ -176,6 +157,12 @@ std::span<const std::uint32_t> Scene::layer_masks() const {
 }
 std::span<const InstanceId> Scene::moved_instances() const {
     return state_->moved;
+}
+std::span<const InstanceId> Scene::relayered_instances() const {
+    return state_->relayered;
+}
+std::span<const InstanceId> Scene::removed_instances() const {
+    return state_->removed;
 }
 
 }  // namespace crofton::scene

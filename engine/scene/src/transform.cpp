@@ -2,14 +2,15 @@
 #include <crofton/scene/transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <string>
 
 namespace crofton::scene {
 namespace {
 
-constexpr double kSmallest = 1e-15;
 constexpr double kLargest = 1e15;
-constexpr double kSingular = 1e-12;
+constexpr double kUnitTolerance = 0.01;    // of a quaternion's length
+constexpr double kUnitRounding = 0x1p-50;  // of its squared length: left as it is
 
 bool is_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -25,10 +26,20 @@ glm::dvec3 operator*(const Transform& transform, const glm::dvec3& point) {
     return transform.linear * point + transform.translation;
 }
 
-Transform from_trs(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
-    glm::dmat3 linear = glm::mat3_cast(rotation);
-    for (int k = 0; k < 3; ++k) linear[k] *= scale[k];
-    return {linear, translation};
+Result<Transform> from_trs(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
+    const double squared = glm::dot(rotation, rotation);
+    if (!std::isfinite(squared))
+        return fail(ErrorCode::non_finite, kNoItem, "transform: the rotation holds a NaN or infinite number");
+    const double length = std::sqrt(squared);
+    if (!(std::abs(length - 1.0) <= kUnitTolerance))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "transform: the quaternion has length " + std::to_string(length) +
+                        ", not 1 within 1 %; normalise it first");
+    const bool is_unit = std::abs(squared - 1.0) <= kUnitRounding;
+    Transform result{glm::mat3_cast(is_unit ? rotation : rotation / length), translation};
+    for (int k = 0; k < 3; ++k) result.linear[k] *= scale[k];
+    if (auto valid = validate(result); !valid) return tl::unexpected(valid.error());
+    return result;
 }
 
 Result<Transform> from_matrix(const glm::dmat4& matrix) {
@@ -42,6 +53,13 @@ Result<Transform> from_matrix(const glm::dmat4& matrix) {
 }
 
 Result<void> validate(const Transform& transform, std::uint64_t item) {
+    // One comparison each refuses NaN, infinity and what is too large; which of them it was is found out afterwards.
+    const glm::dvec3 limit(kLargest);
+    const bool good = glm::dot(transform.linear[0], transform.linear[0]) <= kLargest * kLargest &&
+                      glm::dot(transform.linear[1], transform.linear[1]) <= kLargest * kLargest &&
+                      glm::dot(transform.linear[2], transform.linear[2]) <= kLargest * kLargest &&
+                      glm::all(glm::lessThanEqual(glm::abs(transform.translation), limit));
+    if (good) return {};
     const auto bad = [&](ErrorCode code, const char* why) {
         return fail(code, item, std::string("transform: ") + why);
     };
@@ -49,19 +67,13 @@ Result<void> validate(const Transform& transform, std::uint64_t item) {
         if (!is_finite(transform.linear[k]))
             return bad(ErrorCode::non_finite, "the matrix holds a NaN or infinite number");
     if (!is_finite(transform.translation)) return bad(ErrorCode::non_finite, "the translation is NaN or infinite");
-    double scale = 1.0;
-    for (int k = 0; k < 3; ++k) {
-        const double length = glm::length(transform.linear[k]);
-        if (length == 0.0) return bad(ErrorCode::degenerate, "the matrix is singular: it has a zero column");
-        if (!(length >= kSmallest && length <= kLargest))
-            return bad(ErrorCode::out_of_range, "the matrix scales by less than 1e-15 or more than 1e15");
-        if (!(std::abs(transform.translation[k]) <= kLargest))
-            return bad(ErrorCode::out_of_range, "the translation exceeds 1e15");
-        scale *= length;
-    }
-    if (!(std::abs(glm::determinant(transform.linear)) > kSingular * scale))
-        return bad(ErrorCode::degenerate, "the matrix is singular: it flattens space");
-    return {};
+    if (!glm::all(glm::lessThanEqual(glm::abs(transform.translation), limit)))
+        return bad(ErrorCode::out_of_range, "the translation exceeds 1e15");
+    return bad(ErrorCode::out_of_range, "the matrix scales by more than 1e15");
+}
+
+bool maps_to_point(const Transform& transform) {
+    return transform.linear == glm::dmat3(0.0);
 }
 
 }  // namespace crofton::scene

@@ -18,7 +18,7 @@ double value(const measure::Criterion& criterion, const Aabb& box) {
 }
 
 double value(const measure::Criterion& criterion, const Obb& box) {
-    return criterion(measure::of_box(box));
+    return criterion(measure::intrinsic_volumes_of_box(box));
 }
 
 }  // namespace
@@ -112,8 +112,8 @@ class BinaryTreeBuilder {
         return candidates[best];
     }
 
-    // Corners are rounded, by less than 3 · 2^-52 of the largest coordinate in each of three: an item's exact box may
-    // reach beyond them by that.
+    // Each coordinate of a corner is rounded by less than 3 · 2^-52 of the largest: an item's exact box may exceed its
+    // corners by that.
     bool grow(Obb& box) const {
         double largest = 0.0;
         for (const glm::dvec3& p : points_) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

@@ -24,14 +24,14 @@ glm::mat3 turned(const glm::mat3& axes, int around, double angle) {
 class Search {
   public:
     Search(std::span<const glm::dvec3> points, const study::QuerySample& queries, const measure::Criterion& criterion,
-           Vector<std::uint32_t> reaching)
-        : points_(points), queries_(queries), criterion_(criterion), reaching_(std::move(reaching)) {}
+           Vector<std::uint32_t> candidates)
+        : points_(points), queries_(queries), criterion_(criterion), candidates_(std::move(candidates)) {}
 
     // True where the box is the best so far: fewer hits, or as many and less by the criterion.
     bool consider(const Obb& box) {
         std::uint32_t hits = 0;
-        for (const std::uint32_t q : reaching_) hits += queries_.hits(q, box);
-        const double value = criterion_(measure::of_box(box));
+        for (const std::uint32_t q : candidates_) hits += queries_.hits(q, box);
+        const double value = criterion_(measure::intrinsic_volumes_of_box(box));
         if (has_best_ && (hits > hits_ || (hits == hits_ && value >= value_))) return false;
         has_best_ = true;
         best_ = box, hits_ = hits, value_ = value;
@@ -58,7 +58,7 @@ class Search {
     std::span<const glm::dvec3> points_;
     const study::QuerySample& queries_;
     const measure::Criterion& criterion_;
-    Vector<std::uint32_t> reaching_;
+    Vector<std::uint32_t> candidates_;
     Obb best_;
     std::uint32_t hits_ = 0;
     double value_ = 0.0;
@@ -73,11 +73,11 @@ Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> po
     if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
     const auto plain = fit::fit_obb(points, {.criterion = criterion});
     if (!plain) return tl::unexpected(plain.error());
-    Vector<std::uint32_t> reaching = queries.all();
-    for (const Obb& ancestor : ancestors) reaching = queries.hitting(reaching, ancestor);
+    Vector<std::uint32_t> candidates = queries.all();
+    for (const Obb& ancestor : ancestors) candidates = queries.hitting(candidates, ancestor);
     BoundGivenAncestors result;
-    result.reaching = static_cast<std::uint32_t>(reaching.size());
-    Search search(points, queries, criterion, std::move(reaching));
+    result.ancestor_hits = static_cast<std::uint32_t>(candidates.size());
+    Search search(points, queries, criterion, std::move(candidates));
     search.consider(*plain);
     result.plain_hits = search.hits();
     for (const measure::Criterion& other : {measure::minimal_area(), measure::minimal_perimeter()})

@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Problem {
     Vector<glm::dvec2> hull;
     double scale = 0.0;      // the measure of the ancestors alone
-    double own = 0.0;        // of the object itself: no bound can do better
+    double own = 0.0;        // the measure of the object itself, a lower bound for all bounds
     double tolerance = 0.0;  // absolute
 };
 
@@ -33,7 +33,7 @@ Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport&
     const PlanarSupport own = PlanarSupport::of_convex_polygon(problem.hull);
     problem.own = own.integral();
     problem.tolerance = std::max(options.tolerance, 1e-12) * problem.scale;
-    // ∫ max(0, h_object − h_ancestors); bounds that touch the object leave rounding here.
+    // ∫ max(0, h_object − h_ancestors): rounding only, where an ancestor touches the object.
     const double outside = problem.own - integral_of_min(ancestors, own);
     if (!(outside <= 1e-9 * problem.scale + 1e-300))
         return fail(ErrorCode::invalid_argument, kNoItem,
@@ -41,7 +41,7 @@ Result<Problem> prepare(std::span<const glm::dvec2> object, const PlanarSupport&
     return problem;
 }
 
-// --- circles ---
+// --- discs ---
 
 Disc disc_at(const VoronoiEdge& edge, double t) {
     return {edge.middle + t * edge.normal, std::sqrt(edge.half * edge.half + t * t)};
@@ -60,7 +60,7 @@ class DiscSearch {
         : problem_(problem), ancestors_(ancestors), edges_(farthest_voronoi(problem.hull)) {}
 
     OptimalBound<Disc> run() {
-        // The smallest enclosing circle first: usually close, and it makes the bounds bite.
+        // The smallest enclosing disc first: it is usually close to the best, so that many intervals are dropped.
         for (std::uint32_t e = 0; e < edges_.size(); ++e) add_edge(e);
         for (std::size_t i = 0; i < open_.size(); ++i) examine(Stretch(open_[i]));
         result_.lower_bound = std::max(std::min(dropped_, result_.measure), std::min(problem_.own, result_.measure));
@@ -76,14 +76,14 @@ class DiscSearch {
         return value;
     }
 
-    // Finite parts as they are; infinite ends from where the circle is as large as the object onward, by doubling.
+    // A finite edge is one interval. An infinite end is cut by doubling, from where the disc is as large as the object.
     void add_edge(std::uint32_t e) {
         const VoronoiEdge& edge = edges_[e];
-        const double reach = edge.half;
+        const double half = edge.half;
         double begin = edge.begin, end = edge.end;
-        if (begin == -kInfinity && end == kInfinity) begin = -reach, end = reach;
-        if (begin == -kInfinity) begin = std::min(-reach, end - reach);
-        if (end == kInfinity) end = std::max(reach, begin + reach);
+        if (begin == -kInfinity && end == kInfinity) begin = -half, end = half;
+        if (begin == -kInfinity) begin = std::min(-half, end - half);
+        if (end == kInfinity) end = std::max(half, begin + half);
         const double at_begin = measured(e, begin), at_end = measured(e, end);
         open_.push_back({e, begin, end, at_begin, at_end});
         if (edge.begin == -kInfinity) open_.push_back({e, -kInfinity, begin, kInfinity, at_begin});
@@ -101,12 +101,11 @@ class DiscSearch {
     void examine(const Stretch& s) {
         const double half = edges_[s.edge].half;
         if (s.begin == -kInfinity || s.end == kInfinity) {
-            // Beyond t the circle contains the one at t whose radius is |t| instead of r(t): 2π·(r − |t|) off at most.
+            // Beyond t the disc contains that of radius |t| instead of r(t): the measure is 2π·(r − |t|) less at most.
             const bool forward = s.end == kInfinity;
             const double t = std::abs(forward ? s.begin : s.end), value = forward ? s.at_begin : s.at_end;
             const double bound = value - 2.0 * pi * half * half / (std::sqrt(half * half + t * t) + t);
-            // Circles a million times the object are half-planes; their measure is that of the ancestors but for
-            // rounding.
+            // Discs a million times the object are half-planes: up to rounding their measure is that of the ancestors.
             if (bound >= target() || t > 1e6 * half) return drop(bound);
             const double further = forward ? 2.0 * s.begin : 2.0 * s.end, at_further = measured(s.edge, further);
             open_.push_back(forward ? Stretch{s.edge, s.begin, further, value, at_further}
@@ -145,7 +144,7 @@ Rectangle rectangle_at(std::span<const glm::dvec2> hull, double theta, const std
             0.5 * glm::dvec2(right - left, top - bottom)};
 }
 
-// Corners that support directions θ, θ + 90°, …; found afresh, so that the result does not depend on the path to it.
+// Corners that support directions θ, θ + 90°, …, searched anew for each angle, so that earlier angles change nothing.
 std::array<std::size_t, 4> support_corners(std::span<const glm::dvec2> hull, double theta) {
     const glm::dvec2 axis = cosine_sine(theta), across(-axis.y, axis.x);
     const glm::dvec2 directions[4] = {axis, across, -axis, -across};
@@ -227,7 +226,7 @@ class RectangleSearch {
     OptimalBound<Rectangle> result_{{}, kInfinity, 0.0, 0};
 };
 
-// Grown by the rounding of its own numbers, so that every corner is inside beyond doubt.
+// Grown by the rounding of its own numbers, so that every corner is inside.
 void enclose(std::span<const glm::dvec2> hull, Disc& disc) {
     for (const glm::dvec2& p : hull) disc.radius = std::max(disc.radius, glm::length(p - disc.center));
     const double size = std::abs(disc.center.x) + std::abs(disc.center.y) + disc.radius;

@@ -22,14 +22,14 @@ struct HalfEdges {
         for (int k = 0; k < 3; ++k)
             axis[static_cast<std::size_t>(k)] = glm::dvec3(box.axes[k]) * double{box.half_extents[k]};
     }
-    [[nodiscard]] double reach(const glm::dvec3& n) const {
+    [[nodiscard]] double projected_radius(const glm::dvec3& n) const {
         return std::abs(glm::dot(axis[0], n)) + std::abs(glm::dot(axis[1], n)) + std::abs(glm::dot(axis[2], n));
     }
 };
 
 }  // namespace
 
-Result<QuerySample> QuerySample::make(Kind kind, const sampling::Ball& region, std::uint32_t count) {
+Result<QuerySample> QuerySample::make(Kind kind, const Sphere& region, std::uint32_t count) {
     if (!(region.radius > 0.0) || !std::isfinite(region.radius) ||
         !std::isfinite(region.center.x + region.center.y + region.center.z))
         return fail(ErrorCode::invalid_argument, kNoItem, "query sample: the region has no positive, finite radius");
@@ -41,7 +41,7 @@ Result<QuerySample> QuerySample::make(Kind kind, const sampling::Ball& region, s
     return sample;
 }
 
-Result<QuerySample> QuerySample::planes(const sampling::Ball& region, std::uint32_t count, std::uint64_t seed) {
+Result<QuerySample> QuerySample::planes(const Sphere& region, std::uint32_t count, std::uint64_t seed) {
     auto sample = make(Kind::plane, region, count);
     if (!sample) return sample;
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
@@ -55,12 +55,12 @@ Result<QuerySample> QuerySample::planes(const sampling::Ball& region, std::uint3
     return sample;
 }
 
-Result<QuerySample> QuerySample::lines(const sampling::Ball& region, std::uint32_t count, std::uint64_t seed) {
+Result<QuerySample> QuerySample::lines(const Sphere& region, std::uint32_t count, std::uint64_t seed) {
     auto sample = make(Kind::line, region, count);
     if (!sample) return sample;
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const sampling::Line line = sampling::line_through_disc(region, points.at<4>(i));
+        const Line line = sampling::line_through_disc(region, points.at<4>(i));
         sample->queries_[i].point = line.point;
         sample->queries_[i].direction = line.direction;
     }
@@ -68,11 +68,11 @@ Result<QuerySample> QuerySample::lines(const sampling::Ball& region, std::uint32
     return sample;
 }
 
-Result<QuerySample> QuerySample::frusta(const Camera& camera, const sampling::Ball& region, std::uint32_t count,
+Result<QuerySample> QuerySample::frusta(const Camera& camera, const Sphere& region, std::uint32_t count,
                                         std::uint64_t seed) {
     auto sample = make(Kind::frustum, region, count);
     if (!sample) return sample;
-    if (auto finite = measure::of_frustum(camera); !finite) return tl::unexpected(finite.error());
+    if (auto finite = measure::intrinsic_volumes_of_frustum(camera); !finite) return tl::unexpected(finite.error());
     const Frustum frustum = *frustum_of(camera);
     sample->corners_ = *frustum_corners(frustum);
     const auto& c = sample->corners_;
@@ -91,7 +91,7 @@ Result<QuerySample> QuerySample::frusta(const Camera& camera, const sampling::Ba
     range.max += glm::dvec3(region.radius);
     const sampling::UnitPoints points(seed, sampling::Sequence::quasi_random);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const sampling::Motion uniform = sampling::motion(range, points.at<6>(i));
+        const RigidTransform uniform = sampling::motion(range, points.at<6>(i));
         sample->queries_[i].rotation = uniform.rotation;
         sample->queries_[i].point = region.center - uniform.rotation * uniform.translation;
     }
@@ -103,13 +103,13 @@ Result<QuerySample> QuerySample::frusta(const Camera& camera, const sampling::Ba
 bool QuerySample::hits(std::uint32_t i, const Obb& box) const {
     const Query& q = queries_[i];
     const glm::dvec3 d = box.center - q.point;
-    if (kind_ == Kind::plane) return std::abs(glm::dot(d, q.direction)) <= HalfEdges(box).reach(q.direction);
+    if (kind_ == Kind::plane) return std::abs(glm::dot(d, q.direction)) <= HalfEdges(box).projected_radius(q.direction);
     if (kind_ == Kind::frustum) return frustum_hits(q, box, nullptr);
     // Separating axes of a line and a box: the box's axes crossed with the line.
     const HalfEdges half(box);
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 n = glm::cross(glm::dvec3(box.axes[k]), q.direction);
-        if (std::abs(glm::dot(d, n)) > half.reach(n)) return false;
+        if (std::abs(glm::dot(d, n)) > half.projected_radius(n)) return false;
     }
     return true;
 }
@@ -128,19 +128,19 @@ bool QuerySample::frustum_hits(const Query& q, const Obb& box, bool* contained) 
     for (glm::dvec3& a : half.axis) a = back * a;
     bool inside = true;
     for (std::size_t k = 0; k < normals_.size(); ++k) {
-        const double at = glm::dot(normals_[k], center), reach = half.reach(normals_[k]);
-        if (at + reach < extents_[k][0] || at - reach > extents_[k][1]) return false;
+        const double at = glm::dot(normals_[k], center), radius = half.projected_radius(normals_[k]);
+        if (at + radius < extents_[k][0] || at - radius > extents_[k][1]) return false;
         // Inward normals: the lower extent is the plane itself; the far plane is the upper one along near's normal.
-        inside = inside && at - reach >= extents_[k][0] && (k != 4 || at + reach <= extents_[k][1]);
+        inside = inside && at - radius >= extents_[k][0] && (k != 4 || at + radius <= extents_[k][1]);
     }
     if (contained != nullptr) *contained = inside;
     if (inside) return true;
     const auto apart = [&](const glm::dvec3& n) {
-        const double at = glm::dot(n, center), reach = half.reach(n);
+        const double at = glm::dot(n, center), radius = half.projected_radius(n);
         double low = std::numeric_limits<double>::infinity(), high = -low;
         for (const glm::dvec3& corner : corners_)
             low = std::min(low, glm::dot(n, corner)), high = std::max(high, glm::dot(n, corner));
-        return at + reach < low || at - reach > high;
+        return at + radius < low || at - radius > high;
     };
     std::array<glm::dvec3, 3> axes;
     for (int k = 0; k < 3; ++k) {

@@ -31,7 +31,7 @@ void clip(Polygon2& polygon, Polygon2& scratch, const glm::dvec2& a, const glm::
 }
 
 double area(const Polygon2& polygon) {
-    return polygon.size() < 3 ? 0.0 : measure::of_convex_polygon(polygon).area;
+    return polygon.size() < 3 ? 0.0 : measure::planar_measures_of_convex_polygon(polygon).area;
 }
 
 // The plane of a cell's shadows: along `axis`, with the shears by which the cell's corners look at it.

@@ -4,7 +4,7 @@
 
 namespace crofton::study::wrong {
 
-sampling::Line line_through_two_box_points(const Aabb& box, const std::array<double, 6>& u) {
+Line line_through_two_box_points(const Aabb& box, const std::array<double, 6>& u) {
     // A line from a box begins at a uniform point of its surface.
     const glm::dvec3 a = sampling::line_from_box(box, {u[0], u[1], u[2], 0.0, 0.0}).point;
     const glm::dvec3 b = sampling::line_from_box(box, {u[3], u[4], u[5], 0.0, 0.0}).point;
@@ -12,7 +12,7 @@ sampling::Line line_through_two_box_points(const Aabb& box, const std::array<dou
     return {a, length > 0.0 ? (b - a) / length : glm::dvec3(0.0, 0.0, 1.0)};
 }
 
-sampling::Line line_from_sphere_uniform_direction(const sampling::Ball& ball, const std::array<double, 4>& u) {
+Line line_from_sphere_uniform_direction(const Sphere& ball, const std::array<double, 4>& u) {
     const glm::dvec3 normal = sampling::direction({u[0], u[1]});
     glm::dvec3 d = sampling::direction({u[2], u[3]});
     if (glm::dot(d, normal) > 0.0) d = -d;

@@ -21,7 +21,7 @@ struct MeshRecord {
     std::uint32_t first_name = 0, name_size = 0;
     std::uint32_t polygon = scene::kNone;  // its PolygonRecord, if it is a triangulated polygon
 };
-struct InstanceRecord {
+struct InstanceRecord {  // both kNone where the instance was removed; its layer mask is 0 then
     scene::MeshId mesh = scene::kNone;
     scene::NodeId node = scene::kNone;
 };

@@ -36,7 +36,7 @@ CROFTON_API crofton_status crofton_scene_add_instance(crofton_scene* scene, uint
                                                       uint32_t* instance_id);
 CROFTON_API crofton_status crofton_scene_set_local(crofton_scene* scene, uint32_t node, const crofton_transform* local);
 CROFTON_API crofton_status crofton_scene_set_layer_mask(crofton_scene* scene, uint32_t node, uint32_t layer_mask);
-/* Ids of others stay as they are. */
+/* Ids of others stay as they are; this one is given out again. */
 CROFTON_API crofton_status crofton_scene_remove_instance(crofton_scene* scene, uint32_t instance);
 
 /* Brings world transforms and boxes up to date; `jobs`, `statistics` or NULL. */

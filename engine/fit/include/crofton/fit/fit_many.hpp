@@ -1,4 +1,4 @@
-// Boxes around many small clusters at once: the leaves and nodes of trees.
+// Boxes around many small clusters at once, as the leaves and nodes of trees need them.
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/fit/fit.hpp>
@@ -15,10 +15,10 @@ struct Clusters {
     std::span<const std::uint32_t> ends;
 };
 
-// As fit_obb for every cluster; writes boxes[i] for cluster i. The same bits with any executor. A cluster that cannot
-// be fitted (empty, a bad index, a bad point) gets a default box and the others theirs; the error names the first such
-// cluster. Requires boxes.size() == clusters.ends.size() and ends that do not fall and stay within indices.
-[[nodiscard]] Result<void> fit_many(const Clusters& clusters, const Options& options, Executor& executor,
+// As fit_obb for every cluster: writes boxes[i] for cluster i. The same bits with any executor. A cluster that cannot
+// be fitted (no points, a bad index or point) gets a default box; the others get theirs, and the error names the first
+// bad cluster. Requires boxes.size() == clusters.ends.size(), and ends that never decrease and stay within `indices`.
+[[nodiscard]] Result<void> fit_many(const Clusters& clusters, const FitOptions& options, Executor& executor,
                                     std::span<Obb> boxes);
 
 }  // namespace crofton::fit

@@ -1,44 +1,31 @@
-// In the plane: the best rectangle and the smallest circle around points.
+// In the plane: the best rectangle and the smallest disc around points.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/geometry/disc.hpp>
+#include <crofton/geometry/rectangle.hpp>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <span>
 
 namespace crofton::fit {
 
-// The points p with |dot(axis, p − center)| ≤ half_extents.x and |dot(perp(axis), p − center)| ≤ half_extents.y, where
-// perp(x, y) = (−y, x); `axis` has unit length up to rounding.
-struct Rectangle {
-    glm::dvec2 center{0.0};
-    glm::dvec2 axis{1.0, 0.0};
-    glm::dvec2 half_extents{0.0};
-
-    [[nodiscard]] double area() const { return 4.0 * half_extents.x * half_extents.y; }
-    [[nodiscard]] double perimeter() const { return 4.0 * (half_extents.x + half_extents.y); }
-};
-
-struct Circle {
-    glm::dvec2 center{0.0};
-    double radius = 0.0;
-};
-
 enum class PlanarCriterion : std::uint8_t {
-    perimeter,  // random lines, frusta in the plane: the paper's criterion
-    area,       // random points
+    perimeter,  // the measure of the lines that meet the rectangle
+    area,       // the measure of the points in it
 };
 
 // The best of all rectangles, by rotating calipers: one side holds an edge of the hull (theory.md section 3). O(n log
-// n). Contains every point; grown by rounding only. Errors: no points; NaN, infinite or |coordinate| > 1e30, by index.
+// n). Contains every point, and is larger than the best by rounding only. Errors: no points; a coordinate that is NaN,
+// infinite or beyond 1e30 in magnitude, by index.
 [[nodiscard]] Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion);
 
-// The same in O(n) around a convex polygon: corners in counter-clockwise order, none twice; one or two corners are a
-// point and a segment. Convexity is the caller's promise; without it the rectangle still contains every point.
+// The same in O(n) around a convex polygon given by its corners in counter-clockwise order, none twice. One or two
+// corners are a point or a segment. If the polygon is not convex, the rectangle contains every point but may not be
+// best.
 [[nodiscard]] Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon,
                                                             PlanarCriterion criterion);
 
-// The smallest circle. Contains every point; grown by rounding only. Errors as above. O(n log n) for the hull, then
-// expected linear in its corners (Welzl 1991, without recursion and with a fixed shuffle).
-[[nodiscard]] Result<Circle> minimal_circle(std::span<const glm::dvec2> points);
+// The smallest disc. Contains every point, and is larger than the smallest by rounding only. Errors as above.
+// O(n log n) for the hull, then expected linear in its corners (Welzl 1991).
+[[nodiscard]] Result<Disc> minimal_disc(std::span<const glm::dvec2> points);
 
 }  // namespace crofton::fit

@@ -52,7 +52,8 @@ inline constexpr double kInCircleBound = (10.0 + 96.0 * kRounding) * kRounding;
     return detail::in_circle_exact(a, b, c, d);
 }
 
-// > 0 if d lies below the plane through a, b, c (a, b, c counter-clockwise seen from above), < 0 above, 0 on it.
+// > 0 if d lies below the plane through a, b, c, < 0 above it, 0 on it. "Above" is where a, b, c turn counter-clockwise
+// as seen from there. This is the sign of det(a − d, b − d, c − d), as in Shewchuk's orient3d.
 [[nodiscard]] int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
 
 }  // namespace crofton

@@ -1,4 +1,4 @@
-// How often a bound misleads: the query meets the bound but not the object, or holds the object but not the bound.
+// How often a bound misleads: a query meets the bound but not the object, or contains the object but not the bound.
 #pragma once
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/measure/planar.hpp>
@@ -6,7 +6,8 @@
 namespace crofton::measure {
 
 // m_o: the measure of motions under which `query` hits the bound and misses the object (its hull), exactly, by (1).
-// Rays of length ℓ are of_segment(ℓ): α = V − V₀ and β = (F − F₀)·ℓ/4. Requires object ⊂ bound, both convex.
+// Rays of length ℓ are intrinsic_volumes_of_segment(ℓ): α = V − V₀ and β = (F − F₀)·ℓ/4. Requires object ⊂ bound, both
+// convex.
 [[nodiscard]] double improper_outside(const IntrinsicVolumes& query, const IntrinsicVolumes& bound,
                                       const IntrinsicVolumes& object);
 [[nodiscard]] double improper_outside(const PlanarMeasures& query, const PlanarMeasures& bound,

@@ -1,4 +1,4 @@
-// Volume, surface area and mean curvature of convex bodies: all that a uniformly random query can see of them.
+// Intrinsic volumes: the three numbers that say how often uniformly random queries meet a convex body.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/camera.hpp>
@@ -9,7 +9,8 @@
 
 namespace crofton::measure {
 
-// V, F and M = ∫ mean curvature (M = 2π · mean width), in the cube, square and first power of the coordinates' unit.
+// Volume V, surface area F, and the integral of mean curvature M = 2π · mean width, in the third, second and first
+// power of the coordinates' unit.
 struct IntrinsicVolumes {
     double volume = 0.0;
     double area = 0.0;
@@ -17,26 +18,27 @@ struct IntrinsicVolumes {
 };
 
 // theory.md section 1. A box of edges a, b, c: abc, 2(ab+bc+ca), π(a+b+c).
-[[nodiscard]] IntrinsicVolumes of_box(double a, double b, double c);
-[[nodiscard]] IntrinsicVolumes of_box(const Obb& box);
-[[nodiscard]] IntrinsicVolumes of_ball(double radius);
-[[nodiscard]] IntrinsicVolumes of_segment(double length);
-[[nodiscard]] IntrinsicVolumes of_flat_polygon(double area, double perimeter);
+[[nodiscard]] IntrinsicVolumes intrinsic_volumes_of_box(double a, double b, double c);
+[[nodiscard]] IntrinsicVolumes intrinsic_volumes_of_box(const Obb& box);
+[[nodiscard]] IntrinsicVolumes intrinsic_volumes_of_sphere(double radius);
+[[nodiscard]] IntrinsicVolumes intrinsic_volumes_of_segment(double length);
+[[nodiscard]] IntrinsicVolumes intrinsic_volumes_of_flat_polygon(double area, double perimeter);
 
-// A convex polytope by its surface: triangles (three vertex indices each) that close it, counter-clockwise from
-// outside; M = ½ Σ edge length × exterior angle. A flat polygon is given by both its sides. Convexity is the caller's
-// promise. Errors: NaN or infinite vertices, indices out of range, an edge that is not shared by exactly two triangles.
-[[nodiscard]] Result<IntrinsicVolumes> of_polytope(std::span<const glm::dvec3> vertices,
-                                                   std::span<const std::uint32_t> triangles);
-[[nodiscard]] Result<IntrinsicVolumes> of_polytope(const TriangleMesh& surface);
+// A convex polytope, given by a closed surface of triangles (three vertex indices each), counter-clockwise from
+// outside. A flat polygon is given by both its sides. M = ½ Σ edge length × exterior angle. Convexity is not checked.
+// Errors: NaN or infinite vertices, indices out of range, an edge that is not shared by exactly two triangles.
+[[nodiscard]] Result<IntrinsicVolumes> intrinsic_volumes_of_polytope(std::span<const glm::dvec3> vertices,
+                                                                     std::span<const std::uint32_t> triangles);
+[[nodiscard]] Result<IntrinsicVolumes> intrinsic_volumes_of_polytope(const TriangleMesh& surface);
 
 // The convex hull of points, whatever its dimension. Errors: as crofton::convex_hull.
-[[nodiscard]] Result<IntrinsicVolumes> of_hull(std::span<const glm::dvec3> points);
+[[nodiscard]] Result<IntrinsicVolumes> intrinsic_volumes_of_hull(std::span<const glm::dvec3> points);
 
 // The view volume of a camera, a convex polytope with 8 corners. Errors: as validate(Camera); far must be finite.
-[[nodiscard]] Result<IntrinsicVolumes> of_frustum(const Camera& camera);
+[[nodiscard]] Result<IntrinsicVolumes> intrinsic_volumes_of_frustum(const Camera& camera);
 
-// The principal kinematic formula (1): the measure of motions under which B hits K (rotations normalised to 1).
+// The measure of the motions under which B meets K, by the principal kinematic formula, theory.md (1). Rotations have
+// measure 1, translations their volume.
 [[nodiscard]] double kinematic_measure(const IntrinsicVolumes& b, const IntrinsicVolumes& k);
 
 }  // namespace crofton::measure

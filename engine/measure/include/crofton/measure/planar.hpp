@@ -1,5 +1,4 @@
-// The same vocabulary in the plane: area and perimeter say all that a uniformly random query can see of a convex
-// figure.
+// The plane: area and perimeter say how often uniformly random queries meet a convex figure.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
@@ -14,23 +13,22 @@ struct PlanarMeasures {
     double perimeter = 0.0;
 };
 
-[[nodiscard]] PlanarMeasures of_disc(double radius);
-[[nodiscard]] PlanarMeasures of_rectangle(double a, double b);
-[[nodiscard]] PlanarMeasures of_planar_segment(double length);
-// The polygon's points in counter-clockwise order; convexity is the caller's promise. One point or two are a point, a
-// segment.
-[[nodiscard]] PlanarMeasures of_convex_polygon(std::span<const glm::dvec2> points);
+[[nodiscard]] PlanarMeasures planar_measures_of_disc(double radius);
+[[nodiscard]] PlanarMeasures planar_measures_of_rectangle(double a, double b);
+[[nodiscard]] PlanarMeasures planar_measures_of_segment(double length);
+// Points in counter-clockwise order; one or two are a point or a segment. Convexity is not checked.
+[[nodiscard]] PlanarMeasures planar_measures_of_convex_polygon(std::span<const glm::dvec2> points);
 
 // The convex hull's corners, counter-clockwise from the lowest of the leftmost points, none within a segment of two
 // others (Andrew's monotone chain). One corner where all points are equal, two where all are collinear. Errors: no
 // points (empty); a NaN or infinite coordinate, by its index.
 [[nodiscard]] Result<Vector<glm::dvec2>> convex_hull(std::span<const glm::dvec2> points);
 
-// Blaschke's formula: the measure of motions of the plane under which B hits K, A_B + A_K + L_B·L_K/2π (rotations
-// normalised to 1).
+// The measure of the motions of the plane under which B meets K, by Blaschke's formula: A_B + A_K + L_B·L_K/2π.
+// Rotations have measure 1, translations their area.
 [[nodiscard]] double kinematic_measure(const PlanarMeasures& b, const PlanarMeasures& k);
 
-// Crofton: the measure of the lines (without direction) that hit a convex figure is its perimeter.
+// The measure of the lines, without direction, that hit a convex figure: its perimeter (Crofton).
 [[nodiscard]] inline double measure_of_lines(const PlanarMeasures& k) {
     return k.perimeter;
 }

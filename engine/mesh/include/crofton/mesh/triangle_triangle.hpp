@@ -9,9 +9,6 @@ namespace crofton::mesh {
 // arithmetic. Exact while coordinates are 0 or have magnitudes in [1e-70, 1e70]; NaN meets nothing.
 [[nodiscard]] bool intersects(const Triangle& a, const Triangle& b);
 
-// Sign of det(b − a, c − a, d − a): > 0 if a, b, c turn counter-clockwise seen from d. Exact in the same range.
-[[nodiscard]] int orientation_sign(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
-
 struct SegmentOfContact {
     glm::dvec3 begin{0.0}, end{0.0};
 };

@@ -27,7 +27,7 @@ struct Bundle {
     double lines = 0.0;      // expected number of lines that meet the box; the others are no lines at all
 
     [[nodiscard]] std::size_t cells() const { return std::size_t{columns} * rows; }
-    [[nodiscard]] sampling::Line line(std::size_t cell_number) const;  // row by row
+    [[nodiscard]] Line line(std::size_t cell_number) const;  // row by row
 };
 
 // u: two uniform numbers, of the direction. Requires bounds of two positive extents at least, cell_area > 0 and at most

@@ -26,7 +26,7 @@ class LineSource {
                sampling::Sequence sequence = sampling::Sequence::pseudo_random);
 
     // Replaces `lines` with block number `block`: the same lines whenever and wherever it is drawn.
-    void draw(std::uint64_t block, Vector<sampling::Line>& lines) const;
+    void draw(std::uint64_t block, Vector<Line>& lines) const;
 
     // Of the body that the lines fill uniformly. N lines cross a surface of area S inside it 2·N·S/surface_area() times
     // on average.
@@ -35,7 +35,7 @@ class LineSource {
 
   private:
     Aabb bounds_;
-    sampling::Ball ball_;
+    Sphere ball_;
     LineMethod method_;
     std::uint64_t seed_;
     sampling::UnitPoints points_;

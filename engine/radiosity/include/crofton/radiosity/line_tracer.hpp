@@ -28,9 +28,10 @@ struct LineHits {
     Vector<std::uint32_t> ends;
 };
 
-struct Ray {
-    sampling::Line line;                 // followed forward from its point
-    std::uint32_t skip = Hit::kNothing;  // the triangle it starts on
+// Where a line, followed forward from its point, first meets a triangle other than `skip`, the one it starts on.
+struct FirstHitQuery {
+    Line line;
+    std::uint32_t skip = Hit::kNothing;
 };
 
 // A hierarchy of axis-aligned boxes, eight to a node, over the triangles. For measuring, where a crossing more or less
@@ -47,9 +48,9 @@ class LineTracer {
     LineTracer& operator=(LineTracer&&) noexcept;
 
     // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe.
-    void all_hits(std::span<const sampling::Line> lines, LineHits& result) const;
-    // The first crossing of each ray beyond that distance, triangle = kNothing where there is none. Same sizes.
-    void first_hits(std::span<const Ray> rays, std::span<Hit> result) const;
+    void all_hits(std::span<const Line> lines, LineHits& result) const;
+    // The first crossing for each query beyond that distance, triangle = kNothing where there is none. Same sizes.
+    void first_hits(std::span<const FirstHitQuery> queries, std::span<Hit> result) const;
 
     [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] std::size_t bytes() const;

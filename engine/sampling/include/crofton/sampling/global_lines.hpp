@@ -1,9 +1,12 @@
-// Uniform random lines through a region: no point and no direction is preferred (theory.md section 6).
+// Uniform random lines through a region: no place and no direction is preferred (theory.md section 6). The directions'
+// signs are uniform too unless a function says otherwise.
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/line.hpp>
 #include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/sphere.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <crofton/sampling/random.hpp>
 #include <cstdint>
@@ -11,42 +14,30 @@
 
 namespace crofton::sampling {
 
-// { point + t·direction }, all real t; `direction` is a unit vector. Its sign is uniform too where nothing else is
-// said.
-struct Line {
-    glm::dvec3 point{0.0};
-    glm::dvec3 direction{0.0, 0.0, 1.0};
-};
-
-struct Ball {
-    glm::dvec3 center{0.0};
-    double radius = 1.0;
-};
-
-// The motion-invariant measure of the lines that meet a convex body of this surface area: π·area/2 (lines without
-// direction). Of N uniform lines through a convex body A, the expected number through a convex B inside it is
-// N·F_B/F_A, and of crossings with any surface of area S inside it 2·N·S/F_A: N·S/(2πR²) for the ball.
+// The motion-invariant measure of the lines, without direction, that meet a convex body of this surface area: π·area/2.
+// Of N uniform lines through a convex body A, N·F_B/F_A are expected to meet a convex B inside it. They are expected to
+// cross a surface of area S inside it 2·N·S/F_A times: N·S/(2πR²) for a sphere.
 [[nodiscard]] double measure_of_lines(double surface_area);
 
 // (a) Through two independent uniform points of the sphere; starts at one and points to the other.
-[[nodiscard]] Line line_through_two_sphere_points(const Ball& ball, const std::array<double, 4>& u);
+[[nodiscard]] Line line_through_two_sphere_points(const Sphere& ball, const std::array<double, 4>& u);
 
 // (b) A uniform direction through a uniform point of the orthogonal disc through the centre.
-[[nodiscard]] Line line_through_disc(const Ball& ball, const std::array<double, 4>& u);
+[[nodiscard]] Line line_through_disc(const Sphere& ball, const std::array<double, 4>& u);
 
-// (c) A bundle of parallel lines: a uniform direction, one line in each cell of a square grid of cell area Δ in the
-// plane orthogonal to it, uniform in its cell, the grid itself turned and shifted at random; appended to `lines` are
-// those that meet the ball: πR²/Δ on average. A surface of area S inside the ball expects S/(2Δ) crossings per bundle.
-// Requires cell_area > 0 and at most 2^31 cells across the ball's shadow.
-void append_line_bundle(const Ball& ball, double cell_area, Random& random, Vector<Line>& lines);
+// (c) A bundle of parallel lines: a uniform direction, and a square grid of cell area Δ in the plane orthogonal to it,
+// turned and shifted at random. Each cell has one line, uniform in it. Appends those that meet the ball, πR²/Δ on
+// average. A surface of area S inside the ball is expected to be crossed S/(2Δ) times by a bundle.
+// Requires cell_area > 0 and at most 2^31 cells across the ball's projection.
+void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Vector<Line>& lines);
 
 // (d) From a uniform point of a box's surface inward, cosine-weighted. Starts on the surface.
 // Requires a box of at least two positive extents.
 [[nodiscard]] Line line_from_box(const Aabb& box, const std::array<double, 5>& u);
 [[nodiscard]] Line line_from_box(const Obb& box, const std::array<double, 5>& u);
 
-// (d) for any convex polytope, as a closed triangle mesh seen counter-clockwise from outside: the tighter the body, the
-// fewer lines miss what is inside it. Convexity is the caller's promise.
+// (d) for a convex polytope, given by a closed triangle mesh, counter-clockwise from outside. The tighter the body, the
+// fewer lines miss what is inside it. Convexity is not checked.
 class LinesFromHull {
   public:
     // Errors: as validate(TriangleMesh); empty, or no area at all.

@@ -20,18 +20,25 @@ struct Transform {
 [[nodiscard]] Transform operator*(const Transform& outer, const Transform& inner);
 [[nodiscard]] glm::dvec3 operator*(const Transform& transform, const glm::dvec3& point);
 
-[[nodiscard]] Transform from_trs(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale);
+// Scales, then rotates, then moves. A quaternion within 1 % of unit length is normalised: one stored in normalised
+// bytes is off by at most sqrt(4)/254 = 0.8 %. Errors: as validate; any other quaternion (invalid_argument).
+[[nodiscard]] Result<Transform> from_trs(const glm::dvec3& translation, const glm::dquat& rotation,
+                                         const glm::dvec3& scale);
 
 // The upper three rows of a column-vector matrix. Errors: as validate, and a last row other than (0, 0, 0, 1).
 [[nodiscard]] Result<Transform> from_matrix(const glm::dmat4& matrix);
 
-// Errors: NaN or infinite entries; a linear part that is singular, that is |det| ≤ 1e-12 · product of its columns'
-// lengths; column lengths or translations beyond [1e-15, 1e15]. The error's item is `item`.
+// A transform may flatten: any scale, zero included, is data. Errors: NaN or infinite entries; a column longer than
+// 1e15; a translation beyond 1e15. The error's item is `item`.
 [[nodiscard]] Result<void> validate(const Transform& transform, std::uint64_t item = kNoItem);
+
+// Whether the linear part is zero, so that every point has the same image: how engines hide what hangs on a node.
+[[nodiscard]] bool maps_to_point(const Transform& transform);
 
 // A box that contains the exact image of every point of `box` under the stored numbers of `transform`. Similarities
 // keep the box's shape but for rounding; other maps turn it into a parallelepiped, around which the best box by
-// `criterion` with two adjacent flush faces is taken (theory.md section 3). Always right-handed, also for reflections.
+// `criterion` with two adjacent flush faces is taken (theory.md section 3). A flat image gets a flat box, up to the
+// rounding of its float axes. Always right-handed, also for reflections.
 // Errors: as validate(Obb) for the result: not finite or too large.
 [[nodiscard]] Result<Obb> transformed_box(const Transform& transform, const Obb& box,
                                           const measure::Criterion& criterion);

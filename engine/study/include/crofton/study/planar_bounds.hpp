@@ -1,5 +1,5 @@
-// The best circle, box or rectangle around an object of the plane, given the bounds of its ancestors: the one that the
-// fewest lines hit together with all of them (theory.md section 4; two-level is one ancestor, n-level is n − 1).
+// The best disc, box or rectangle around an object of the plane, given its ancestors' bounds: the one that fewest lines
+// hit together with all of them (theory.md section 4). The paper's n-level case has n − 1 ancestors.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/study/planar_support.hpp>
@@ -27,12 +27,12 @@ struct BoundOptions {
 // Errors of all three: no points, a point NaN or infinite (by index), an object that its ancestors' bounds do not
 // contain.
 //
-// Why a search along the farthest-point Voronoi diagram finds the best circle: the measure is ∫ min(h_ancestors, h_K),
-// as all contain the object; it grows with K, so a circle that touches the object in one point only can shrink towards
-// it. The rest pass through two corners: one family of circles for each of the diagram's O(n) edges. Along an edge,
-// with t the centre's place and r(t) convex, the measure is at least the smaller value at the ends of an interval less
-// 2π·max r″·Δt²/8 (it is concave and increasing in centre and radius): so intervals are dropped by proof, and halved
-// where they are not. O(n log n) for the diagram, then one walk over the ancestors' pieces for each measured circle.
+// optimal_disc searches along the farthest-point Voronoi diagram. The measure is ∫ min(h_ancestors, h_K), since all
+// contain the object, and grows with K. So a disc that touches the object in one point only can shrink towards it, and
+// the best passes through two corners: one family of discs for each of the diagram's O(n) edges. Along an edge, with t
+// the centre's place and r(t) convex, the measure is concave and increasing in centre and radius. So on an interval it
+// is at least the smaller value at its ends less 2π·max r″·Δt²/8; intervals are dropped by this bound or halved. O(n
+// log n) for the diagram, then one pass over the ancestors' pieces for each disc measured.
 [[nodiscard]] Result<OptimalBound<Disc>> optimal_disc(std::span<const glm::dvec2> object,
                                                       const PlanarSupport& ancestors, const BoundOptions& options = {});
 

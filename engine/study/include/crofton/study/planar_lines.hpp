@@ -1,4 +1,5 @@
-// Lines of the plane that hit all of n convex figures: the chance that a node of a hierarchy is tested (theory.md (3)).
+// The measure of the lines of the plane that hit all of n convex figures, theory.md (3): the chance that a node of a
+// hierarchy is tested.
 #pragma once
 #include <crofton/study/planar_support.hpp>
 #include <span>

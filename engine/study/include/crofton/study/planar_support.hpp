@@ -1,23 +1,13 @@
-// Support functions in the plane, piece by piece in closed form: what makes the measures of section 4 exact.
+// Support functions in the plane, piece by piece in closed form: the measures of theory.md section 4 are exact by them.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/disc.hpp>
+#include <crofton/geometry/rectangle.hpp>
 #include <glm/vec2.hpp>
 #include <span>
 
 namespace crofton::study {
-
-struct Disc {
-    glm::dvec2 center{0.0};
-    double radius = 0.0;
-};
-
-// { center + s·half_extents.x·axis + t·half_extents.y·perpendicular(axis) : |s|, |t| ≤ 1 }; axis is a unit vector.
-struct Rectangle {
-    glm::dvec2 center{0.0};
-    glm::dvec2 axis{1.0, 0.0};
-    glm::dvec2 half_extents{0.0};
-};
 
 // A function h of the angle φ in [0, 2π] made of pieces dot(point, (cos φ, sin φ)) + radius: the support function of
 // any figure bounded by arcs and segments, and what minima and maxima of such functions are.

@@ -1,5 +1,5 @@
-// A fixed sample of uniform queries, to count instead of to calculate: the chance that all of several boxes are hit,
-// for any frustum, nested or not (theory.md section 4).
+// A fixed sample of uniform queries, to count those that hit several boxes where no formula says how many (theory.md
+// section 4).
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -16,26 +16,25 @@ class QuerySample {
   public:
     QuerySample() = default;  // no queries
 
-    // Quasi-random, by seed: planes and lines that hit the ball, frusta of this camera whose own box, grown by the
-    // ball's radius, holds the ball's centre; all motions that can hit anything inside the ball are among them. At most
-    // 2^24. Errors: a radius that is not positive and finite; count 0 or too large; as measure::of_frustum for the
-    // camera.
-    [[nodiscard]] static Result<QuerySample> planes(const sampling::Ball& region, std::uint32_t count,
+    // Quasi-random queries, by seed: planes and lines that hit the region, or frusta of this camera whose own box,
+    // grown by the region's radius, contains its centre. All frusta that hit anything inside the region are among
+    // these. At most 2^24. Errors: a radius that is not positive and finite; a count that is 0 or too large; as
+    // measure::intrinsic_volumes_of_frustum for the camera.
+    [[nodiscard]] static Result<QuerySample> planes(const Sphere& region, std::uint32_t count, std::uint64_t seed);
+    [[nodiscard]] static Result<QuerySample> lines(const Sphere& region, std::uint32_t count, std::uint64_t seed);
+    [[nodiscard]] static Result<QuerySample> frusta(const Camera& camera, const Sphere& region, std::uint32_t count,
                                                     std::uint64_t seed);
-    [[nodiscard]] static Result<QuerySample> lines(const sampling::Ball& region, std::uint32_t count,
-                                                   std::uint64_t seed);
-    [[nodiscard]] static Result<QuerySample> frusta(const Camera& camera, const sampling::Ball& region,
-                                                    std::uint32_t count, std::uint64_t seed);
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(queries_.size()); }
-    // Of all motions sampled from, normalised as (4), (5) and (1): a share of the queries times this is a measure.
+    // The measure of all queries sampled from, normalised as in theory.md (4), (5) and (1). A share of the queries
+    // times this is a measure.
     [[nodiscard]] double measure() const { return measure_; }
 
-    // Does query i meet the box? In double; touching up to rounding is left to rounding.
+    // Whether query i meets the box, decided in double: rounding decides where they touch.
     [[nodiscard]] bool hits(std::uint32_t i, const Obb& box) const;
 
-    // Does it meet the box without containing it? Then what is below the box must be looked at: a frustum takes a box
-    // that it contains as a whole. Planes and lines contain nothing.
+    // Whether it meets the box without containing it, so that a traversal must go on below it. Planes and lines contain
+    // nothing.
     [[nodiscard]] bool straddles(std::uint32_t i, const Obb& box) const;
 
     // The queries among `candidates` that hit the box, in order.
@@ -50,7 +49,7 @@ class QuerySample {
         glm::dvec3 direction{0.0};
         glm::dmat3 rotation{1.0};
     };
-    static Result<QuerySample> make(Kind kind, const sampling::Ball& region, std::uint32_t count);
+    static Result<QuerySample> make(Kind kind, const Sphere& region, std::uint32_t count);
     [[nodiscard]] bool frustum_hits(const Query& query, const Obb& box, bool* contained) const;
 
     Kind kind_ = Kind::plane;

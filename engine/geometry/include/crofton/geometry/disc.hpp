@@ -1,0 +1,13 @@
+// Disc: a solid circle of the plane.
+#pragma once
+#include <glm/vec2.hpp>
+
+namespace crofton {
+
+// All points within `radius` ≥ 0 of `center`.
+struct Disc {
+    glm::dvec2 center{0.0};
+    double radius = 0.0;
+};
+
+}  // namespace crofton

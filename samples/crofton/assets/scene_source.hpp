@@ -1,0 +1,53 @@
+// Where scenes come from: files of several formats, and the town we make ourselves.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <crofton/scene/scene.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace crofton::assets {
+
+struct LoadOptions {
+    measure::Criterion criterion = measure::minimal_perimeter();  // for the boxes around meshes
+    std::string map;                                              // which level of a WAD; empty: the first
+    std::uint64_t seed = 1;                                       // of the town
+    std::uint32_t instances = 0;  // of the town, roughly, at most 1,000,000; 0: about 3,000
+};
+
+// A scene with what one needs to visit it. +y is up, lengths are metres where the format says so.
+struct SceneSource {
+    std::string name;
+    scene::Scene scene;
+    std::vector<glm::dvec3> walk;  // a closed path at about eye height that leads where people go; may be empty
+    std::vector<scene::InstanceId> movers;  // ascending: the instances that animate() moves; may be empty
+    std::vector<std::string> warnings;      // what a file held that was left out, and why
+    std::function<void(scene::Scene&, std::uint32_t)> motion;
+    // By mesh: 1 where the colours are light already (glTF's KHR_materials_unlit). Empty: none.
+    std::vector<std::uint8_t> unlit = {};
+    // By mesh: 1 where faces are meant to be seen from their front only (glTF's doubleSided: false). Empty: none.
+    std::vector<std::uint8_t> one_sided = {};
+    // By mesh, one radiosity per triangle: what its faces give off; nothing where a mesh is beyond the end or empty.
+    std::vector<std::vector<glm::vec3>> emission = {};
+
+    // Sets the transforms of frame `frame`, at 60 frames a second; the same for the same frame. update() is the
+    // caller's.
+    void animate(std::uint32_t frame) {
+        if (motion) motion(scene, frame);
+    }
+};
+
+// "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
+// item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw. Of a glTF file,
+// nodes with NaN or huge transforms and primitives with bad vertices or indices are left out, with a warning each.
+[[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
+
+[[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> make_room(const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> load_gltf(const std::string& path, const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options);
+[[nodiscard]] Result<SceneSource> load_wad(const std::string& path, const LoadOptions& options);
+
+}  // namespace crofton::assets

@@ -1,0 +1,145 @@
+// `crofton bake`: a scene made ready at build time, and what such a file holds.
+#include <chrono>
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/thread_pool.hpp>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "assets/scene_source.hpp"
+#include "commands.hpp"
+#include "json/json.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct BakeOptions {
+    std::string scene, output, map, json;
+    std::uint32_t instances = 0;
+    std::uint64_t seed = 1;
+    unsigned threads = 1;
+};
+
+// Time on the wall, and on all of the process's cores: on a busy machine only the second one says much.
+struct Stopwatch {
+    Clock::time_point start = Clock::now();
+    std::clock_t cpu_start = std::clock();
+    [[nodiscard]] double milliseconds() const {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    }
+    [[nodiscard]] double cpu_milliseconds() const {
+        return 1e3 * static_cast<double>(std::clock() - cpu_start) / static_cast<double>(CLOCKS_PER_SEC);
+    }
+};
+
+struct Times {
+    double milliseconds, cpu_milliseconds;
+};
+
+int show(const BakeOptions& options, const char* verb, const Times& times, const std::string& path,
+         const bake::BakedScene& baked, std::uintmax_t bytes) {
+    std::uint64_t triangles = 0, polygons = 0;
+    for (scene::MeshId i = 0; i < baked.mesh_count(); ++i) {
+        triangles += baked.mesh(i).indices.size() / 3;
+        polygons += baked.polygon(i) ? 1 : 0;
+    }
+    if (options.json != "-")
+        std::printf(
+            "%s: %s in %.1f ms (%.1f ms of CPU); %zu instances of %zu meshes (%llu triangles, %llu triangulated "
+            "polygons), %zu nodes, "
+            "a tree of height %u, %.1f MB\n",
+            path.c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
+            baked.mesh_count(), static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons),
+            baked.nodes().size(), baked.tree().height(), static_cast<double>(bytes) / 1e6);
+    if (options.json.empty()) return kSuccess;
+    const auto written = write_json(options.json, {{"file", path},
+                                                   {"version", bake::kVersion},
+                                                   {"bytes", bytes},
+                                                   {"milliseconds", times.milliseconds},
+                                                   {"cpu_milliseconds", times.cpu_milliseconds},
+                                                   {"instances", baked.instances().size()},
+                                                   {"meshes", baked.mesh_count()},
+                                                   {"triangles", triangles},
+                                                   {"polygons", polygons},
+                                                   {"nodes", baked.nodes().size()},
+                                                   {"tree_height", baked.tree().height()}});
+    return written ? kSuccess : report_error("", written.error());
+}
+
+class BakeRun {
+  public:
+    explicit BakeRun(BakeOptions options) : options_(std::move(options)) {
+        if (options_.threads != 1) pool_.emplace(options_.threads);
+    }
+
+    int run() { return options_.output.empty() ? check() : write(); }
+
+  private:
+    // Loads the file as an engine would and says how long that took.
+    int check() {
+        if (assets::extension(options_.scene) != "crofton" && !std::filesystem::exists(options_.scene))
+            return report_error(options_.scene,
+                                {ErrorCode::invalid_argument, kNoItem,
+                                 "is no .crofton file to check; to bake a scene, say where to: -o FILE"});
+        const Stopwatch watch;
+        const auto baked = bake::BakedScene::open(options_.scene, executor());
+        const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
+        if (!baked) return report_error("", baked.error());
+        return show(options_, "loaded", times, options_.scene, *baked, std::filesystem::file_size(options_.scene));
+    }
+
+    int write() {
+        auto source = assets::load_scene(options_.scene,
+                                         {.map = options_.map, .seed = options_.seed, .instances = options_.instances});
+        if (!source) return report_error("", source.error());
+        for (const std::string& warning : source->warnings)
+            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+        source->scene.update(executor());
+        const Stopwatch watch;
+        const auto file = bake::bake(source->scene, executor());
+        const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
+        if (!file) return report_error(options_.scene, file.error());
+        const std::string_view bytes(reinterpret_cast<const char*>(file->data()), file->size());
+        if (const auto written = write_file(options_.output, bytes); !written) return report_error("", written.error());
+        const auto baked = bake::BakedScene::from_memory(*file, executor());
+        if (!baked) return report_error(options_.output, baked.error());
+        return show(options_, "baked", times, options_.output, *baked, file->size());
+    }
+
+    Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
+
+    BakeOptions options_;
+    std::optional<ThreadPool> pool_;
+};
+
+}  // namespace
+
+void add_bake_command(CommandLine& line) {
+    auto options = std::make_shared<BakeOptions>();
+    Command command = line.command("bake", "Write a scene's boxes, tree and triangulations to a .crofton file");
+    command
+        .option("scene", options->scene,
+                "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
+        .required();
+    command.option("-o,--output", options->output, "The file to write").writable_file();
+    command.option("--map", options->map, "Which level of a WAD");
+    command.option("--instances", options->instances, "Size of the town, roughly");
+    command.option("--seed", options->seed, "Of the town").show_default();
+    command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
+    command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
+        .writable_file();
+    command.footer(
+        "Exit status: 0 done, 2 bad usage, a scene that cannot be read or a .crofton file that is damaged.\n\n"
+        "Examples:\n"
+        "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
+        "  crofton bake map01.crofton\n"
+        "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
+    command.action([options] { return BakeRun(*options).run(); });
+}
+
+}  // namespace crofton::cli

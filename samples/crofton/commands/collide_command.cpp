@@ -1,0 +1,219 @@
+// crofton collide: do two meshes meet, where, how deep, or how far apart are they?
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <crofton/mesh/mesh_mesh.hpp>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "commands.hpp"
+#include "json/json.hpp"
+#include "mesh_file.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Request {
+    std::string a, b, pose, mode = "any", json_path;
+};
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+Json array_of(const glm::dvec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+const char* name_of(mesh::Containment containment) {
+    switch (containment) {
+        case mesh::Containment::a_inside_b:
+            return "a_inside_b";
+        case mesh::Containment::b_inside_a:
+            return "b_inside_a";
+        case mesh::Containment::partly:
+            return "partly";
+        default:
+            return "none";
+    }
+}
+
+const char* sentence_of(mesh::Containment containment) {
+    switch (containment) {
+        case mesh::Containment::a_inside_b:
+            return "A lies inside B";
+        case mesh::Containment::b_inside_a:
+            return "B lies inside A";
+        case mesh::Containment::partly:
+            return "some pieces of one lie inside the other";
+        default:
+            return "neither lies inside the other";
+    }
+}
+
+// Seven numbers, apart by commas or blanks, given as such or in a file: tx ty tz qw qx qy qz.
+Result<RigidTransform> pose_of(const std::string& argument) {
+    RigidTransform pose;
+    if (argument.empty()) return pose;
+    std::string text = argument;
+    if (std::error_code error; std::filesystem::is_regular_file(argument, error)) {
+        auto contents = read_file(argument);
+        if (!contents) return tl::unexpected<Error>(contents.error());
+        text = *contents;
+    }
+    const auto bad = [&](std::uint64_t item, const char* why) {
+        return fail(ErrorCode::parse, item,
+                    "--pose " + argument + ": " + why + "; give tx,ty,tz,qw,qx,qy,qz or a file with them");
+    };
+    double value[7];
+    std::size_t count = 0;
+    const char* const end = text.data() + text.size();
+    for (const char* at = text.data(); at != end;) {
+        if (*at == ',' || *at == ' ' || *at == '\n' || *at == '\t' || *at == '\r') {
+            ++at;
+            continue;
+        }
+        if (count == 7) return bad(7, "more than seven numbers");
+        const auto [next, error] = std::from_chars(at, end, value[count]);
+        if (error != std::errc()) return bad(count, "neither a number nor a file that can be read");
+        at = next;
+        ++count;
+    }
+    if (count != 7) return bad(count, "fewer than seven numbers");
+    const glm::dquat q(value[3], value[4], value[5], value[6]);
+    const double length = glm::length(q);
+    if (!(length > 1e-100 && std::isfinite(length))) return bad(3, "the quaternion has no direction");
+    pose = {glm::mat3_cast(q / length), {value[0], value[1], value[2]}};
+    if (auto valid = validate(pose); !valid) return bad(valid.error().item, valid.error().message.c_str());
+    return pose;
+}
+
+Result<mesh::MeshTree> tree_of(const std::string& path, double& milliseconds) {
+    const auto mesh = load_mesh(path);
+    if (!mesh) return tl::unexpected<Error>(mesh.error());
+    const auto start = Clock::now();
+    auto tree = mesh::MeshTree::build(*mesh);
+    milliseconds += milliseconds_since(start);
+    if (!tree) return fail(tree.error().code, tree.error().item, path + ": " + tree.error().message);
+    if (!tree->rejected().empty())
+        std::fprintf(stderr, "crofton: %s: %zu bad triangles left out, the first is %u\n", path.c_str(),
+                     tree->rejected().size(), tree->rejected()[0]);
+    return tree;
+}
+
+struct Answer {
+    bool hit = false;
+    Vector<mesh::MeshContact> contacts;
+    double depth = 0.0, distance = -1.0;  // −1: not asked for
+    mesh::MeshDistance nearest;
+    mesh::Containment contained = mesh::Containment::none;
+    mesh::MeshStatistics statistics;
+};
+
+Answer ask(const std::string& mode, const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose) {
+    Answer answer;
+    if (mode == "all") {
+        mesh::contacts(a, b, pose, answer.contacts, &answer.statistics);
+        answer.hit = !answer.contacts.empty();
+    } else if (mode == "distance") {
+        answer.nearest = mesh::distance(a, b, pose, std::numeric_limits<double>::infinity(), &answer.statistics);
+        answer.distance = answer.nearest.distance;
+        answer.hit = answer.distance == 0.0;
+    } else {
+        answer.hit = mesh::intersects(a, b, pose, &answer.statistics);
+    }
+    if (!answer.hit) answer.contained = mesh::containment_of_disjoint(a, b, pose);
+    answer.hit = answer.hit || answer.contained != mesh::Containment::none;
+    return answer;
+}
+
+Json document_of(const Answer& answer) {
+    Json document{{"hit", answer.hit}, {"pairs", Json::array()}, {"contacts", Json::array()}, {"depth", answer.depth}};
+    for (const mesh::MeshContact& c : answer.contacts) {
+        document["pairs"].push_back({c.triangles.first, c.triangles.second});
+        document["contacts"].push_back({{"triangles", {c.triangles.first, c.triangles.second}},
+                                        {"position", array_of(0.5 * (c.segment.begin + c.segment.end))},
+                                        {"begin", array_of(c.segment.begin)},
+                                        {"end", array_of(c.segment.end)},
+                                        {"normal", array_of(c.normal)}});
+    }
+    document["distance"] = answer.distance >= 0.0 ? Json(answer.distance) : Json(nullptr);
+    if (answer.distance >= 0.0) {
+        document["nearest"] = {{"on_a", array_of(answer.nearest.on_a)},
+                               {"on_b", array_of(answer.nearest.on_b)},
+                               {"triangles", {answer.nearest.triangles.first, answer.nearest.triangles.second}}};
+    }
+    document["contained"] = name_of(answer.contained);
+    document["bv_tests"] = answer.statistics.box_tests;
+    document["triangle_tests"] = answer.statistics.triangle_tests;
+    document["exact_tests"] = answer.statistics.exact_tests;
+    return document;
+}
+
+int run(const Request& request) {
+    const auto pose = pose_of(request.pose);
+    if (!pose) return report_error("", pose.error());
+    double build = 0.0;
+    const auto a = tree_of(request.a, build);
+    if (!a) return report_error("", a.error());
+    const auto b = tree_of(request.b, build);
+    if (!b) return report_error("", b.error());
+    const auto start = Clock::now();
+    Answer answer = ask(request.mode, *a, *b, *pose);
+    const double query = milliseconds_since(start);
+    if (answer.hit && request.mode == "all") answer.depth = mesh::penetration(*a, *b, *pose, answer.contacts).depth;
+    if (request.json_path != "-") {
+        std::printf("%s", answer.hit ? "hit" : "no hit");
+        if (answer.contained != mesh::Containment::none || request.mode == "contain")
+            std::printf(", %s", sentence_of(answer.contained));
+        if (request.mode == "all")
+            std::printf(", %zu pairs of triangles, depth %.6g", answer.contacts.size(), answer.depth);
+        if (request.mode == "distance") std::printf(", distance %.9g", answer.distance);
+        std::printf("  (build %.3f ms, query %.3f ms)\n", build, query);
+    }
+    if (request.json_path.empty()) return kSuccess;
+    Json document = document_of(answer);
+    document["milliseconds"] = {{"build", build}, {"query", query}};
+    if (const auto written = write_json(request.json_path, document); !written)
+        return report_error("", written.error());
+    return kSuccess;
+}
+
+}  // namespace
+
+void add_collide_command(CommandLine& line) {
+    auto request = std::make_shared<Request>();
+    Command command = line.command("collide", "Do two meshes meet, where, how deep, or how far apart are they?");
+    command.option("A", request->a, "Mesh file (.obj, or any scene format)").required();
+    command.option("B", request->b, "Mesh file that the pose moves").required();
+    command.option("--pose", request->pose, "Of B in A's frame: tx,ty,tz,qw,qx,qy,qz or a file with these numbers");
+    command
+        .option("--mode", request->mode,
+                "any: whether they meet; all: which triangles, where and how deep; distance: between the surfaces; "
+                "contain: is one inside the other")
+        .one_of({"any", "all", "distance", "contain"})
+        .show_default();
+    command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
+        .writable_file();
+    command.footer(
+        "A mesh inside the other, which is to be closed, counts as a hit and is reported in `contained`. Each piece "
+        "is\n"
+        "asked, and triangles make a piece where they share vertices, by index or by position: of loose triangles "
+        "every\n"
+        "one. `partly`: some pieces are inside, but not all. Where surfaces meet, `contained` is `none`.\n"
+        "Depth is an upper bound: the shortest way out of those along the axes of both frames and boxes, the mean "
+        "contact\n"
+        "normal and the line of centres. Distance is between the surfaces, also of a mesh inside the other.\n"
+        "Exit status: 0 answered, 2 bad usage or input.\n\n"
+        "Examples:\n"
+        "  crofton collide bunny.obj cow.obj\n"
+        "  crofton collide bunny.obj bunny.obj --pose 0.05,0,0,1,0,0,0 --mode all --json -\n"
+        "  crofton collide a.obj b.obj --pose pose.txt --mode distance");
+    command.action([request] { return run(*request); });
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,259 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <iostream>
+
+#include "assets/file.hpp"
+
+namespace crofton::cli {
+namespace {
+
+constexpr const char* kNotWhole = " is not a whole number from 0 in digits, or too large";
+
+// Optimal string alignment distance: letters added, left out, replaced, or swapped with their neighbour.
+std::size_t distance(const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i)
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    return d[a.size()][b.size()];
+}
+
+// Of `known`, the word that `typed` was most likely meant to be: at most two letters added, left out, replaced or
+// swapped, and fewer than half of them. Empty where there is none.
+std::string nearest_word(const std::string& typed, const std::vector<std::string>& known) {
+    std::string best;
+    std::size_t least = 3;
+    for (const std::string& word : known) {
+        const std::size_t d = distance(typed, word);
+        if (d < least && 2 * d < word.size()) {
+            least = d;
+            best = word;
+        }
+    }
+    return best;
+}
+
+std::string did_you_mean(const std::string& word) {
+    return word.empty() ? std::string{} : "; did you mean '" + word + "'?";
+}
+
+// The sub-command typed, or the program itself.
+const CLI::App& chosen(const CLI::App& app) {
+    const auto parsed = app.get_subcommands();
+    return parsed.empty() ? app : *parsed.front();
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    }
+    return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    return names;
+}
+
+// The first word that belongs to nothing: an option where there is one, since what follows it is left over as well.
+std::string unexpected(const CLI::App& command, const std::vector<std::string>& arguments) {
+    const auto left_over = command.remaining();
+    std::string word;
+    for (const std::string& argument : arguments) {
+        if (std::find(left_over.begin(), left_over.end(), argument) == left_over.end()) continue;
+        if (argument.size() > 1 && argument[0] == '-') {
+            const std::string name = argument.substr(0, argument.find('='));
+            return "there is no option '" + name + "'" + did_you_mean(nearest_word(name, option_names(command)));
+        }
+        if (word.empty()) word = argument;
+    }
+    return "'" + word + "' is one argument too many";
+}
+
+std::string of_conversion(const CLI::App& command, const std::string& what) {
+    const std::string marker = "Could not convert: ";
+    const std::size_t equals = what.find(" = ");
+    if (what.compare(0, marker.size(), marker) != 0 || equals == std::string::npos) return what;
+    const std::string name = what.substr(marker.size(), equals - marker.size());
+    const CLI::Option* option = command.get_option_no_throw(name);
+    const std::string type = option == nullptr ? "" : option->get_type_name();
+    const char* wanted = type.compare(0, 4, "UINT") == 0  ? kNotWhole
+                         : type.compare(0, 3, "INT") == 0 ? " is not a whole number, in digits"
+                                                          : " is not a number";
+    return name + ": '" + what.substr(equals + 3) + "'" + wanted;
+}
+
+std::string reason(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
+    const CLI::App& command = chosen(app);
+    if (&command == &app && !arguments.empty()) {
+        const std::string& first = arguments.front();
+        if (first[0] == '-')
+            return "there is no option '" + first + "'" + did_you_mean(nearest_word(first, option_names(app)));
+        return "there is no sub-command '" + first + "'" + did_you_mean(nearest_word(first, command_names(app)));
+    }
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(command, arguments);
+    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_conversion(command, error.what());
+    return error.what();
+}
+
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
+    const CLI::App& command = chosen(app);
+    const std::string name = &command == &app ? "crofton" : "crofton " + command.get_name();
+    return "crofton: " + reason(app, error, arguments) + "\n'" + name + " --help' lists " +
+           (&command == &app ? "the sub-commands.\n" : "its options, with examples.\n");
+}
+
+// After all sub-commands are added: options that take a number without sign refuse one with a minus, and one that has
+// too many digits. (CLI11 2.1 reads -1 as 2⁶⁴ − 1, and 10²⁰ as well.)
+void demand_whole_numbers(CLI::App& app) {
+    const CLI::Validator whole(
+        [](std::string& text) {
+            std::uint64_t value = 0;
+            const char* end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, value);
+            return read.ec == std::errc{} && read.ptr == end ? std::string{} : "'" + text + "'" + kNotWhole;
+        },
+        "");
+    for (CLI::App* command : app.get_subcommands({}))
+        for (CLI::Option* option : command->get_options())
+            if (option->get_type_name().compare(0, 4, "UINT") == 0) option->check(whole);
+}
+
+// `crofton help` and `crofton help fit` are `crofton --help` and `crofton fit --help`.
+std::vector<std::string> with_help_as_option(int argc, char** argv) {
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    if (!arguments.empty() && arguments.front() == "help") {
+        arguments.erase(arguments.begin());
+        arguments.push_back("--help");
+    }
+    return arguments;
+}
+
+}  // namespace
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+
+Option& Option::show_default() {
+    option_->capture_default_str();
+    return *this;
+}
+
+Option& Option::whole_between(std::uint64_t low, std::uint64_t high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+
+Option& Option::between(double low, double high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+
+Option& Option::positive() {
+    option_->check(CLI::PositiveNumber);
+    return *this;
+}
+
+Option& Option::not_negative() {
+    option_->check(CLI::NonNegativeNumber);
+    return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& words) {
+    option_->check(CLI::IsMember(words));
+    return *this;
+}
+
+Option& Option::writable_file() {
+    option_->check(CLI::Validator(
+        [](std::string& path) {
+            const auto checked = assets::check_writable(path);
+            return checked ? std::string{} : checked.error().message;
+        },
+        ""));
+    return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+    option_->excludes(other.option_);
+    return *this;
+}
+
+bool Option::given() const {
+    return option_->count() > 0;
+}
+
+Option Command::option(const char* name, std::string& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::vector<std::string>& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::uint32_t& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::uint64_t& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, std::optional<std::uint32_t>& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, float& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::option(const char* name, double& target, const std::string& help) {
+    return Option(app_->add_option(name, target, help));
+}
+Option Command::flag(const char* name, bool& target, const std::string& help) {
+    return Option(app_->add_flag(name, target, help));
+}
+
+void Command::footer(const std::string& text) {
+    app_->footer(text);
+}
+
+void Command::action(std::function<int()> action) {
+    app_->callback([action = std::move(action), status = status_] { *status = action(); });
+}
+
+CommandLine::CommandLine(const char* description, const std::string& version)
+    : app_(std::make_unique<CLI::App>(description, "crofton")) {
+    app_->set_version_flag("--version", "crofton " + version);
+    app_->require_subcommand(1);
+    app_->fallthrough(false);
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::command(const char* name, const char* description) {
+    return {app_->add_subcommand(name, description), &status_};
+}
+
+int CommandLine::run(int argc, char** argv) {
+    demand_whole_numbers(*app_);
+    const std::vector<std::string> arguments = with_help_as_option(argc, argv);
+    try {
+        app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app_->exit(error);
+        std::cerr << usage_error(*app_, error, arguments);
+        return kBadInput;
+    }
+    return status_;
+}
+
+}  // namespace crofton::cli

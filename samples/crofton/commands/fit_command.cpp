@@ -1,0 +1,151 @@
+// crofton fit: the best oriented box around each mesh, with the proof that it is.
+#include <chrono>
+#include <crofton/fit/exact.hpp>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/convex_hull.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "commands.hpp"
+#include "fit_criterion.hpp"
+#include "fit_output.hpp"
+#include "json/json.hpp"
+#include "mesh_file.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+struct Request {
+    std::vector<std::string> files;
+    std::string criterion = "perimeter", quality = "exact", json_path, svg_path;
+    double budget_seconds = 0.0;  // 0: none
+};
+
+class Stopwatch {
+  public:
+    [[nodiscard]] double milliseconds() const {
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Criterion& criterion,
+                          const Request& request) {
+    FittedBox fitted;
+    const Stopwatch watch;
+    if (request.quality == "exact") {
+        fit::ExactOptions options;
+        options.criterion = criterion;
+        if (request.budget_seconds > 0.0) options.time_budget_seconds = request.budget_seconds;
+        const auto exact = fit::fit_exact(points, options);
+        if (!exact) return tl::unexpected(exact.error());
+        fitted.box = exact->box;
+        fitted.value = exact->value;
+        fitted.lower_bound = exact->lower_bound;
+        fitted.gap = exact->gap;
+        fitted.rounding = exact->rounding;
+    } else {
+        const auto quality = request.quality == "fast" ? fit::Quality::fast : fit::Quality::tight;
+        const auto box = fit::fit_obb(points, {criterion, quality});
+        if (!box) return tl::unexpected(box.error());
+        fitted.box = *box;
+        fitted.value = criterion(measure::intrinsic_volumes_of_box(*box));
+    }
+    fitted.milliseconds = watch.milliseconds();
+    return fitted;
+}
+
+Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& criterion, const Request& request) {
+    FittedMesh mesh;
+    mesh.file = file;
+    const auto points = load_points(file);
+    if (!points) return tl::unexpected(points.error());
+    const std::span<const glm::dvec3> span(*points);
+    const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
+    const Stopwatch watch;
+    const auto hull = convex_hull(span);
+    mesh.hull_milliseconds = watch.milliseconds();
+    if (!hull) return named(hull.error());
+    mesh.vertices = points->size();
+    mesh.hull_vertices = hull->vertices.size();
+    for (const auto i : hull->triangles) mesh.hull_triangles.push_back(span[i]);
+    for (std::size_t i = 0; hull->rank < 3 && i < hull->vertices.size(); ++i)
+        mesh.outline.insert(mesh.outline.end(),
+                            {span[hull->vertices[i]], span[hull->vertices[(i + 1) % hull->vertices.size()]]});
+    const auto fit_by = [&](const std::string& name, const measure::Criterion& by) {
+        return fit_box(span, by, request).map([&](FittedBox fitted) {
+            fitted.criterion = name;
+            return fitted;
+        });
+    };
+    auto chosen = fit_by(request.criterion, criterion);
+    if (!chosen) return named(chosen.error());
+    mesh.chosen = *chosen;
+    if (request.files.size() == 1) return mesh;
+    const std::pair<const char*, measure::Criterion> all[] = {{"volume", measure::minimal_volume()},
+                                                              {"area", measure::minimal_area()},
+                                                              {"perimeter", measure::minimal_perimeter()}};
+    for (const auto& [name, by] : all) {
+        auto other = fit_by(name, by);
+        if (!other) return named(other.error());
+        mesh.others.push_back(*other);
+    }
+    return mesh;
+}
+
+int run(const Request& request) {
+    const auto criterion = parse_criterion(request.criterion);
+    if (!criterion) return report_error("", criterion.error());
+    std::vector<FittedMesh> meshes;
+    for (const std::string& file : request.files) {
+        auto mesh = fit_mesh(file, *criterion, request);
+        if (!mesh) return report_error("", mesh.error());
+        meshes.push_back(std::move(*mesh));
+    }
+    if (request.json_path != "-" && request.svg_path != "-") std::fputs(fit_text(meshes).c_str(), stdout);
+    if (!request.json_path.empty())
+        if (const auto written = write_json(request.json_path, fit_json(meshes, request.quality)); !written)
+            return report_error("", written.error());
+    if (!request.svg_path.empty())
+        if (const auto written = write_file(request.svg_path, fit_svg(meshes)); !written)
+            return report_error("", written.error());
+    return kSuccess;
+}
+
+}  // namespace
+
+void add_fit_command(CommandLine& line) {
+    auto request = std::make_shared<Request>();
+    Command command = line.command("fit", "The best oriented box around each mesh, for a criterion of your choice");
+    command.option("files", request->files, "OBJ, glTF, GLB or WAD files; only their vertices count").required();
+    command.option("--criterion", request->criterion, kCriterionSyntax).show_default();
+    command
+        .option("--quality", request->quality,
+                "fast: a few passes over the points; tight: a local optimum; exact: the optimum, proved")
+        .one_of({"fast", "tight", "exact"})
+        .show_default();
+    command
+        .option("--budget", request->budget_seconds,
+                "Seconds per box after which exact returns the best so far, with its gap")
+        .not_negative();
+    command
+        .option("--json", request->json_path,
+                "Write the boxes as JSON to this file; - for standard output, instead of the text")
+        .writable_file();
+    command.option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
+        .writable_file();
+    command.footer(
+        "The criterion is alpha V + beta F + gamma M of volume, surface area and integral of mean curvature (pi times "
+        "the edge sum).\n"
+        "Every box contains every vertex, checked in exact arithmetic. Several files give a table of all criteria.\n\n"
+        "Examples:\n"
+        "  crofton fit bunny.obj\n"
+        "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"
+        "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg");
+    command.action([request] { return run(*request); });
+}
+
+}  // namespace crofton::cli

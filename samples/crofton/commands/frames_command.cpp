@@ -1,0 +1,295 @@
+// `crofton frames`: the main job. A scene, a camera path; each frame culled, collided, drawn and counted.
+#include <algorithm>
+#include <chrono>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/render/device.hpp>
+#include <crofton/render/rasterizer.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "assets/scene_source.hpp"
+#include "commands.hpp"
+#include "frames_output.hpp"
+#include "html_report.hpp"
+#include "json/json.hpp"
+#include "pipeline/camera_path.hpp"
+#include "pipeline/draw_list.hpp"
+#include "pipeline/pedestrian_path.hpp"
+#include "pipeline/pipeline.hpp"
+#include "pipeline/verify.hpp"
+#include "progress_bar.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using pipeline::FrameStatistics;
+using Clock = std::chrono::steady_clock;
+
+struct FramesOptions {
+    std::string scene = "town", map, camera = "orbit", size = "1280x720", bounds = "obb-perimeter", cull = "tree";
+    std::optional<std::uint32_t> frames;  // absent: pipeline::kBuiltInFrames, or all of a recorded path
+    std::uint32_t instances = 0;
+    std::uint64_t seed = 1;
+    unsigned threads = 1;
+    bool draw = false, no_draw = false, verify = false;
+    FramesOutput output;
+    std::string report;  // a file of HTML; empty: not wanted
+};
+
+// As many pictures as a reader looks at.
+constexpr std::uint32_t kReportPictures = 6;
+
+double microseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// Absent where there is no Vulkan driver and none was demanded.
+struct Drawing {
+    render::Device device;
+    render::Rasterizer rasterizer;
+    render::Image image;
+};
+
+Result<std::unique_ptr<Drawing>> make_drawing(const pipeline::DrawList& list, const ImageSize& size) {
+    auto device = render::Device::create();
+    if (!device) return tl::unexpected(device.error());
+    auto rasterizer = render::Rasterizer::create(*device, {.width = size.width, .height = size.height});
+    if (!rasterizer) return tl::unexpected(rasterizer.error());
+    if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
+    return std::make_unique<Drawing>(Drawing{std::move(*device), std::move(*rasterizer), {}});
+}
+
+std::uint64_t triangles_of(const scene::Scene& scene) {
+    std::uint64_t sum = 0;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        if (!scene.is_removed(i)) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
+    return sum;
+}
+
+class FramesRun {
+  public:
+    explicit FramesRun(FramesOptions options) : options_(std::move(options)) {}
+
+    Result<int> run() {
+        if (auto prepared = prepare(); !prepared) return tl::unexpected(prepared.error());
+        std::optional<pipeline::Verification> verification;
+        if (options_.verify) verification.emplace();
+        std::vector<FrameStatistics> frames;
+        {
+            const auto count = static_cast<std::uint32_t>(path_.cameras.size());
+            ProgressBar bar("frames", count);
+            for (std::uint32_t index = 0; index < count; ++index) {
+                auto frame = run_frame(index);
+                if (!frame)
+                    return fail(frame.error().code, frame.error().item,
+                                "frame " + std::to_string(index) + ": " + frame.error().message);
+                if (auto saved = save_picture(index); !saved) return tl::unexpected(saved.error());
+                if (verification)
+                    pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, *frame,
+                                           drawing_ && drawing_->device.counts_exactly(), *verification);
+                if (!options_.output.ids) {
+                    frame->visible_ids.clear();
+                    frame->colliding_ids.clear();
+                }
+                frames.push_back(std::move(*frame));
+                bar.set(index + 1);
+            }
+        }
+        const SceneFacts facts{source_->name, source_->scene.node_count(), source_->scene.instance_count(),
+                               triangles_of(source_->scene)};
+        if (auto written = write_results(options_.output, facts, frames, verification); !written)
+            return tl::unexpected(written.error());
+        if (auto written = write_report(facts, frames, verification); !written) return tl::unexpected(written.error());
+        if (verification)
+            for (const std::string& message : verification->messages)
+                std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
+        return verification && verification->mismatches() > 0 ? kCheckFailed : kSuccess;
+    }
+
+  private:
+    Result<void> prepare() {
+        const auto size = image_size_from(options_.size);
+        if (!size) return tl::unexpected(size.error());
+        const auto bounds = pipeline::bounds_kind_from(options_.bounds);
+        if (!bounds) return tl::unexpected(bounds.error());
+        const auto mode = pipeline::cull_mode_from(options_.cull);
+        if (!mode) return tl::unexpected(mode.error());
+        const double aspect = static_cast<double>(size->width) / size->height;
+        if (options_.frames == 0u) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
+        if (auto writable = check_writable(options_.output, options_.report); !writable) return writable;
+        if (options_.threads != 1) pool_.emplace(options_.threads);
+
+        // obb-frustum fits the boxes to the frustum in use: 60° with this aspect, and a depth of the order of a street.
+        Camera typical;
+        typical.aspect = aspect;
+        typical.far_distance = 200.0;
+        const auto criterion = pipeline::criterion_for(*bounds, typical);
+        if (!criterion) return tl::unexpected(criterion.error());
+        auto source = assets::load_scene(
+            options_.scene,
+            {.criterion = *criterion, .map = options_.map, .seed = options_.seed, .instances = options_.instances});
+        if (!source) return tl::unexpected(source.error());
+        source_.emplace(std::move(*source));
+        for (const std::string& warning : source_->warnings)
+            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+        source_->scene.update(executor());
+        focus_ = pipeline::focus_of(source_->scene);
+        if (source_->walk.empty() && options_.camera == "street")
+            source_->walk = pipeline::find_pedestrian_path(source_->scene, focus_);
+        auto path = pipeline::make_camera_path({options_.camera, options_.frames.value_or(0), options_.seed, aspect},
+                                               focus_, source_->walk);
+        if (!path) return tl::unexpected(path.error());
+        path_ = std::move(*path);
+        pipeline_options_ = {*bounds, *mode, true};
+        auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
+        if (!frames) return tl::unexpected(frames.error());
+        pipeline_.emplace(std::move(*frames));
+        return prepare_drawing(*size);
+    }
+
+    Result<void> prepare_drawing(const ImageSize& size) {
+        std::vector<std::uint8_t> is_mover(source_->scene.instance_count(), 0);
+        for (const scene::InstanceId instance : pipeline_->movers()) is_mover[instance] = 1;
+        list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover,
+                      pipeline::DrawList::Looks{source_->unlit, source_->one_sided});
+        if (options_.no_draw) return {};
+        auto drawing = make_drawing(*list_, size);
+        if (drawing) {
+            drawing_ = std::move(*drawing);
+            return {};
+        }
+        if (options_.draw || !options_.output.png.empty() || drawing.error().code != ErrorCode::unavailable)
+            return tl::unexpected(drawing.error());
+        std::fprintf(stderr, "crofton: not drawing: %s\n", drawing.error().message.c_str());
+        return {};
+    }
+
+    Result<FrameStatistics> run_frame(std::uint32_t index) {
+        const auto start = Clock::now();
+        source_->animate(path_.scene_frames[index]);
+        source_->scene.update(executor());
+        const double scene_us = microseconds_since(start);
+        auto frame = pipeline_->run(path_.cameras[index]);
+        if (!frame) return frame;
+        frame->index = index;
+        frame->update_us += scene_us;
+        const auto draw_start = Clock::now();
+        list_->select(frame->visible_ids, frame->camera);
+        if (drawing_)
+            if (auto drawn = draw(*frame); !drawn) return tl::unexpected(drawn.error());
+        if (drawing_) frame->draw_us = microseconds_since(draw_start);
+        frame->triangles_clipped = list_->predict_clipped();
+        return frame;
+    }
+
+    Result<void> draw(FrameStatistics& frame) {
+        render::Frame picture;
+        picture.camera = frame.camera;
+        picture.transforms = list_->transforms();
+        picture.ranges = list_->ranges();
+        // Half of the light is haze at three times the size of the place; none where the light is baked in.
+        const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
+        picture.environment.haze_distance = static_cast<float>(haze);
+        const auto counters = drawing_->rasterizer.draw(picture);
+        if (!counters) return tl::unexpected(counters.error());
+        frame.gpu = *counters;
+        return {};
+    }
+
+    Result<void> save_picture(std::uint32_t index) {
+        const auto count = static_cast<std::uint32_t>(path_.cameras.size());
+        const std::uint32_t step = std::max<std::uint32_t>(1, count / kReportPictures);
+        const bool report = !options_.report.empty() && index % step == 0 && report_pictures_.size() < kReportPictures;
+        if (!drawing_ || (options_.output.png.empty() && !report)) return {};
+        if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return read;
+        if (report) report_pictures_.push_back({index, drawing_->image});
+        return options_.output.png.empty() ? Result<void>{}
+                                           : write_picture(options_.output.png, index, drawing_->image);
+    }
+
+    Result<void> write_report(const SceneFacts& facts, std::span<const FrameStatistics> frames,
+                              const std::optional<pipeline::Verification>& verification) {
+        if (options_.report.empty()) return {};
+        ReportContents contents{facts, {}, frames, verification, std::move(report_pictures_)};
+        contents.settings = {{"scene", options_.scene},
+                             {"map", options_.map},
+                             {"camera", options_.camera},
+                             {"frames", std::to_string(frames.size())},
+                             {"seed", std::to_string(options_.seed)},
+                             {"size", options_.size},
+                             {"bounds", options_.bounds},
+                             {"cull", options_.cull},
+                             {"device", drawing_ ? drawing_->device.name() : "none: not drawn"}};
+        return write_file(options_.report, html_report(contents));
+    }
+
+    Executor& executor() { return pool_ ? static_cast<Executor&>(*pool_) : serial_executor(); }
+
+    FramesOptions options_;
+    pipeline::PipelineOptions pipeline_options_;
+    std::optional<ThreadPool> pool_;
+    std::optional<assets::SceneSource> source_;
+    Aabb focus_;
+    pipeline::CameraPath path_;
+    std::optional<pipeline::Pipeline> pipeline_;
+    std::optional<pipeline::DrawList> list_;
+    std::unique_ptr<Drawing> drawing_;
+    std::vector<ReportPicture> report_pictures_;
+};
+
+constexpr const char* kExamples =
+    "The table, a line per frame: instances whose bound meets the view (visible), meets its surface\n"
+    "(straddle), or does so while the object's triangles lie inside or outside as a whole (improper); tree\n"
+    "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
+    "clipping leaves (clipped); pairs of instances whose boxes meet; microseconds to update, cull, collide\n"
+    "(hits) and draw.\n\n"
+    "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written.\n\n"
+    "Examples:\n"
+    "  crofton frames                                     the built-in town, 120 frames around it\n"
+    "  crofton frames town --camera street --verify       every frame checked by brute force\n"
+    "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
+    "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
+    "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
+    "  crofton frames town --report town.html             one page with pictures and charts\n"
+    "  crofton frames town --json run.json && crofton frames town --camera run.json   the same path again\n";
+
+}  // namespace
+
+void add_frames_command(CommandLine& line) {
+    auto options = std::make_shared<FramesOptions>();
+    Command command =
+        line.command("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
+    command.footer(kExamples);
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
+    command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();
+    command.option("--seed", options->seed, "Seed of the town and of random cameras").show_default();
+    command.option("--instances", options->instances, "Size of the town, up to 1000000; 0: about 3000").show_default();
+    command.option("--size", options->size, "Pixels, WIDTHxHEIGHT").show_default();
+    command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+        .show_default();
+    command.option("--cull", options->cull, "none, flat or tree").show_default();
+    command.option("--map", options->map, "Which level of a .wad; the first where absent");
+    command.option("--threads", options->threads, "Worker threads; 0: one per core")
+        .whole_between(0, 256)
+        .show_default();
+    const Option draw =
+        command.flag("--draw", options->draw, "Fail where nothing can be drawn, instead of going on without");
+    command.flag("--no-draw", options->no_draw, "Do not draw; counts are the CPU's alone").excludes(draw);
+    command.flag("--verify", options->verify, "Check every frame by brute force; exit 1 on any mismatch");
+    command.flag("--ids", options->output.ids, "List visible and colliding ids in the JSON");
+    command.option("--json", options->output.json, "Write everything as JSON; - for stdout").writable_file();
+    command.option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout").writable_file();
+    command.option("--png", options->output.png, "Write a picture per frame into this folder");
+    command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
+        .writable_file();
+    command.action([options] {
+        const auto status = FramesRun(*options).run();
+        return status ? *status : report_error("", status.error());
+    });
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,172 @@
+// `crofton lines`: the ways to draw global lines, compared on one scene.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <crofton/radiosity/bundle_tracer.hpp>
+#include <crofton/radiosity/line_source.hpp>
+#include <crofton/radiosity/patches.hpp>
+#include <cstdio>
+
+#include "assets/flat_scene.hpp"
+#include "commands.hpp"
+#include "json/json.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using radiosity::LineMethod;
+
+struct Options {
+    std::string scene = "town", map, json;
+    std::uint64_t blocks = 32, seed = 1;
+    std::uint32_t repeats = 12;
+};
+
+// Sums over the lines of one estimate.
+struct Seen {
+    double lines = 0.0, crossings = 0.0, squares = 0.0, met = 0.0;
+    double surface_area = 0.0;  // of the body that the lines fill
+};
+
+Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const Options& options) {
+    const auto seen = radiosity::visibility_complexity(tracer, source, options.blocks);
+    const double n = static_cast<double>(options.blocks * radiosity::LineSource::kBlock);
+    return {n, n * seen.mean_crossings, n * (std::pow(seen.deviation, 2.0) + std::pow(seen.mean_crossings, 2.0)),
+            n * (1.0 - seen.wasted), source.surface_area()};
+}
+
+// As many bundles as there are blocks / 2, of the size that the solver takes: a cell as large as a triangle.
+Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double box_area, std::uint64_t seed,
+                sampling::Sequence sequence, const Options& options) {
+    const sampling::UnitPoints points(seed, sequence);
+    radiosity::BundleTracer::Scratch scratch;
+    radiosity::LineHits hits;
+    Seen seen;
+    seen.surface_area = box_area;
+    const std::uint64_t bundles = std::max<std::uint64_t>(1, options.blocks / 2);
+    for (std::uint64_t k = 0; k < bundles; ++k) {
+        const auto bundle = radiosity::make_bundle(tracer.bounds(), cell_area, points.at<2>(k), seed << 32 | k);
+        tracer.all_hits(bundle, scratch, hits);
+        seen.lines += 0.25 * box_area / cell_area;  // as many as are meant: on average over directions
+        std::uint32_t begin = 0;
+        for (const std::uint32_t end : hits.ends) {
+            const double n = end - begin;
+            begin = end;
+            seen.crossings += n;
+            seen.squares += n * n;
+            seen.met += n > 0.0 ? 1.0 : 0.0;
+        }
+    }
+    return seen;
+}
+
+// How well a way to draw lines counts the scene's surface, a number known exactly: S = crossings · F / (2 N).
+// Efficiency is the reciprocal of error² · time, so it does not depend on how many lines were spent.
+template <class Look>
+Json compare(const char* method, sampling::Sequence sequence, double surface, const Options& options, Look&& look) {
+    double squares = 0.0;
+    Seen all;
+    const auto start = std::chrono::steady_clock::now();
+    for (std::uint32_t r = 0; r < options.repeats; ++r) {
+        const Seen seen = look(options.seed + r);
+        squares += std::pow(seen.crossings * seen.surface_area / (2.0 * seen.lines) / surface - 1.0, 2.0);
+        all.lines += seen.lines;
+        all.crossings += seen.crossings;
+        all.squares += seen.squares;
+        all.met += seen.met;
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double error = std::sqrt(squares / options.repeats), mean = all.crossings / all.lines;
+    return {{"method", method},
+            {"sequence", sequence == sampling::Sequence::quasi_random ? "quasi" : "pseudo"},
+            {"lines_per_second", all.lines / seconds},
+            {"mean_crossings", mean},
+            {"deviation", std::sqrt(std::max(0.0, all.squares / all.lines - mean * mean))},
+            {"wasted", 1.0 - all.met / all.lines},
+            {"relative_error", error},
+            {"efficiency", 1.0 / (error * error * seconds / options.repeats)}};
+}
+
+Result<void> run(const Options& options) {
+    assets::LoadOptions load;
+    load.map = options.map;
+    load.seed = options.seed;
+    auto source = assets::load_scene(options.scene, load);
+    if (!source) return tl::unexpected(source.error());
+    source->scene.update();
+    const TriangleMesh mesh = assets::flat_scene(*source).mesh;
+    const Vector<radiosity::Material> materials(mesh.triangle_count());
+    const auto patches = radiosity::make_patches(mesh, materials);
+    if (!patches) return tl::unexpected(patches.error());
+    const auto tracer = radiosity::LineTracer::build(mesh);
+    if (!tracer) return tl::unexpected(tracer.error());
+    double surface = 0.0;
+    for (const double area : patches->areas) surface += area;
+    const auto bundles = radiosity::BundleTracer::build(mesh);
+    if (!bundles) return tl::unexpected(bundles.error());
+    const double box_area = radiosity::LineSource(tracer->bounds(), LineMethod::walls, 1).surface_area();
+    const double cell_area = surface / static_cast<double>(mesh.triangle_count());
+    Json rows = Json::array();
+    for (const sampling::Sequence sequence : {sampling::Sequence::pseudo_random, sampling::Sequence::quasi_random}) {
+        for (const LineMethod method : {LineMethod::sphere_points, LineMethod::disc, LineMethod::walls})
+            rows.push_back(compare(radiosity::to_string(method), sequence, surface, options, [&](std::uint64_t seed) {
+                return by_lines(*tracer, radiosity::LineSource(tracer->bounds(), method, seed, sequence), options);
+            }));
+        rows.push_back(compare("bundles", sequence, surface, options, [&](std::uint64_t seed) {
+            return by_bundles(*bundles, cell_area, box_area, seed, sequence, options);
+        }));
+    }
+    const char* best = radiosity::to_string(radiosity::choose_method(*tracer, options.seed));
+    if (!options.json.empty())
+        return write_json(options.json, {{"scene", source->name},
+                                         {"triangles", mesh.triangle_count()},
+                                         {"surface", surface},
+                                         {"chosen", best},
+                                         {"methods", rows}});
+    std::printf("%s: %zu triangles, %.0f square metres; lines one by one from: %s\n", source->name.c_str(),
+                mesh.triangle_count(), surface, best);
+    std::printf("%-8s %-7s %12s %10s %10s %8s %10s %12s\n", "method", "numbers", "lines/s", "crossings", "deviation",
+                "wasted", "error", "efficiency");
+    for (const Json& row : rows.elements()) {
+        const auto text = [&](const char* name) { return row.find(name)->text(); };
+        const auto number = [&](const char* name) { return row.find(name)->number(); };
+        std::printf("%-8s %-7s %12.0f %10.3f %10.3f %7.1f%% %9.3f%% %12.0f\n", text("method").c_str(),
+                    text("sequence").c_str(), number("lines_per_second"), number("mean_crossings"), number("deviation"),
+                    100.0 * number("wasted"), 100.0 * number("relative_error"), number("efficiency"));
+    }
+    return {};
+}
+
+}  // namespace
+
+void add_lines_command(CommandLine& line) {
+    auto options = std::make_shared<Options>();
+    Command command = line.command("lines", "Compare the ways to draw global lines on a scene");
+    command.footer(
+        "Each way of drawing uniform lines counts the scene's surface S, a number known exactly, as\n"
+        "S = crossings a line * F / 2, where F is the surface of the body that the lines fill (docs/theory.md).\n"
+        "Columns: lines a second; crossings a line, and their deviation; lines that meet nothing (wasted); the\n"
+        "relative error of an estimate of S; 1 / (error^2 seconds), which does not depend on how many lines\n"
+        "were spent (efficiency).\n\n"
+        "Examples:\n"
+        "  crofton lines                       the built-in town\n"
+        "  crofton lines level.wad --map MAP07\n"
+        "  crofton lines room --json -\n");
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("--blocks", options->blocks, "Blocks of 1024 lines per estimate")
+        .whole_between(1, 100000)
+        .show_default();
+    command.option("--repeats", options->repeats, "Estimates per method, for its error")
+        .whole_between(2, 10000)
+        .show_default();
+    command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
+    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file();
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? kSuccess : report_error("", done.error());
+    });
+}
+
+}  // namespace crofton::cli

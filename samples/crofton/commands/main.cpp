@@ -1,0 +1,30 @@
+// The command line `crofton`: one sub-command per question.
+#include <cerrno>
+#include <crofton/core/version.hpp>
+#include <cstdio>
+#include <cstring>
+
+#include "commands.hpp"
+
+int main(int argc, char** argv) {
+    using namespace crofton::cli;
+    CommandLine line("Frustum culling, collision detection and triangle counts, chosen by integral geometry.",
+                     crofton::version_string());
+    add_fit_command(line);
+    add_bake_command(line);
+    add_collide_command(line);
+    add_frames_command(line);
+    add_lines_command(line);
+    add_measure_command(line);
+    add_radiosity_command(line);
+    add_triangulate_command(line);
+    add_verify_command(line);
+#if defined(CROFTON_VIEWER)
+    add_view_command(line);
+#endif
+    const int status = line.run(argc, argv);
+    // What was printed may still be in the buffer, and a full disk is told only when it goes out.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    std::fprintf(stderr, "crofton: standard output: cannot write: %s\n", std::strerror(errno));
+    return kBadInput;
+}

@@ -1,0 +1,190 @@
+// `crofton measure`: Crofton's formula on one's own mesh. What random lines count, beside what the mesh's geometry
+// says.
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/radiosity/line_source.hpp>
+#include <crofton/sampling/random_motion.hpp>
+#include <crofton/study/convex_body.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "commands.hpp"
+#include "json/json.hpp"
+#include "mesh_file.hpp"
+#include "report.hpp"
+#include "verify/rows.hpp"
+
+namespace crofton::cli {
+namespace {
+
+struct MeasureOptions {
+    std::string file, json;
+    std::uint64_t lines = 100'000, seed = 1;
+};
+
+// The mean of what was added, with its standard error.
+class Mean {
+  public:
+    void add(double x) {
+        sum_ += x;
+        squares_ += x * x;
+        ++count_;
+    }
+    [[nodiscard]] double value() const { return sum_ / static_cast<double>(count_); }
+    [[nodiscard]] double standard_error() const {
+        const double n = static_cast<double>(count_), mean = value();
+        return std::sqrt(std::max(0.0, squares_ / n - mean * mean) / n);
+    }
+
+  private:
+    double sum_ = 0.0, squares_ = 0.0;
+    std::uint64_t count_ = 0;
+};
+
+// A convex solid as the half-spaces { x : dot(normal, x) ≤ offset } of its faces.
+class HalfSpaces {
+  public:
+    HalfSpaces(std::span<const glm::dvec3> points, const ConvexHull& hull) {
+        for (std::size_t i = 0; i < hull.triangles.size(); i += 3) {
+            const glm::dvec3 a = points[hull.triangles[i]], b = points[hull.triangles[i + 1]],
+                             c = points[hull.triangles[i + 2]];
+            const glm::dvec3 normal = glm::cross(b - a, c - a);
+            if (glm::dot(normal, normal) > 0.0) faces_.push_back({normal, glm::dot(normal, a)});
+        }
+    }
+
+    // The length of the line's part inside; 0 where it misses.
+    [[nodiscard]] double chord(const Line& line) const {
+        double enter = -HUGE_VAL, leave = HUGE_VAL;
+        for (const Face& face : faces_) {
+            const double speed = glm::dot(face.normal, line.direction);
+            const double room = face.offset - glm::dot(face.normal, line.point);
+            if (speed > 0.0)
+                leave = std::min(leave, room / speed);
+            else if (speed < 0.0)
+                enter = std::max(enter, room / speed);
+            else if (room < 0.0)
+                return 0.0;
+        }
+        return std::max(0.0, leave - enter);
+    }
+
+  private:
+    struct Face {
+        glm::dvec3 normal;
+        double offset;
+    };
+    std::vector<Face> faces_;
+};
+
+double area_of(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const glm::dvec3 a(mesh.positions[mesh.indices[i]]), b(mesh.positions[mesh.indices[i + 1]]),
+            c(mesh.positions[mesh.indices[i + 2]]);
+        sum += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    return sum;
+}
+
+VerifyRow row(const char* claim, const char* formula, double exact, double factor, const Mean& mean) {
+    return measured_row(claim, formula, exact, factor * mean.value(), factor * mean.standard_error());
+}
+
+// The hull's F and V by the lines that the mesh's own area was counted with, and M by as many breadths.
+void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const measure::IntrinsicVolumes& exact,
+               const radiosity::LineSource& source, const MeasureOptions& options, std::vector<VerifyRow>& rows) {
+    const std::uint64_t blocks = options.lines / radiosity::LineSource::kBlock + 1;
+    const double ball_area = source.surface_area();
+    if (hull.rank == 3) {
+        const HalfSpaces solid(points, hull);
+        Mean hits, chords;
+        Vector<Line> lines;
+        for (std::uint64_t block = 0; block < blocks; ++block) {
+            source.draw(block, lines);
+            for (const Line& line : lines) {
+                const double chord = solid.chord(line);
+                hits.add(chord > 0.0 ? 1.0 : 0.0);
+                chords.add(chord);
+            }
+        }
+        rows.push_back(row("its hull's surface area F", "share of lines that hit · F0", exact.area, ball_area, hits));
+        rows.push_back(
+            row("its hull's volume V", "mean chord, 0 for a miss · F0 / 4", exact.volume, 0.25 * ball_area, chords));
+    }
+    study::ConvexBody body;
+    for (const std::uint32_t v : hull.vertices) body.points.push_back(points[v]);
+    Mean breadths;
+    const sampling::UnitPoints numbers(options.seed);
+    for (std::uint64_t i = 0; i < blocks * radiosity::LineSource::kBlock; ++i)
+        breadths.add(study::breadth(body, sampling::direction(numbers.at<2>(i))));
+    rows.push_back(row("its hull's integral of mean curvature M", "mean breadth · 2 pi", exact.mean_curvature,
+                       2.0 * std::numbers::pi, breadths));
+}
+
+Result<void> run(const MeasureOptions& options) {
+    const auto mesh = load_mesh(options.file);
+    if (!mesh) return tl::unexpected(mesh.error());
+    const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
+    const auto hull = convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    const auto exact = measure::intrinsic_volumes_of_hull(points);
+    if (!exact) return tl::unexpected(exact.error());
+    const auto tracer = radiosity::LineTracer::build(*mesh);
+    if (!tracer) return tl::unexpected(tracer.error());
+    if (hull->rank < 2)
+        return fail(ErrorCode::empty, kNoItem, options.file + ": all vertices lie on one line, which no line hits");
+
+    const radiosity::LineSource source(tracer->bounds(), radiosity::LineMethod::disc, options.seed);
+    const auto seen =
+        radiosity::visibility_complexity(*tracer, source, options.lines / radiosity::LineSource::kBlock + 1);
+    std::vector<VerifyRow> rows;
+    const double error = seen.deviation / std::sqrt(static_cast<double>(seen.lines));
+    rows.push_back(measured_row("the triangles' area S", "crossings a line · F0 / 2", area_of(*mesh),
+                                0.5 * source.surface_area() * seen.mean_crossings,
+                                0.5 * source.surface_area() * error));
+    hull_rows(points, *hull, *exact, source, options, rows);
+    if (!options.json.empty())
+        return write_json(options.json, {{"file", options.file},
+                                         {"triangles", mesh->triangle_count()},
+                                         {"lines", seen.lines},
+                                         {"F0", source.surface_area()},
+                                         {"mean_crossings", seen.mean_crossings},
+                                         {"rows", json_of(rows)}});
+    std::printf("%s: %zu triangles; %llu uniform lines through a ball around it, whose surface area is F0 = %.6g\n\n",
+                options.file.c_str(), mesh->triangle_count(), static_cast<unsigned long long>(seen.lines),
+                source.surface_area());
+    std::fputs(table_of(rows).c_str(), stdout);
+    return {};
+}
+
+}  // namespace
+
+void add_measure_command(CommandLine& line) {
+    auto options = std::make_shared<MeasureOptions>();
+    Command command =
+        line.command("measure", "Crofton's formula on a mesh: its area, volume and curvature, exact and by lines");
+    command.footer(
+        "Columns: what is measured; what is counted; the value that follows from the triangles; the estimate, its\n"
+        "standard error, and how many of these it is off (z). docs/theory.md derives the formulas. Lengths are in the\n"
+        "file's unit.\n\n"
+        "Examples:\n"
+        "  crofton measure bunny.obj\n"
+        "  crofton measure room --lines 1000000\n"
+        "  crofton measure level.wad --json -\n");
+    command.option("file", options->file, "town, room, or a .glb, .gltf, .obj or .wad file").required();
+    command.option("--lines", options->lines, "How many lines, rounded up to blocks of 1024")
+        .whole_between(1000, std::uint64_t{1} << 40)
+        .show_default();
+    command.option("--seed", options->seed, "The same seed gives the same lines").show_default();
+    command.option("--json", options->json, "Write the table as JSON; - for stdout").writable_file();
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? kSuccess : report_error("", done.error());
+    });
+}
+
+}  // namespace crofton::cli

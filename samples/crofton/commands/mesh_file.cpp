@@ -1,0 +1,69 @@
+#include "mesh_file.hpp"
+
+#include <limits>
+
+#include "assets/file.hpp"
+#include "assets/obj_file.hpp"
+#include "assets/scene_source.hpp"
+
+namespace crofton::cli {
+namespace {
+
+// Calls visit(mesh, world) for each instance.
+template <class Visit>
+Result<void> for_each_instance(const std::string& path, Visit visit) {
+    auto source = assets::load_scene(path);
+    if (!source) return tl::unexpected<Error>(source.error());
+    source->scene.update();
+    for (scene::InstanceId i = 0; i < source->scene.instance_count(); ++i)
+        visit(source->scene.mesh(source->scene.mesh_of(i)), source->scene.world(source->scene.node_of(i)));
+    return {};
+}
+
+Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path) {
+    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no triangles");
+    return mesh;
+}
+
+Result<TriangleMesh> load_obj_mesh(const std::string& path) {
+    const auto file = assets::read_obj(path);
+    if (!file) return tl::unexpected<Error>(file.error());
+    TriangleMesh mesh;
+    mesh.positions.assign(file->positions.begin(), file->positions.end());
+    for (const assets::ObjFile::Part& part : file->parts)
+        mesh.indices.insert(mesh.indices.end(), part.indices.begin(), part.indices.end());
+    return with_triangles(std::move(mesh), path);
+}
+
+}  // namespace
+
+Result<TriangleMesh> load_mesh(const std::string& path) {
+    if (assets::extension(path) == "obj") return load_obj_mesh(path);
+    TriangleMesh all;
+    const auto loaded = for_each_instance(path, [&](const TriangleMesh& mesh, const scene::Transform& world) {
+        const auto base = static_cast<std::uint32_t>(all.positions.size());
+        for (const glm::vec3& p : mesh.positions) all.positions.push_back(glm::vec3(world * glm::dvec3(p)));
+        for (const std::uint32_t index : mesh.indices) all.indices.push_back(base + index);
+    });
+    if (!loaded) return tl::unexpected<Error>(loaded.error());
+    return with_triangles(std::move(all), path);
+}
+
+Result<std::vector<glm::dvec3>> load_points(const std::string& path) {
+    std::vector<glm::dvec3> points;
+    if (assets::extension(path) == "obj") {
+        auto file = assets::read_obj(path, std::numeric_limits<double>::max());
+        if (!file) return tl::unexpected<Error>(file.error());
+        points = std::move(file->positions);
+    } else if (const auto loaded = for_each_instance(path,
+                                                     [&](const TriangleMesh& mesh, const scene::Transform& world) {
+                                                         for (const glm::vec3& p : mesh.positions)
+                                                             points.push_back(world * glm::dvec3(p));
+                                                     });
+               !loaded)
+        return tl::unexpected<Error>(loaded.error());
+    if (points.empty()) return fail(ErrorCode::empty, kNoItem, path + ": no vertices");
+    return points;
+}
+
+}  // namespace crofton::cli

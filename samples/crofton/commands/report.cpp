@@ -1,0 +1,54 @@
+#include "report.hpp"
+
+#include <cstdio>
+
+#include "commands.hpp"
+#include "json/json.hpp"
+
+namespace crofton::cli {
+int report_error(std::string_view subject, const Error& error) {
+    std::fprintf(stderr, "crofton: %.*s%s%s", static_cast<int>(subject.size()), subject.data(),
+                 subject.empty() ? "" : ": ", error.message.c_str());
+    if (error.item != kNoItem) std::fprintf(stderr, " (item %llu)", static_cast<unsigned long long>(error.item));
+    std::fputc('\n', stderr);
+    return kBadInput;
+}
+
+namespace {
+
+// Puts arrays that hold only numbers on one line, outside of strings.
+std::string with_short_arrays(const std::string& text) {
+    std::string result;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"' && (i == 0 || !quoted))
+            quoted = true;
+        else if (quoted && c == '\\')
+            result += text[i++];
+        else if (quoted && c == '"')
+            quoted = false;
+        const std::size_t end = c == '[' && !quoted ? text.find_first_not_of("0123456789+-.eE, \n", i + 1) : text.npos;
+        if (end == text.npos || text[end] != ']') {
+            result += text[i];
+            continue;
+        }
+        for (; i <= end; ++i) {
+            if (text[i] == ',')
+                result += ", ";
+            else if (text[i] != ' ' && text[i] != '\n')
+                result += text[i];
+        }
+        --i;
+    }
+    return result;
+}
+
+}  // namespace
+
+Result<void> write_json(const std::string& path, const Json& document) {
+    const std::string text = document.dump(1);
+    return write_file(path, with_short_arrays(text) + "\n");
+}
+
+}  // namespace crofton::cli

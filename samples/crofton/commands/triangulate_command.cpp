@@ -1,0 +1,233 @@
+// `crofton triangulate`: polygons with holes, or the planar patches of meshes, to triangles.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <crofton/triangulate/triangulate.hpp>
+#include <cstdio>
+
+#include "assets/file.hpp"
+#include "commands.hpp"
+#include "json/json.hpp"
+#include "polygon_files.hpp"
+#include "polygon_svg.hpp"
+#include "progress_bar.hpp"
+#include "report.hpp"
+#include "triangulate_compare.hpp"
+#include "triangulate_meshes.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using triangulate::Method;
+using triangulate::Triangulation;
+using Clock = std::chrono::steady_clock;
+
+struct TriangulateOptions {
+    std::string file, method = "minimum-weight", map, json, svg, out;
+    double seconds = 10.0, tolerance = -1.0, attribute_tolerance = 1e-4;
+    bool no_indices = false, compare = false, has_tolerance = false;
+    std::uint64_t frusta = 100'000;
+    std::size_t least_vertices = 5;
+};
+
+Result<Method> method_from(const std::string& name) {
+    if (name == "ear") return Method::ear;
+    if (name == "delaunay") return Method::delaunay;
+    if (name == "minimum-weight") return Method::minimum_weight;
+    return fail(ErrorCode::invalid_argument, kNoItem,
+                "--method must be ear, delaunay or minimum-weight, not '" + name + "'");
+}
+
+Json to_json(const NamedPolygon& named, const Triangulation& result, double microseconds, bool no_indices) {
+    Json entry{{"name", named.name},
+               {"vertices", named.polygon.points.size()},
+               {"holes", named.polygon.ring_count() - 1},
+               {"triangle_count", result.triangles.size()},
+               {"weight", result.weight},
+               {"optimal", result.optimal},
+               {"gap", std::isfinite(result.gap) ? Json(result.gap) : Json(nullptr)},
+               {"microseconds", microseconds}};
+    if (!no_indices) entry["triangles"] = result.triangles;
+    return entry;
+}
+
+struct Totals {
+    std::size_t polygons = 0, refused = 0, vertices = 0, holes = 0, triangles = 0, optimal = 0;
+    double weight = 0.0, microseconds = 0.0, largest_gap = 0.0;
+
+    void add(const Polygon& polygon, const Triangulation& result, double time) {
+        ++polygons;
+        vertices += polygon.points.size();
+        holes += polygon.ring_count() - 1;
+        triangles += result.triangles.size();
+        optimal += result.optimal;
+        largest_gap = std::max(largest_gap, result.gap);
+        weight += result.weight;
+        microseconds += time;
+    }
+};
+
+void print_table(const TriangulateOptions& options, const Totals& t) {
+    std::printf("%-16s %10s %10s %8s %10s %16s %10s %12s\n", "method", "polygons", "vertices", "holes", "triangles",
+                "weight", "optimal", "us/vertex");
+    std::printf("%-16s %10zu %10zu %8zu %10zu %16.8g %10zu %12.3f\n", options.method.c_str(), t.polygons, t.vertices,
+                t.holes, t.triangles, t.weight, t.optimal,
+                t.vertices ? t.microseconds / static_cast<double>(t.vertices) : 0.0);
+    if (t.optimal < t.polygons && std::isfinite(t.largest_gap)) {
+        const std::size_t open = t.polygons - t.optimal;
+        std::printf("%zu %s not proven minimal, but at most %.2g times as heavy as the minimum\n", open,
+                    open == 1 ? "polygon is" : "polygons are", 1.0 + t.largest_gap);
+    }
+    if (t.refused) std::printf("%zu %s refused\n", t.refused, t.refused == 1 ? "polygon was" : "polygons were");
+}
+
+Result<int> run_polygons(const TriangulateOptions& options, Method method) {
+    const auto file = read_polygons(options.file, options.map);
+    if (!file) return tl::unexpected(file.error());
+    for (const auto& warning : file->warnings) std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+    const auto& polygons = file->polygons;
+    std::vector<Triangulation> results(polygons.size());
+    Json entries = Json::array();
+    Totals totals;
+    triangulate::Triangulator triangulator;
+    {
+        ProgressBar bar("triangulate", polygons.size());
+        for (std::size_t i = 0; i < polygons.size(); ++i) {
+            const auto start = Clock::now();
+            const auto done = triangulator.triangulate(polygons[i].polygon,
+                                                       {.method = method, .seconds = options.seconds}, results[i]);
+            const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+            if (done) {
+                totals.add(polygons[i].polygon, results[i], time);
+                entries.push_back(to_json(polygons[i], results[i], time, options.no_indices));
+            } else {
+                ++totals.refused;
+                const bool named = polygons[i].name != assets::file_name(options.file);
+                std::fprintf(stderr, "crofton: %s: %s%s%s\n", options.file.c_str(),
+                             named ? polygons[i].name.c_str() : "", named ? ": " : "", done.error().message.c_str());
+                entries.push_back(
+                    {{"name", polygons[i].name},
+                     {"error", {{"code", to_string(done.error().code)}, {"message", done.error().message}}}});
+            }
+            bar.set(i + 1);
+        }
+    }
+    if (!options.svg.empty()) {
+        if (auto written = write_file(options.svg, draw_svg(polygons, results, file->one_plane)); !written)
+            return tl::unexpected(written.error());
+    }
+    if (!options.json.empty()) {
+        const Json document{{"file", assets::file_name(options.file)},
+                            {"method", options.method},
+                            {"polygons", std::move(entries)},
+                            {"summary",
+                             {{"polygons", totals.polygons},
+                              {"refused", totals.refused},
+                              {"vertices", totals.vertices},
+                              {"holes", totals.holes},
+                              {"triangles", totals.triangles},
+                              {"optimal", totals.optimal},
+                              {"weight", totals.weight},
+                              {"microseconds", totals.microseconds}}}};
+        if (auto written = write_json(options.json, document); !written) return tl::unexpected(written.error());
+    }
+    if (options.json != "-" && options.svg != "-") print_table(options, totals);
+    return totals.refused ? kBadInput : kSuccess;
+}
+
+Result<int> run(const TriangulateOptions& options) {
+    const auto method = method_from(options.method);
+    if (!method) return tl::unexpected(method.error());
+    if (options.json == "-" && options.svg == "-") {
+        return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --svg can go to stdout");
+    }
+    if (!(options.seconds >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "--time-limit must not be negative");
+    if (!(options.attribute_tolerance >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "--attribute-tolerance must not be negative");
+    if (options.json == "-" && options.out == "-")
+        return fail(ErrorCode::invalid_argument, kNoItem, "only one of --json and --out can go to stdout");
+    if (options.has_tolerance && !(options.tolerance >= 0.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "--tolerance must not be negative");
+    const std::string kind = assets::extension(options.file);
+    const bool mesh =
+        kind == "obj" || kind == "glb" || kind == "gltf" || options.file == "town" || options.file == "room";
+    if (!mesh && !is_polygon_file(options.file)) {
+        return fail(ErrorCode::unsupported, kNoItem,
+                    options.file + ": unknown kind of file; known are .poly, .json, .geojson, .wad, .obj, .glb, .gltf");
+    }
+    if (!options.map.empty() && kind != "wad")
+        return fail(ErrorCode::invalid_argument, kNoItem, "--map is for .wad files");
+    if (options.compare) {
+        if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
+            return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
+        return run_compare({options.file, options.map, options.json, options.seconds, options.tolerance, options.frusta,
+                            options.least_vertices});
+    }
+    if (is_polygon_file(options.file)) {
+        if (!options.out.empty())
+            return fail(ErrorCode::invalid_argument, kNoItem, "--out is for meshes: .obj, .glb, .gltf");
+        return run_polygons(options, *method);
+    }
+    if (!options.svg.empty())
+        return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
+    return run_meshes({options.file, options.method, *method, options.json, options.out, options.seconds,
+                       options.tolerance, options.attribute_tolerance, options.no_indices});
+}
+
+constexpr const char* kExamples =
+    "Polygons: .poly, .json (earcut's rings or GeoJSON), .geojson, .wad. Meshes, whose planar patches are triangulated "
+    "anew:\n"
+    ".obj, .glb, .gltf. Indices count a polygon's points ring by ring. A polygon that is refused is named on stderr, "
+    "has an\n"
+    "`error` in the JSON, and makes the exit status 2; the others are done all the same. So it is with a mesh's "
+    "parts.\n"
+    "--out keeps all of a glTF asset but indices: materials, images, skins, animations, extensions. Images and buffers "
+    "in\n"
+    "other files are taken in. A patch ends at seams, and where texture coordinates, normals or colours bend.\n"
+    "Examples:\n"
+    "  crofton triangulate county.geojson --svg county.svg          exact minimum weight, and a picture\n"
+    "  crofton triangulate glyphs.poly --no-indices --json -        weights and times only\n"
+    "  crofton triangulate level.wad --map MAP01 --method delaunay  every sector of one level\n"
+    "  crofton triangulate glyphs.poly --compare                    what each method costs frusta and pixels\n"
+    "  crofton triangulate house.glb --out lighter.glb              the same house with shorter inner edges\n"
+    "  crofton triangulate town --out town.glb                      the town that comes with crofton, as a file\n";
+
+}  // namespace
+
+void add_triangulate_command(CommandLine& line) {
+    auto options = std::make_shared<TriangulateOptions>();
+    Command command = line.command("triangulate", "Polygons with holes, or the planar patches of meshes, to triangles");
+    command.footer(kExamples);
+    command.option("file", options->file, "What to triangulate").required();
+    command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
+    command.option("--map", options->map, "Only this level of a .wad");
+    command
+        .option("--time-limit,--seconds", options->seconds,
+                "Seconds allowed per polygon; then the best so far, with its proven gap")
+        .show_default();
+    const Option tolerance =
+        command.option("--tolerance", options->tolerance,
+                       "Distance from a plane that still counts as in it; a millionth of the mesh's size where absent");
+    command
+        .option("--attribute-tolerance", options->attribute_tolerance,
+                "How far texture coordinates, normals, colours, ... may leave one linear function of the position "
+                "within a patch; inf: as far as they like")
+        .show_default();
+    command.flag("--compare", options->compare,
+                 "All methods: weights; triangles passed and pixel quads, predicted and measured; draw time");
+    command.option("--frusta", options->frusta, "How many random frusta --compare measures with").show_default();
+    command.option("--least-vertices", options->least_vertices, "--compare leaves smaller polygons out").show_default();
+    command.flag("--no-indices", options->no_indices, "Leave the triangles out of the JSON");
+    command.option("--json", options->json, "Write results as JSON; - for stdout").writable_file();
+    command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout").writable_file();
+    command.option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
+        .writable_file();
+    command.action([options, tolerance] {
+        options->has_tolerance = tolerance.given();
+        const auto status = run(*options);
+        return status ? *status : report_error("", status.error());
+    });
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,94 @@
+// `crofton view`: see what is culled, why, and what it costs.
+#include <memory>
+
+#include "commands.hpp"
+#include "frames_output.hpp"
+#include "pipeline/bounds.hpp"
+#include "pipeline/pipeline.hpp"
+#include "report.hpp"
+#include "viewer/keys.hpp"
+#include "viewer/viewer.hpp"
+
+namespace crofton::cli {
+namespace {
+
+struct ViewArguments {
+    viewer::ViewerOptions options;
+    std::string size = "1280x720", bounds = "obb-perimeter", cull = "tree";
+    bool no_window = false;
+};
+
+Result<void> run(ViewArguments arguments) {
+    const auto size = image_size_from(arguments.size);
+    if (!size) return tl::unexpected(size.error());
+    const auto bounds = pipeline::bounds_kind_from(arguments.bounds);
+    if (!bounds) return tl::unexpected(bounds.error());
+    const auto mode = pipeline::cull_mode_from(arguments.cull);
+    if (!mode) return tl::unexpected(mode.error());
+    viewer::ViewerOptions& options = arguments.options;
+    options.width = size->width;
+    options.height = size->height;
+    options.settings.method = {*bounds, *mode};
+    options.window = !arguments.no_window;
+    if (!options.window && options.frames == 0 && options.script.empty())
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "--no-window needs --after or --script, or it would never end");
+    if (!options.screenshot.empty() && options.frames == 0)
+        return fail(ErrorCode::invalid_argument, kNoItem, "--screenshot needs --after FRAMES");
+    return viewer::run_viewer(options);
+}
+
+constexpr const char* kScriptHelp =
+    "Script: {\"events\": [{\"frame\": 1, \"key\": \"F\"}, ...]}, frames in order, one action for each event:\n"
+    "  key, key_down, key_up \"W\"       a key by its name above\n"
+    "  set {\"coloring\": \"verdict\"}    switches by name; docs/viewer.md lists them\n"
+    "  camera {\"position\": [0, 2, 9], \"forward\": [0, 0, -1]}\n"
+    "  click [640, 360], resize [800, 600]   in pixels\n"
+    "  drop \"scene.glb\"                a file opened as if dropped on the window\n"
+    "  screenshot \"a.png\"              the picture of this frame, with panels\n"
+    "  scale 2.0                       as if the window had come onto a display of that scale\n"
+    "  lose_device true, quit true\n";
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  crofton view                                        the town\n"
+    "  crofton view level.wad --map MAP07\n"
+    "  crofton view scene.glb --camera street --bounds aabb\n"
+    "  crofton view --no-window --after 10 --screenshot town.png --json -\n"
+    "  xvfb-run -a crofton view --script tour.json         no display: a virtual one\n";
+
+}  // namespace
+
+void add_view_command(CommandLine& line) {
+    auto arguments = std::make_shared<ViewArguments>();
+    viewer::ViewerOptions& options = arguments->options;
+    Command command = line.command("view", "Fly through a scene and see what is culled, why, and what it costs");
+    command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kExamples);
+    command.option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
+    command.option("--map", options.scene.map, "which level of a WAD");
+    command.option("--seed", options.scene.seed, "of the town").show_default();
+    command.option("--instances", options.scene.instances, "of the town, roughly");
+    command.option("--scale", options.scale, "of texts and panels; as the display asks where absent").between(0.5, 8.0);
+    command.option("--resolution", options.settings.resolution, "draw this share of the pixels each way, enlarged")
+        .between(viewer::kMinResolution, 1.0)
+        .show_default();
+    command.option("--size", arguments->size, "of the window, as 1280x720").show_default();
+    command.option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
+        .show_default();
+    command.option("--cull", arguments->cull, "none, flat or tree").show_default();
+    command.option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
+    command.option("--after", options.frames, "quit after so many frames");
+    command.option("--screenshot", options.screenshot, "the last frame as PNG").writable_file();
+    command.option("--script", options.script, "JSON file of keys, cameras, switches and screenshots by frame");
+    command.option("--json", options.json, "statistics of all frames into this file, - for stdout").writable_file();
+    command.option("--output", options.output_folder, "folder for recorded paths, exports and screenshots")
+        .show_default();
+    command.option("--device", options.device, "part of the Vulkan device's name, or cpu");
+    command.flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
+    command.flag("--no-window", arguments->no_window, "draw without any display");
+    command.action([arguments] {
+        const auto done = run(*arguments);
+        return done ? kSuccess : report_error("", done.error());
+    });
+}
+
+}  // namespace crofton::cli

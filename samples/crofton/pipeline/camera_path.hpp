@@ -1,0 +1,50 @@
+// Where the camera is in each frame: built-in paths around any scene, or one recorded in a file.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/scene/scene.hpp>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "json/json.hpp"
+
+namespace crofton::pipeline {
+
+// The part of the scene worth looking at: the middle nine tenths of its triangles along each axis, by their instances'
+// boxes. A few far backdrops (hills, a sky dome) do not send the camera away. Empty for an empty scene.
+[[nodiscard]] Aabb focus_of(const scene::Scene& scene);
+
+struct PathOptions {
+    std::string kind = "orbit";  // orbit, street, random, or the path of a JSON file
+    std::uint32_t frames = 0;    // 0: as many as the file has; kBuiltInFrames of the others
+    std::uint64_t seed = 1;
+    double aspect = 16.0 / 9.0;
+};
+inline constexpr std::uint32_t kBuiltInFrames = 120;
+
+// A camera for each frame, and what the scene shows then: its movers stand as they do in scene_frames[i].
+struct CameraPath {
+    std::vector<Camera> cameras;
+    std::vector<std::uint32_t> scene_frames;
+};
+
+// `bounds` frames the scene (y up); `walk` is where a pedestrian may go, for `street`, and may be empty: then the path
+// leads along the longer side of the bounds, low above the ground. A recording shorter than `frames` starts over.
+// Errors: an unknown kind, an unreadable or invalid file, empty bounds.
+[[nodiscard]] Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& bounds,
+                                                  std::span<const glm::dvec3> walk);
+
+// {position, forward, up, fov_y, aspect, near, far}; far is the string "infinity" where it is infinite.
+[[nodiscard]] Json to_json(const Camera& camera);
+// Fields that are absent keep Camera's defaults. Errors: wrong types, invalid values (validate(Camera)), the entry's
+// number as item.
+[[nodiscard]] Result<Camera> camera_from_json(const Json& entry, std::uint64_t item);
+
+// A recorded path: an array of cameras, {"cameras": […]}, or the output of `crofton frames --json`. An entry may have
+// "scene_frame"; where it has none, it shows the scene frame of its own number.
+[[nodiscard]] Result<CameraPath> load_camera_path(const std::string& path);
+
+}  // namespace crofton::pipeline

@@ -1,0 +1,12 @@
+// The claims of `crofton verify collide`.
+#pragma once
+#include <vector>
+
+#include "rows.hpp"
+
+namespace crofton::cli {
+
+// Boxes that nearly touch, against exact integers: no wrong answer in any class of gap and angle.
+[[nodiscard]] std::vector<VerifyRow> verify_collide(const VerifyOptions& options);
+
+}  // namespace crofton::cli

@@ -1,0 +1,19 @@
+// The claims `crofton verify` can check, by topic.
+#pragma once
+#include <vector>
+
+#include "rows.hpp"
+
+namespace crofton::cli {
+
+// The measures and criteria: equations, theorems and examples of the paper, corrected where theory.md says so.
+[[nodiscard]] std::vector<VerifyRow> verify_paper(const VerifyOptions& options);
+// Global lines: the densities that are uniform, those that are not, and what a patch expects of them.
+[[nodiscard]] std::vector<VerifyRow> verify_lines(const VerifyOptions& options);
+
+// Parts of verify_paper.
+[[nodiscard]] std::vector<VerifyRow> kinematic_rows(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> planar_rows(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> criterion_rows(const VerifyOptions& options);
+
+}  // namespace crofton::cli

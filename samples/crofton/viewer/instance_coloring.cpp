@@ -1,0 +1,123 @@
+#include "instance_coloring.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace crofton::viewer {
+namespace {
+
+constexpr std::uint8_t kPlain = 255;
+
+// Depth of the leaf that holds an item: steps from the root.
+unsigned depth_of(const boxtree::BoxTree& tree, boxtree::ItemId item) {
+    const std::uint32_t slot = tree.slot_of(item);
+    if (slot == boxtree::kNone) return 0;
+    unsigned depth = 1;
+    for (boxtree::NodeId node = tree.leaves()[slot / boxtree::kWidth].parent; node != boxtree::kNone && node != 0;
+         node = tree.nodes()[node].parent)
+        ++depth;
+    return depth;
+}
+
+constexpr std::array<const char*, 6> kDepthNames{"depth 1", "depth 2", "depth 3", "depth 4", "depth 5", "deeper"};
+constexpr std::array<glm::vec3, 6> kDepthColors{{{0.60f, 0.05f, 0.05f},
+                                                 {0.70f, 0.40f, 0.02f},
+                                                 {0.20f, 0.50f, 0.05f},
+                                                 {0.03f, 0.40f, 0.45f},
+                                                 {0.10f, 0.15f, 0.70f},
+                                                 {0.40f, 0.05f, 0.55f}}};
+
+}  // namespace
+
+void InstanceColoring::count(const char* name, const glm::vec3& color) {
+    counts_.push_back({name, color, 0});
+}
+
+void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
+                                scene::InstanceId selected) {
+    const auto verdicts = loaded.pipeline().verdicts();
+    counts_.clear();
+    tint_of_.assign(verdicts.size(), kPlain);
+    switch (coloring) {
+        case Coloring::lit:
+        case Coloring::shape:
+            break;
+        case Coloring::verdict:
+            count("inside", palette::kInside);
+            count("straddling", palette::kStraddling);
+            for (const scene::InstanceId i : frame.visible_ids)
+                tint_of_[i] = verdicts[i] == cull::Verdict::inside ? 0 : 1;
+            break;
+        case Coloring::improper: {
+            count("inside", palette::kInside);
+            count("straddling", palette::kStraddling);
+            count("improper", palette::kImproper);
+            const auto frustum = frustum_of(frame.camera);
+            for (const scene::InstanceId i : frame.visible_ids) {
+                tint_of_[i] = verdicts[i] == cull::Verdict::inside ? 0 : 1;
+                if (tint_of_[i] == 1 && frustum &&
+                    counter_.count(loaded.scene(), *frustum, std::span(&i, 1), verdicts).improper > 0)
+                    tint_of_[i] = 2;
+            }
+            break;
+        }
+        case Coloring::collision:
+            count("calm", palette::kCalm);
+            count("colliding", palette::kColliding);
+            for (const scene::InstanceId i : frame.visible_ids) tint_of_[i] = 0;
+            for (const auto& [first, second] : frame.colliding_ids)
+                for (const scene::InstanceId i : {first, second})
+                    if (tint_of_[i] == 0) tint_of_[i] = 1;
+            break;
+        case Coloring::depth:
+            for (std::size_t d = 0; d < kDepthNames.size(); ++d) count(kDepthNames[d], kDepthColors[d]);
+            for (const scene::InstanceId i : frame.visible_ids)
+                tint_of_[i] = static_cast<std::uint8_t>(
+                    std::min<std::size_t>(depth_of(loaded.pipeline().tree(), i), kDepthNames.size()) - 1);
+            break;
+    }
+    for (const scene::InstanceId i : frame.visible_ids)
+        if (tint_of_[i] != kPlain) ++counts_[tint_of_[i]].instances;
+    if (selected < tint_of_.size()) {
+        count("selected", palette::kSelected);
+        tint_of_[selected] = static_cast<std::uint8_t>(counts_.size() - 1);
+        counts_.back().instances = 1;
+    }
+}
+
+void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {
+    const auto ranges = list.ranges();
+    const auto transforms = list.transforms();
+    ranges_.assign(ranges.begin(), ranges.end());
+    transforms_.assign(transforms.begin(), transforms.end());
+    // Baked instances share transforms; each tint needs one of its own. Tints are lit, to show shapes.
+    const auto first_tinted = static_cast<std::uint32_t>(transforms_.size());
+    for (const Count& tint : counts_) {
+        render::DrawTransform tinted = transforms[0];
+        render::set_tint(tinted, tint.color);
+        transforms_.push_back(tinted);
+    }
+    for (std::size_t r = 0; r < ranges_.size(); ++r) {
+        const std::uint8_t tint = tint_of_[list.instance_of(r)];
+        if (tint == kPlain) continue;
+        if (ranges_[r].transform < pipeline::DrawList::kSharedTransforms) {
+            ranges_[r].transform = first_tinted + tint;
+        } else {
+            render::set_tint(transforms_[ranges_[r].transform], counts_[tint].color);
+            transforms_[ranges_[r].transform].unlit = 0.0f;
+        }
+    }
+    wires_.clear();
+    if (!wireframe) return;
+    const auto first_wire = static_cast<std::uint32_t>(transforms_.size());
+    for (const render::DrawTransform& transform : transforms) {
+        render::DrawTransform wire = transform;
+        render::set_tint(wire, glm::vec3(0.004f));
+        wire.unlit = 1.0f;
+        transforms_.push_back(wire);
+    }
+    for (const render::DrawRange& range : ranges)
+        wires_.push_back({range.first_index, range.index_count, first_wire + range.transform});
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,55 @@
+// Which colour each visible instance is drawn in.
+#pragma once
+#include <crofton/geometry/frustum.hpp>
+#include <crofton/render/rasterizer.hpp>
+#include <vector>
+
+#include "loaded_scene.hpp"
+#include "pipeline/draw_list.hpp"
+#include "pipeline/object_counts.hpp"
+#include "settings.hpp"
+
+namespace crofton::viewer {
+
+// The palette, linear RGB; tests find these hues again in screenshots.
+namespace palette {
+inline constexpr glm::vec3 kInside{0.06f, 0.55f, 0.08f};
+inline constexpr glm::vec3 kStraddling{0.85f, 0.42f, 0.01f};
+inline constexpr glm::vec3 kImproper{0.75f, 0.02f, 0.60f};
+inline constexpr glm::vec3 kColliding{0.90f, 0.02f, 0.02f};
+inline constexpr glm::vec3 kCalm{0.32f, 0.34f, 0.36f};
+inline constexpr glm::vec3 kSelected{0.05f, 0.45f, 0.95f};
+}  // namespace palette
+
+// Turns a draw list's selection into ranges and transforms with tints, and into wires over them. Ranges that share a
+// colour and lie side by side still become one draw.
+class InstanceColoring {
+  public:
+    // Decides the colours for this frame. `frame` is what the scene's run() said for the camera that culls.
+    void classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
+                  scene::InstanceId selected);
+    // Lays out the selection of `list`, which has been made for the camera that looks.
+    void paint(const pipeline::DrawList& list, bool wireframe);
+
+    [[nodiscard]] std::span<const render::DrawRange> ranges() const { return ranges_; }
+    [[nodiscard]] std::span<const render::DrawRange> wire_ranges() const { return wires_; }
+    [[nodiscard]] std::span<const render::DrawTransform> transforms() const { return transforms_; }
+    // Instances of each tint in the last classify(), by tint: see tint_names().
+    struct Count {
+        const char* name;
+        glm::vec3 color;
+        std::uint64_t instances;
+    };
+    [[nodiscard]] std::span<const Count> counts() const { return counts_; }
+
+  private:
+    void count(const char* name, const glm::vec3& color);
+
+    std::vector<std::uint8_t> tint_of_;  // by instance: index into counts_, kPlain for the vertices' own colours
+    std::vector<Count> counts_;
+    std::vector<render::DrawRange> ranges_, wires_;
+    std::vector<render::DrawTransform> transforms_;
+    pipeline::ObjectCounter counter_;
+};
+
+}  // namespace crofton::viewer

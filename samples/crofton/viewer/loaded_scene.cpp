@@ -1,0 +1,109 @@
+#include "loaded_scene.hpp"
+
+#include <chrono>
+#include <crofton/geometry/aabb.hpp>
+#include <glm/geometric.hpp>
+
+#include "assets/retriangulate.hpp"
+#include "pipeline/camera_path.hpp"
+
+namespace crofton::viewer {
+namespace {
+
+// Spheres and axis-aligned boxes are taken around the vertices; they live with any boxes in the scene.
+bool uses_own_boxes(pipeline::BoundsKind kind) {
+    return kind == pipeline::BoundsKind::obb_volume || kind == pipeline::BoundsKind::obb_area ||
+           kind == pipeline::BoundsKind::obb_frustum;
+}
+
+Camera typical_camera() {
+    Camera camera;
+    camera.far_distance = 200.0;
+    return camera;
+}
+
+triangulate::Method triangulation_method(Triangulation triangulation) {
+    switch (triangulation) {
+        case Triangulation::ear:
+            return triangulate::Method::ear;
+        case Triangulation::delaunay:
+            return triangulate::Method::delaunay;
+        default:
+            return triangulate::Method::minimum_weight;
+    }
+}
+
+pipeline::PipelineOptions options_of(const Method& method, const Settings& settings) {
+    pipeline::PipelineOptions options;
+    options.bounds = method.bounds;
+    options.cull = method.cull;
+    options.mode = settings.exact ? cull::Mode::exact : cull::Mode::conservative;
+    options.collide = settings.collisions;
+    return options;
+}
+
+bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b) {
+    return a.bounds == b.bounds && a.cull == b.cull && a.mode == b.mode && a.collide == b.collide;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& request, const Method& method,
+                                                       const Settings& settings) {
+    const auto criterion = pipeline::criterion_for(method.bounds, typical_camera());
+    if (!criterion) return tl::unexpected(criterion.error());
+    assets::LoadOptions options;
+    options.criterion = *criterion;
+    options.map = request.map;
+    options.seed = request.seed;
+    options.instances = request.instances;
+    auto source = assets::load_scene(request.source, options);
+    if (!source) return tl::unexpected(std::move(source.error()));
+    if (method.triangulation != Triangulation::loaded)
+        if (auto cut = assets::retriangulate(*source, options, triangulation_method(method.triangulation)); !cut)
+            return tl::unexpected(std::move(cut.error()));
+    std::unique_ptr<LoadedScene> loaded(new LoadedScene(std::move(*source)));
+    loaded->source_.scene.update();
+    const scene::Scene& scene = loaded->source_.scene;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
+        if (scene.is_removed(i)) continue;
+        loaded->extent_.include(aabb_of(scene.world_boxes()[i]));
+        loaded->triangle_count_ += scene.mesh(scene.mesh_of(i)).triangle_count();
+    }
+    loaded->focus_ = pipeline::focus_of(scene);
+    if (auto configured = loaded->configure(method, settings); !configured)
+        return tl::unexpected(std::move(configured.error()));
+    return loaded;
+}
+
+bool LoadedScene::needs_reload(const Method& method) const {
+    if (method.triangulation != method_.triangulation) return true;
+    if (!uses_own_boxes(method.bounds) && !uses_own_boxes(method_.bounds)) return false;
+    return method.bounds != method_.bounds;
+}
+
+Result<void> LoadedScene::configure(const Method& method, const Settings& settings) {
+    const pipeline::PipelineOptions wanted = options_of(method, settings);
+    if (pipeline_ && same(wanted, options_)) return {};
+    auto made = pipeline::Pipeline::create(source_.scene, source_.movers, wanted, serial_executor());
+    if (!made) return tl::unexpected(std::move(made.error()));
+    pipeline_.emplace(std::move(*made));
+    method_ = method;
+    options_ = wanted;
+    return {};
+}
+
+void LoadedScene::animate(std::uint32_t frame) {
+    const auto start = std::chrono::steady_clock::now();
+    source_.animate(frame);
+    source_.scene.update();
+    update_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+Result<pipeline::FrameStatistics> LoadedScene::run(const Camera& camera) {
+    auto frame = pipeline_->run(camera);
+    if (frame) frame->update_us += update_us_;
+    return frame;
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,188 @@
+// The session's beginnings: window, device, interface, scene.
+#include <imgui.h>
+#include <imgui/backends/imgui_impl_glfw.h>
+
+#include <crofton/render/vertex.hpp>
+#include <filesystem>
+
+#include "pipeline/camera_path.hpp"
+#include "pipeline/pedestrian_path.hpp"
+#include "session.hpp"
+#include "shape_colors.hpp"
+
+namespace crofton::viewer {
+
+Session::~Session() {
+    // ImGui's window backend before the window, everything on the device before the device.
+    if (imgui_window_) ImGui_ImplGlfw_Shutdown();
+    ui_.reset();
+    ui_commands_ = {};
+    rasterizer_.reset();
+    window_.reset();
+    device_.reset();
+    if (imgui_) ImGui::DestroyContext();
+}
+
+Result<void> Session::start() {
+    wanted_size_ = {options_.width, options_.height};
+    if (!options_.script.empty()) {
+        auto actions = load_script(options_.script);
+        if (!actions) return tl::unexpected(std::move(actions.error()));
+        script_.assign(actions->begin(), actions->end());
+    }
+    if (options_.window)
+        if (auto started = start_window(); !started) return started;
+    if (auto started = start_device(); !started) return started;
+    if (auto started = start_interface(); !started) return started;
+    if (auto loaded = load(options_.scene); !loaded) return loaded;
+    return load_replay();
+}
+
+Result<void> Session::start_window() {
+    auto window = Window::create("Crofton", static_cast<int>(options_.width), static_cast<int>(options_.height));
+    if (!window) return tl::unexpected(std::move(window.error()));
+    window_ = std::move(*window);
+    return {};
+}
+
+Result<void> Session::start_device() {
+    render::DeviceOptions wanted;
+    wanted.name = options_.device;
+    wanted.validation = options_.validation;
+    if (window_) {
+        wanted.instance_extensions = Window::instance_extensions();
+        wanted.device_extensions = Window::device_extensions();
+    }
+    auto device = render::Device::create(wanted);
+    if (!device) return tl::unexpected(std::move(device.error()));
+    device_ = std::make_unique<render::Device>(std::move(*device));
+    render::RasterizerOptions size;
+    size.width = options_.width;
+    size.height = options_.height;
+    auto rasterizer = render::Rasterizer::create(*device_, size);
+    if (!rasterizer) return tl::unexpected(std::move(rasterizer.error()));
+    rasterizer_ = std::make_unique<render::Rasterizer>(std::move(*rasterizer));
+    return window_ ? window_->attach(device_->context()) : Result<void>{};
+}
+
+Result<void> Session::start_interface() {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    imgui_ = true;
+    ImGui::GetIO().IniFilename = nullptr;
+    if (window_) imgui_window_ = ImGui_ImplGlfw_InitForOther(window_->handle(), true);
+    if (window_) wanted_scale_ = window_->content_scale();
+    scale_ = options_.scale > 0.0f ? options_.scale : wanted_scale_;
+    apply_style(scale_);
+    return start_ui_renderer();
+}
+
+Result<void> Session::start_ui_renderer() {
+    auto ui = UiRenderer::create(device_->context());
+    if (!ui) return tl::unexpected(std::move(ui.error()));
+    ui_ = std::move(*ui);
+    auto commands = render::Commands::create(device_->context());
+    if (!commands) return tl::unexpected(std::move(commands.error()));
+    ui_commands_ = std::move(*commands);
+    return {};
+}
+
+// A device or a surface is gone: all that lived on it is made anew, the scene and the user's view stay.
+Result<void> Session::recover() {
+    for (const std::string& message : device_->validation_messages()) lost_messages_.push_back(message);
+    ui_.reset();
+    ui_commands_ = {};
+    rasterizer_.reset();
+    if (window_) window_->detach();
+    device_.reset();
+    if (auto started = start_device(); !started) return started;
+    if (auto started = start_ui_renderer(); !started) return started;
+    stale_size_ = true;
+    return upload_geometry();
+}
+
+Result<void> Session::load(const SceneRequest& request) {
+    auto loaded = LoadedScene::load(request, settings_.method, settings_);
+    if (!loaded) return tl::unexpected(std::move(loaded.error()));
+    const bool same_scene = loaded_ && request.source == request_.source && request.map == request_.map;
+    // What refers to the old scene goes first.
+    list_.reset();
+    overlay_.clear();
+    pick_.reset();
+    if (!same_scene) {
+        other_.reset();
+        selected_ = scene::kNone;
+        scene_time_ = 0.0;
+        replaying_ = false;
+    }
+    loaded_ = std::move(*loaded);
+    request_ = request;
+    nodes_.rebuild(loaded_->scene());
+    for (const std::string& warning : loaded_->source().warnings) report({ErrorCode::unsupported, kNoItem, warning});
+    if (!same_scene) {
+        controller_.frame_all(loaded_->focus(), loaded_->extent());
+        const std::vector<glm::dvec3>& walk = loaded_->source().walk;
+        if (walk.size() > 1) controller_.stand(walk[0], walk[1]);
+        culling_camera_ = controller_.camera;
+        if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
+    }
+    std::vector<std::uint8_t> is_mover(loaded_->scene().instance_count(), 0);
+    for (const scene::InstanceId mover : loaded_->source().movers) is_mover[mover] = 1;
+    list_ = std::make_unique<pipeline::DrawList>(
+        loaded_->scene(), loaded_->pipeline().spatial_order(), is_mover,
+        pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided});
+    return upload_geometry();
+}
+
+Result<void> Session::upload_geometry() {
+    shape_uploaded_ = settings_.coloring == Coloring::shape;
+    if (!shape_uploaded_) return rasterizer_->set_geometry(list_->vertices(), list_->indices());
+    const ShapeColored colored = color_by_shape(list_->vertices(), list_->indices());
+    return rasterizer_->set_geometry(colored.vertices, colored.indices);
+}
+
+Result<void> Session::follow_settings() {
+    // A file may have gone or changed since: the scene on show stays, with the method that it has.
+    if (loaded_->needs_reload(settings_.method)) {
+        if (auto loaded = load(request_); !loaded) {
+            report(loaded.error());
+            settings_.method = loaded_->method();
+        }
+    } else if (auto configured = loaded_->configure(settings_.method, settings_); !configured) {
+        return configured;
+    }
+    if (!settings_.compare) {
+        other_.reset();
+    } else if (!other_ || other_->needs_reload(settings_.other)) {
+        auto other = LoadedScene::load(request_, settings_.other, settings_);
+        if (other) {
+            other_ = std::move(*other);
+        } else {
+            report(other.error());
+            settings_.compare = false;
+        }
+    } else if (auto configured = other_->configure(settings_.other, settings_); !configured) {
+        return configured;
+    }
+    if (shape_uploaded_ != (settings_.coloring == Coloring::shape)) return upload_geometry();
+    return {};
+}
+
+Result<void> Session::load_replay() {
+    if (options_.camera.empty()) return {};
+    pipeline::PathOptions path;
+    path.kind = options_.camera;
+    const bool built_in = !std::filesystem::exists(path.kind);
+    path.frames = options_.frames > 0 ? options_.frames : built_in ? 600 : 0;
+    path.aspect = static_cast<double>(options_.width) / options_.height;
+    std::vector<glm::dvec3> walk = loaded_->source().walk;
+    if (walk.empty() && path.kind == "street")
+        walk = pipeline::find_pedestrian_path(loaded_->scene(), loaded_->focus());
+    auto made = pipeline::make_camera_path(path, loaded_->focus(), walk);
+    if (!made) return tl::unexpected(std::move(made.error()));
+    path_ = std::move(*made);
+    replaying_ = true;
+    return {};
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,151 @@
+#include "overlay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <iterator>
+
+namespace crofton::viewer {
+namespace {
+
+constexpr std::uint32_t kOutside = rgba(225, 60, 70), kBound = rgba(250, 235, 90), kFrustum = rgba(255, 255, 255),
+                        kTree = rgba(110, 220, 255), kPair = rgba(255, 90, 60), kContact = rgba(255, 250, 80),
+                        kSelection = rgba(90, 170, 255), kSeparation = rgba(80, 255, 210);
+constexpr std::array<std::uint32_t, 8> kCascades{rgba(255, 90, 90),   rgba(255, 190, 70),  rgba(130, 230, 90),
+                                                 rgba(70, 220, 220),  rgba(100, 140, 255), rgba(210, 110, 255),
+                                                 rgba(255, 120, 200), rgba(200, 200, 200)};
+// Beyond this many pairs the picture says nothing more.
+constexpr std::size_t kMaxPairs = 200;
+constexpr std::size_t kMaxContactsOfPair = 64;
+
+}  // namespace
+
+std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
+    std::vector<Cascade> result;
+    const double near = camera.near_distance, far = std::min(camera.far_distance, std::max(reach, 2.0 * near));
+    const auto depth_at = [&](int i) {
+        const double share = static_cast<double>(i) / count;
+        return 0.5 * (near + (far - near) * share) + 0.5 * near * std::pow(far / near, share);
+    };
+    for (int i = 0; i < count; ++i) {
+        Cascade cascade{camera, 0, kCascades[static_cast<std::size_t>(i) % kCascades.size()]};
+        cascade.camera.near_distance = depth_at(i);
+        cascade.camera.far_distance = depth_at(i + 1);
+        result.push_back(cascade);
+    }
+    return result;
+}
+
+void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene& loaded,
+                   const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades,
+                   scene::InstanceId selected, bool show_frustum) {
+    const scene::Scene& scene = loaded.scene();
+    legend_.clear();
+    draw_bounds(lines, settings, loaded, frame);
+    if (settings.tree_level >= 0) draw_tree_level(lines, loaded.pipeline().tree(), settings.tree_level);
+    contacts_ = separations_ = 0;
+    if (settings.coloring == Coloring::collision && settings.collisions) {
+        legend_.push_back({"boxes that meet, and their centres", kPair});
+        draw_pairs(lines, loaded, frame);
+        legend_.push_back({"contacts between triangles", kContact, contacts_});
+        draw_separations(lines, loaded, frame);
+        legend_.push_back({"near misses, separating axis", kSeparation, separations_});
+    }
+    if (selected < scene.instance_count() && !scene.is_removed(selected)) {
+        legend_.push_back({"its bound and its own axes", kSelection});
+        lines.box(loaded.pipeline().bounds().boxes()[selected], kSelection);
+        lines.axes(scene.world_boxes()[selected]);
+    }
+    const double reach = 1.5 * glm::length(loaded.extent().half_extents());
+    if (show_frustum && cascades.size() < 2) {
+        legend_.push_back({"view that culls", kFrustum});
+        lines.frustum(frame.camera, reach, kFrustum);
+    }
+    if (show_frustum || settings.freeze)
+        for (const Cascade& cascade : cascades)
+            if (cascades.size() > 1) lines.frustum(cascade.camera, cascade.camera.far_distance, cascade.color);
+}
+
+void Overlay::draw_bounds(LineList& lines, const Settings& settings, const LoadedScene& loaded,
+                          const pipeline::FrameStatistics& frame) {
+    const scene::Scene& scene = loaded.scene();
+    const auto verdicts = loaded.pipeline().verdicts();
+    const auto boxes = loaded.pipeline().bounds().boxes();
+    if (settings.outside) {
+        legend_.push_back({"bounds of what is culled", kOutside});
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+            if (!scene.is_removed(i) && verdicts[i] == cull::Verdict::outside) lines.box(boxes[i], kOutside);
+    }
+    if (settings.bounds) {
+        legend_.push_back({"bounds of what is visible", kBound});
+        for (const scene::InstanceId i : frame.visible_ids) lines.box(boxes[i], kBound);
+    }
+}
+
+void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level) {
+    if (tree.nodes().empty()) return;
+    legend_.push_back({"bounds of the tree's nodes", kTree});
+    Aabb all;
+    for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) all.include(tree.child_bounds(0, lane));
+    if (level == 0 && !all.is_empty()) lines.box(obb_of(all), kTree);
+    if (level == 0) return;
+    std::vector<boxtree::NodeId> nodes{0}, next;
+    for (int depth = 1; depth < level && !nodes.empty(); ++depth) {
+        next.clear();
+        for (const boxtree::NodeId node : nodes)
+            for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane)
+                if ((tree.nodes()[node].child[lane] & boxtree::kLeafBit) == 0)
+                    next.push_back(tree.nodes()[node].child[lane]);
+        nodes.swap(next);
+    }
+    for (const boxtree::NodeId node : nodes)
+        for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane) {
+            const Aabb bounds = tree.child_bounds(node, lane);
+            if (!bounds.is_empty()) lines.box(obb_of(bounds), kTree);
+        }
+}
+
+void Overlay::draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
+    const auto boxes = loaded.scene().world_boxes();
+    const std::size_t count = std::min(frame.colliding_ids.size(), kMaxPairs);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto [a, b] = frame.colliding_ids[i];
+        for (const scene::InstanceId instance : {a, b}) {
+            lines.box(boxes[instance], kPair);
+            lines.axes(boxes[instance]);
+        }
+        lines.segment(boxes[a].center, boxes[b].center, kPair);
+        draw_contacts(lines, loaded.scene(), a, b);
+    }
+}
+
+void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b) {
+    finder_.find(scene, a, b, found_);
+    contacts_ += found_.size();
+    const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[a].half_extents));
+    for (std::size_t i = 0; i < std::min(found_.size(), kMaxContactsOfPair); ++i) {
+        lines.segment(found_[i].begin, found_[i].end, kContact);
+        lines.cross(0.5 * (found_[i].begin + found_[i].end), size, kContact);
+    }
+}
+
+// Between moving bodies in view that come close.
+void Overlay::draw_separations(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
+    const auto boxes = loaded.scene().world_boxes();
+    std::vector<scene::InstanceId> movers;
+    std::set_intersection(frame.visible_ids.begin(), frame.visible_ids.end(), loaded.pipeline().movers().begin(),
+                          loaded.pipeline().movers().end(), std::back_inserter(movers));
+    for (const auto& [a, b] : near_pairs(boxes, movers, kMaxPairs)) {
+        const auto gap = separation(boxes[a], boxes[b]);
+        if (!gap) continue;
+        ++separations_;
+        lines.segment(gap->begin, gap->end, kSeparation);
+        const double smaller =
+            std::min(glm::length(glm::dvec3(boxes[a].half_extents)), glm::length(glm::dvec3(boxes[b].half_extents)));
+        lines.cross(gap->begin, 0.1 * smaller, kSeparation);
+        lines.cross(gap->end, 0.1 * smaller, kSeparation);
+    }
+}
+
+}  // namespace crofton::viewer

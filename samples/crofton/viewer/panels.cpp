@@ -1,0 +1,178 @@
+#include "panels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "help_panel.hpp"
+#include "scene_panel.hpp"
+#include "shape_colors.hpp"
+#include "statistics_panel.hpp"
+#include "switches_panel.hpp"
+
+namespace crofton::viewer {
+namespace {
+
+constexpr float kFontPixels = 13.0f;  // what Dear ImGui's own font is made for
+constexpr float kMargin = 8.0f;
+
+ImVec4 display_color(const glm::vec3& linear) {
+    return {std::sqrt(linear.r), std::sqrt(linear.g), std::sqrt(linear.b), 1.0f};
+}
+ImVec4 display_color(std::uint32_t rgba) {
+    return ImGui::ColorConvertU32ToFloat4(rgba);
+}
+
+// A sample of a colour at the line's beginning; `height` of a line of text.
+void sample(const ImVec4& color, float height) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float font = ImGui::GetFontSize();
+    const float top = at.y + 0.5f * (1.0f - height) * font;
+    ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + font, top + height * font),
+                                              ImGui::GetColorU32(color));
+    ImGui::Dummy(ImVec2(font, font));
+    ImGui::SameLine();
+}
+
+// From slivers to equilateral triangles, as color_by_shape() has them.
+void shape_legend() {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFontSize();
+    constexpr int kSteps = 32;
+    for (int i = 0; i < kSteps; ++i) {
+        const float left = width * static_cast<float>(i) / kSteps, right = width * static_cast<float>(i + 1) / kSteps;
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            ImVec2(at.x + left, at.y), ImVec2(at.x + right, at.y + height),
+            ImGui::GetColorU32(display_color(shape_color((static_cast<float>(i) + 0.5f) / kSteps))));
+    }
+    ImGui::Dummy(ImVec2(width, height));
+    ImGui::TextUnformatted("0: sliver");
+    ImGui::SameLine(ImGui::GetCursorPosX() + width - ImGui::CalcTextSize("equilateral: 1").x);
+    ImGui::TextUnformatted("equilateral: 1");
+}
+
+void legend(const PanelInput& input) {
+    for (const InstanceColoring::Count& tint : input.instance_coloring.counts()) {
+        if (tint.instances == 0 && input.settings.coloring == Coloring::depth) continue;
+        sample(display_color(tint.color), 1.0f);
+        ImGui::Text("%s: %s", tint.name, with_thousands(tint.instances).c_str());
+    }
+    for (const LineMeaning& line : input.overlay.legend()) {
+        sample(display_color(line.color), 0.2f);
+        if (line.count)
+            ImGui::Text("%s: %s", line.name, with_thousands(*line.count).c_str());
+        else
+            ImGui::TextUnformatted(line.name);
+    }
+    if (input.cascades.size() > 1)
+        for (std::size_t i = 0; i < input.cascades.size(); ++i) {
+            const Cascade& cascade = input.cascades[i];
+            sample(display_color(cascade.color), 0.2f);
+            ImGui::Text("view %zu: %.1f to %.1f m, %s visible", i + 1, cascade.camera.near_distance,
+                        cascade.camera.far_distance, with_thousands(cascade.visible).c_str());
+        }
+    if (input.settings.coloring == Coloring::shape) shape_legend();
+}
+
+void heading(const PanelInput& input) {
+    const double ms = input.frame_history.mean([](const HistoryEntry& e) { return e.frame_us * 1e-3; }, 30);
+    ImGui::Text("%s: %.1f frames/s", input.loaded.source().name.c_str(), ms > 0.0 ? 1000.0 / ms : 0.0);
+    ImGui::TextDisabled("%s", input.device.c_str());
+    const glm::dvec3& eye = input.eye.camera.position;
+    ImGui::Text("eye %.1f %.1f %.1f m, %s %.3g m/s", eye.x, eye.y, eye.z,
+                input.eye.mode == CameraMode::orbit ? "in orbit," : "flying at", input.eye.speed);
+    // One line, always there: nothing below it jumps.
+    std::string state;
+    for (const auto& [is, name] : {std::pair<bool, const char*>{input.settings.freeze, "FROZEN"},
+                                   {input.recording, "recording"},
+                                   {input.replaying, "replaying"},
+                                   {input.settings.paused, "paused"}})
+        if (is) state += (state.empty() ? "" : ", ") + std::string(name);
+    if (state.empty())
+        ImGui::TextDisabled("culling with the eye's camera");
+    else
+        ImGui::TextColored(ImVec4(1.0f, 0.85f, 0.3f, 1.0f), "%s", state.c_str());
+}
+
+// Remembers where the panel being built lies.
+void cover(PanelWish& wish) {
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    wish.covered.push_back({at.x, at.y, at.x + size.x, at.y + size.y});
+}
+
+// A heading whose part the user, a key or a script may unfold.
+bool unfolded(const char* title, bool& open) {
+    ImGui::SetNextItemOpen(open);
+    open = ImGui::CollapsingHeader(title);
+    return open;
+}
+
+void main_panel(const PanelInput& input, PanelWish& wish) {
+    const ImGuiCond when = input.relayout ? ImGuiCond_Always : ImGuiCond_FirstUseEver;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), when);
+    ImGui::SetNextWindowSize(ImVec2(main_panel_width(), display.y - 2.0f * kMargin), when);
+    if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
+    if (ImGui::Begin("Crofton")) {
+        heading(input);
+        statistics_panel(input);
+        legend(input);
+        if (ImGui::CollapsingHeader("Switches", ImGuiTreeNodeFlags_DefaultOpen)) switches_panel(input, wish);
+        if (unfolded("More statistics", input.settings.more)) more_statistics(input);
+        if (unfolded("History", input.settings.history)) history_plots(input.frame_history);
+    }
+    cover(wish);
+    ImGui::End();
+}
+
+void inset_panel(const PanelInput& input, PanelWish& wish) {
+    if (input.inset == nullptr) return;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    if (input.fold) ImGui::SetNextWindowCollapsed(*input.fold, ImGuiCond_Always);
+    const float wide = input.inset_size.x + 2.0f * ImGui::GetStyle().WindowPadding.x;
+    const float high = input.inset_size.y + ImGui::GetFrameHeight() + 2.0f * ImGui::GetStyle().WindowPadding.y;
+    ImGui::SetNextWindowPos(ImVec2(display.x - wide - kMargin, display.y - high - kMargin),
+                            input.relayout ? ImGuiCond_Always : ImGuiCond_Appearing);
+    if (ImGui::Begin("From outside (I)", nullptr, ImGuiWindowFlags_AlwaysAutoResize))
+        ImGui::Image(input.inset, input.inset_size);
+    cover(wish);
+    ImGui::End();
+}
+
+}  // namespace
+
+float main_panel_width() {
+    return std::min(27.0f * ImGui::GetFontSize(), 0.52f * ImGui::GetIO().DisplaySize.x);
+}
+
+bool is_narrow(const ImVec2& display) {
+    return display.x < 32.0f * ImGui::GetFontSize() || display.y < 16.0f * ImGui::GetFontSize();
+}
+
+void apply_style(float scale) {
+    ImGuiStyle& style = ImGui::GetStyle();
+    style = ImGuiStyle();
+    ImGui::StyleColorsDark();
+    style.WindowRounding = 4.0f;
+    style.AntiAliasedLinesUseTex = false;  // textures are not filtered
+    style.Colors[ImGuiCol_WindowBg].w = 0.88f;
+    style.ScaleAllSizes(scale);
+    // Drawn at its size, not enlarged.
+    ImFontConfig font;
+    font.SizePixels = std::round(kFontPixels * scale);
+    ImGui::GetIO().Fonts->Clear();
+    ImGui::GetIO().Fonts->AddFontDefault(&font);
+}
+
+PanelWish draw_panels(const PanelInput& input) {
+    PanelWish wish;
+    main_panel(input, wish);
+    scene_panel(input, wish);
+    inset_panel(input, wish);
+    notices_panel(input.notices);
+    if (input.settings.help) help_panel(input.settings, wish);
+    return wish;
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,82 @@
+// The user interface: what one can read and switch.
+#pragma once
+#include <imgui.h>
+
+#include <crofton/scene/scene.hpp>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera_controller.hpp"
+#include "frame_history.hpp"
+#include "instance_coloring.hpp"
+#include "loaded_scene.hpp"
+#include "overlay.hpp"
+#include "picking.hpp"
+#include "settings.hpp"
+
+namespace crofton::viewer {
+
+// Children of each node, for the tree panel.
+class NodeTree {
+  public:
+    void rebuild(const scene::Scene& scene);
+    [[nodiscard]] std::span<const scene::NodeId> children(scene::NodeId parent) const;  // kNone: the roots
+    [[nodiscard]] std::span<const scene::InstanceId> instances(scene::NodeId node) const;
+
+  private:
+    std::vector<std::uint32_t> child_begin_, instance_begin_;
+    std::vector<scene::NodeId> children_;
+    std::vector<scene::InstanceId> instances_;
+};
+
+// A message in the window, until the session is so many seconds old.
+struct Notice {
+    std::string text;
+    bool bad = false;
+    double until = 0.0;
+};
+
+// What the panels show, and what they may change.
+struct PanelInput {
+    Settings& settings;
+    CameraController& eye;
+    const LoadedScene& loaded;
+    const NodeTree& nodes;
+    const pipeline::FrameStatistics& frame;
+    const pipeline::FrameStatistics* drawn;  // the last frame that the device has counted, or null
+    const pipeline::FrameStatistics* other;  // of the comparison's B, or null
+    const FrameHistory& frame_history;
+    const InstanceColoring& instance_coloring;
+    const Overlay& overlay;
+    std::span<const Cascade> cascades;
+    std::optional<Pick> pick;
+    scene::InstanceId selected;
+    ImTextureID inset;  // null: none
+    ImVec2 inset_size;
+    const std::string& device;
+    bool recording, replaying;
+    const std::deque<Notice>& notices;
+    bool relayout;             // the window or the texts have another size: every panel goes back to its place
+    std::optional<bool> fold;  // where that leaves no room for a picture beside the panels, or room again
+};
+
+// What the user asked for with a button, and where the panels lie.
+struct PanelWish {
+    struct Area {
+        float left, top, right, bottom;
+    };
+    std::vector<Area> covered;
+    bool frame_all = false, record = false, replay = false, export_files = false, screenshot = false, step = false;
+    std::optional<scene::InstanceId> select;
+};
+
+// Sizes and fonts for a display of this scale; the font's texture must be made anew.
+void apply_style(float scale);
+// True where panels side by side would leave nothing of the picture.
+[[nodiscard]] bool is_narrow(const ImVec2& display);
+[[nodiscard]] float main_panel_width();
+[[nodiscard]] PanelWish draw_panels(const PanelInput& input);
+
+}  // namespace crofton::viewer

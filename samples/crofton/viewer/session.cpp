@@ -1,0 +1,267 @@
+#include "session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/cull/cull.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <thread>
+#include <utility>
+
+#include "assets/file.hpp"
+#include "pipeline/camera_path.hpp"
+#include "pipeline/png.hpp"
+
+namespace crofton::viewer {
+namespace {
+
+constexpr double kInsetAspect = 16.0 / 9.0;
+// A driver that loses its device again and again is given up on.
+constexpr int kMaxRecoveries = 5;
+// How long a message stays.
+constexpr double kErrorSeconds = 12.0, kNoteSeconds = 4.0;
+
+double microseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Behind and above the camera that culls, far enough to see what it sees.
+Camera from_outside(const Camera& camera, double reach) {
+    const auto corners = view_corners(camera, reach);
+    Aabb bounds;
+    for (const glm::dvec3& corner : corners) bounds.include(corner);
+    const double radius = glm::length(bounds.half_extents());
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const glm::dvec3 side = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)) + glm::dvec3(1e-9, 0.0, 0.0));
+    Camera outside;
+    outside.forward = glm::normalize(0.55 * forward - 0.45 * side - glm::dvec3(0.0, 0.7, 0.0));
+    outside.position = bounds.center() - outside.forward * (radius / std::sin(0.5 * outside.fov_y));
+    outside.near_distance = std::max(radius * 0.01, 1e-3);
+    outside.far_distance = 20.0 * radius;
+    outside.aspect = kInsetAspect;
+    return outside;
+}
+
+}  // namespace
+
+bool Session::running() const {
+    if (quit_ || (window_ && window_->should_close())) return false;
+    if (options_.frames > 0) return frame_index_ < options_.frames;
+    return options_.script.empty() ? window_ != nullptr : !script_.empty();
+}
+
+Result<void> Session::run_frame() {
+    auto turned = try_turn();
+    if (turned || turned.error().code != ErrorCode::unavailable) return turned;
+    if (recoveries_++ == kMaxRecoveries) return turned;
+    report(turned.error());
+    std::fprintf(stderr, "crofton: starting the device anew\n");
+    return recover();
+}
+
+Result<void> Session::try_turn() {
+    if (window_) {
+        window_->wait_while_minimised();
+        window_->poll();
+    }
+    const auto start = Clock::now();
+    // Unattended runs must not depend on the machine's speed.
+    const double seconds = unattended() ? 1.0 / 60.0 : std::min(microseconds_since(last_turn_) * 1e-6, 0.25);
+    last_turn_ = start;
+    handle_events();
+    run_script();
+    if (std::exchange(lose_device_, false)) return render::vulkan_failure(VK_ERROR_DEVICE_LOST, "script");
+    if (auto followed = follow_settings(); !followed) return followed;
+    if (auto resized = resize(); !resized) return resized;
+    if (auto scaled = follow_scale(); !scaled) return scaled;
+    advance(seconds);
+    if (auto culled = cull(); !culled) return culled;
+    if (auto started = start_drawing(); !started) return started;
+    // The device draws; what needs no picture is done meanwhile.
+    frame_.triangles_clipped = list_->predict_clipped();
+    auto built = build_interface();
+    if (auto finished = finish_drawing(); !finished) return finished;
+    if (!built) return built;
+    if (auto drawn = draw_interface(); !drawn) return drawn;
+    if (auto saved = save_screenshots(); !saved) return saved;
+    if (window_) {
+        const VkExtent2D size{rasterizer_->width(), rasterizer_->height()};
+        if (auto shown = window_->present(rasterizer_->native_image()->handle, size); !shown) return shown;
+    }
+    frame_.index = frame_index_++;
+    frame_history_.add({frame_, microseconds_since(start), ui_us_, static_cast<std::uint32_t>(scene_time_)});
+    // Presenting does not pace on every device: no more than 60 pictures a second.
+    if (window_ && !unattended()) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
+    return {};
+}
+
+Result<void> Session::resize() {
+    if (window_) {
+        const VkExtent2D now = window_->framebuffer_size();
+        if (now.width > 0 && now.height > 0) wanted_size_ = now;
+    }
+    if (!stale_size_ && wanted_size_.width == rasterizer_->width() && wanted_size_.height == rasterizer_->height() &&
+        settings_.resolution == drawn_resolution_)
+        return {};
+    drawn_resolution_ = settings_.resolution;
+    auto resized =
+        rasterizer_->resize(wanted_size_.width, wanted_size_.height, 0, static_cast<float>(drawn_resolution_));
+    if (!resized) return resized;
+    stale_size_ = false;
+    controller_.camera.aspect = static_cast<double>(wanted_size_.width) / wanted_size_.height;
+    return ui_->set_target(rasterizer_->native_image()->view, wanted_size_);
+}
+
+// The window may come onto a display of another scale.
+Result<void> Session::follow_scale() {
+    const float wanted = options_.scale > 0.0f ? options_.scale : wanted_scale_;
+    if (wanted == scale_) return {};
+    scale_ = wanted;
+    apply_style(scale_);
+    laid_out_ = glm::uvec2(0);
+    return ui_->upload_font();
+}
+
+void Session::advance(double seconds) {
+    seconds_ += seconds;
+    while (!notices_.empty() && (notices_.size() > 8 || notices_.front().until <= seconds_)) notices_.pop_front();
+    if (!settings_.paused) scene_time_ += seconds * 60.0 * settings_.time_scale;
+    if (std::exchange(step_, false)) scene_time_ += 1.0;
+    if (replaying_ && !path_.cameras.empty()) {
+        const std::size_t now = replayed_++ % path_.cameras.size();
+        controller_.look(path_.cameras[now]);
+        if (!settings_.paused) scene_time_ = path_.scene_frames[now];
+    }
+    controller_.advance(seconds);
+    if (!settings_.freeze) culling_camera_ = controller_.camera;
+    const auto scene_frame = static_cast<std::uint32_t>(scene_time_);
+    if (is_recording_) {
+        recording_.cameras.push_back(controller_.camera);
+        recording_.scene_frames.push_back(scene_frame);
+    }
+    loaded_->animate(scene_frame);
+    if (other_) other_->animate(scene_frame);
+}
+
+Result<void> Session::cull() {
+    auto frame = loaded_->run(culling_camera_);
+    if (!frame) return tl::unexpected(std::move(frame.error()));
+    frame_ = std::move(*frame);
+    if (other_) {
+        auto compared = other_->run(culling_camera_);
+        if (!compared) return tl::unexpected(std::move(compared.error()));
+        other_frame_ = std::move(*compared);
+    }
+    cascades_.clear();
+    if (settings_.cascades > 1)
+        cascades_ =
+            split_view(culling_camera_, settings_.cascades, 1.5 * glm::length(loaded_->extent().half_extents()));
+    for (Cascade& cascade : cascades_) {
+        const auto frustum = frustum_of(cascade.camera);
+        if (!frustum) return tl::unexpected(frustum.error());
+        cull::find_visible(loaded_->pipeline().tree(), {*frustum}, cascade_visible_);
+        cascade.visible = cascade_visible_.size();
+    }
+    instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_);
+    return {};
+}
+
+Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
+    list_->select(frame_.visible_ids, camera);
+    instance_coloring_.paint(*list_, settings_.wireframe);
+    lines_.clear(camera.position);
+    overlay_.draw(lines_, settings_, *loaded_, frame_, cascades_, selected_, show_frustum);
+    render::Frame frame;
+    frame.camera = camera;
+    frame.transforms = instance_coloring_.transforms();
+    frame.ranges = instance_coloring_.ranges();
+    frame.wire_ranges = instance_coloring_.wire_ranges();
+    frame.lines = lines_.vertices();
+    // Colours that mean something are not hazed, nor is light that has been computed.
+    if (settings_.coloring != Coloring::lit) {
+        frame.environment.haze_distance = 0.0f;
+        frame.environment.sky = false;
+        frame.environment.horizon = glm::vec3(0.012f, 0.014f, 0.02f);
+    } else {
+        const bool hazy = loaded_->source().unlit.empty() && picture == 0;
+        const double distance = hazy ? 2.5 * glm::length(loaded_->extent().half_extents()) : 0.0;
+        frame.environment.haze_distance = static_cast<float>(distance);
+    }
+    return rasterizer_->submit(frame, picture);
+}
+
+Result<void> Session::start_drawing() {
+    if (settings_.inset) {
+        // As texts are scaled, but no wider than half the picture.
+        const double width = std::min(400.0 * static_cast<double>(scale_), 0.45 * wanted_size_.width);
+        const auto columns = static_cast<std::uint32_t>(std::max(width, 16.0));
+        const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
+        if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
+        // What most triangles are in; the far landscape would make it a speck.
+        const double reach = glm::length(loaded_->focus().half_extents());
+        if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
+        if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
+    }
+    draw_start_ = Clock::now();
+    return submit_view(controller_.camera, 0, settings_.freeze);
+}
+
+Result<void> Session::finish_drawing() {
+    auto counters = rasterizer_->finish();
+    if (!counters) return tl::unexpected(std::move(counters.error()));
+    frame_.draw_us = microseconds_since(draw_start_);
+    frame_.gpu = *counters;
+    return {};
+}
+
+Result<void> Session::save_screenshots() {
+    if (options_.frames > 0 && frame_index_ + 1 == options_.frames && !options_.screenshot.empty())
+        screenshots_.push_back(options_.screenshot);
+    if (screenshots_.empty()) return {};
+    if (auto read = rasterizer_->read_pixels(image_); !read) return read;
+    for (const std::string& file : screenshots_) {
+        if (auto written = assets::write_file(file, pipeline::encode_png(image_)); !written) {
+            if (unattended()) return written;
+            report(written.error());
+            continue;
+        }
+        Json tints = Json::array();
+        for (const InstanceColoring::Count& tint : instance_coloring_.counts())
+            tints.push_back({{"name", tint.name}, {"instances", tint.instances}});
+        Json views = Json::array();
+        for (const Cascade& cascade : cascades_) views.push_back(cascade.visible);
+        pictures_.push_back({{"file", file},
+                             {"frame", frame_index_},
+                             {"width", image_.width},
+                             {"height", image_.height},
+                             {"scene", loaded_->source().name},
+                             {"settings", to_json(settings_)},
+                             {"statistics", pipeline::to_json(frame_, false)},
+                             {"scene_frame", static_cast<std::uint32_t>(scene_time_)},
+                             {"eye", pipeline::to_json(controller_.camera)},
+                             {"speed", controller_.speed},
+                             {"orbit", controller_.mode == CameraMode::orbit},
+                             {"tints", std::move(tints)},
+                             {"views", std::move(views)},
+                             {"contacts", overlay_.contact_count()},
+                             {"separations", overlay_.separation_count()},
+                             {"lines", lines_.vertices().size() / 2}});
+        if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
+        if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;
+        pictures_.back()["messages"] = Json::array();
+        for (const Notice& notice : notices_) pictures_.back()["messages"].push_back(notice.text);
+    }
+    screenshots_.clear();
+    return {};
+}
+
+void Session::report(const Error& error) {
+    std::fprintf(stderr, "crofton: %s\n", error.message.c_str());
+    notices_.push_back({error.message, true, seconds_ + kErrorSeconds});
+}
+
+void Session::note(const std::string& text) {
+    notices_.push_back({text, false, seconds_ + kNoteSeconds});
+}
+
+}  // namespace crofton::viewer

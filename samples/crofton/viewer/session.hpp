@@ -1,0 +1,134 @@
+// The viewer's state and one frame of it: events, motion, culling, drawing, user interface, picture.
+#pragma once
+#include <chrono>
+#include <crofton/cull/visible_set.hpp>
+#include <deque>
+#include <memory>
+
+#include "camera_controller.hpp"
+#include "frame_history.hpp"
+#include "instance_coloring.hpp"
+#include "json/json.hpp"
+#include "overlay.hpp"
+#include "panels.hpp"
+#include "pipeline/camera_path.hpp"
+#include "script.hpp"
+#include "ui_renderer.hpp"
+#include "viewer.hpp"
+#include "window.hpp"
+
+namespace crofton::viewer {
+
+class Session {
+  public:
+    explicit Session(const ViewerOptions& options) : options_(options), settings_(options.settings) {}
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    [[nodiscard]] Result<void> start();
+    [[nodiscard]] bool running() const;
+    [[nodiscard]] Result<void> run_frame();
+    // The last screenshot and the statistics.
+    [[nodiscard]] Result<void> finish();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    // Loading (loading.cpp)
+    [[nodiscard]] Result<void> start_window();
+    [[nodiscard]] Result<void> start_device();
+    [[nodiscard]] Result<void> start_interface();
+    [[nodiscard]] Result<void> start_ui_renderer();
+    [[nodiscard]] Result<void> recover();
+    [[nodiscard]] Result<void> load(const SceneRequest& request);
+    [[nodiscard]] Result<void> upload_geometry();
+    [[nodiscard]] Result<void> follow_settings();
+    [[nodiscard]] Result<void> load_replay();
+
+    // Input (input.cpp)
+    void handle_events();
+    void handle(const Event& event);
+    bool handle_key(const std::string& key);
+    bool cycle_setting(const std::string& key);
+    bool handle_bookmark(const std::string& key);
+    bool handle_command(const std::string& key);
+    [[nodiscard]] bool on_panel(const glm::dvec2& at) const;
+    void run_script();
+    void perform(const Action& action);
+    void click(const glm::dvec2& pixel);
+    void toggle_recording();
+    void toggle_replay();
+    void export_files();
+    void grant(const PanelWish& wish);
+
+    // One frame (session.cpp)
+    [[nodiscard]] bool unattended() const { return options_.frames > 0 || !options_.script.empty(); }
+    [[nodiscard]] Result<void> try_turn();
+    [[nodiscard]] Result<void> resize();
+    [[nodiscard]] Result<void> follow_scale();
+    void advance(double seconds);
+    [[nodiscard]] Result<void> cull();
+    [[nodiscard]] Result<void> start_drawing();
+    [[nodiscard]] Result<void> finish_drawing();
+    [[nodiscard]] Result<void> submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
+    [[nodiscard]] Result<void> build_interface();
+    [[nodiscard]] Result<void> draw_interface();
+    [[nodiscard]] Result<void> save_screenshots();
+    // To stderr and into the window.
+    void report(const Error& error);
+    // Into the window.
+    void note(const std::string& text);
+
+    ViewerOptions options_;
+    Settings settings_;
+    SceneRequest request_;  // the scene on show
+    std::unique_ptr<Window> window_;
+    std::unique_ptr<render::Device> device_;
+    std::unique_ptr<render::Rasterizer> rasterizer_;
+    std::unique_ptr<UiRenderer> ui_;
+    render::Commands ui_commands_;
+    bool imgui_ = false, imgui_window_ = false;
+
+    std::unique_ptr<LoadedScene> loaded_, other_;
+    std::unique_ptr<pipeline::DrawList> list_;
+    bool shape_uploaded_ = false;
+    NodeTree nodes_;
+    CameraController controller_;
+    Camera culling_camera_;
+    pipeline::FrameStatistics frame_, other_frame_;
+    std::vector<Cascade> cascades_;
+    cull::VisibleSet cascade_visible_;
+    InstanceColoring instance_coloring_;
+    Overlay overlay_;
+    LineList lines_;
+    FrameHistory frame_history_;
+    std::optional<Pick> pick_;
+    scene::InstanceId selected_ = scene::kNone;
+
+    std::deque<Action> script_;
+    pipeline::CameraPath path_, recording_;  // to be replayed, being recorded
+    std::size_t replayed_ = 0;
+    bool replaying_ = false, is_recording_ = false, quit_ = false, step_ = false, stale_size_ = true;
+    bool lose_device_ = false;
+    int recoveries_ = 0;
+    std::vector<std::string> lost_messages_;  // validation's, of devices that are gone
+    std::uint32_t frame_index_ = 0, exports_ = 0;
+    double scene_time_ = 0.0;  // in frames of 1/60 s
+    double seconds_ = 0.0;     // that the session has run
+    std::deque<Notice> notices_;
+    VkExtent2D wanted_size_{};
+    double drawn_resolution_ = 1.0;
+    float wanted_scale_ = 1.0f, scale_ = 0.0f;  // of texts and panels: the display's, and what they have
+    Clock::time_point last_turn_ = Clock::now(), draw_start_;
+    double ui_us_ = 0.0;
+    PanelWish wish_;
+    glm::uvec2 laid_out_{0};  // the picture's size that the panels lie in
+    std::optional<bool> folded_;
+    glm::dvec2 cursor_{0.0};
+    std::vector<std::string> screenshots_;  // to be taken this frame
+    Json pictures_ = Json::array();
+    render::Image image_;
+};
+
+}  // namespace crofton::viewer

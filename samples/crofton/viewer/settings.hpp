@@ -1,0 +1,65 @@
+// Everything that can be switched while the viewer runs, by panel, key or script.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/cull/classify.hpp>
+#include <string>
+
+#include "json/json.hpp"
+#include "pipeline/bounds.hpp"
+#include "pipeline/pipeline.hpp"
+
+namespace crofton::viewer {
+
+enum class Coloring : std::uint8_t { lit, verdict, improper, collision, depth, shape };
+inline constexpr const char* kColoringNames[] = {"lit", "verdict", "improper", "collision", "depth", "shape"};
+
+// How polygons and the planar patches of meshes are cut into triangles; `loaded`: as the scene came.
+enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };
+inline constexpr const char* kTriangulationNames[] = {"loaded", "ear", "delaunay", "minimum-weight"};
+
+// What a frame's work depends on; two of these can be compared side by side.
+struct Method {
+    pipeline::BoundsKind bounds = pipeline::BoundsKind::obb_perimeter;
+    pipeline::CullMode cull = pipeline::CullMode::tree;
+    Triangulation triangulation = Triangulation::loaded;
+    bool operator==(const Method&) const = default;
+};
+
+[[nodiscard]] inline const char* to_string(Coloring coloring) {
+    return kColoringNames[static_cast<std::size_t>(coloring)];
+}
+[[nodiscard]] inline const char* to_string(Triangulation triangulation) {
+    return kTriangulationNames[static_cast<std::size_t>(triangulation)];
+}
+
+inline constexpr double kMinResolution = 0.25;
+
+struct Settings {
+    Method method;
+    Method other;  // B of the comparison
+    bool compare = false;
+    Coloring coloring = Coloring::lit;
+    bool exact = true;  // exact second stage; false: planes only
+    bool collisions = true;
+    bool freeze = false;   // culling keeps its camera
+    bool inset = false;    // a second view, from outside
+    bool outside = false;  // what is culled, as wire boxes
+    bool bounds = false;   // the visible instances' bounds
+    int tree_level = -1;   // bounds of the tree's nodes at this depth; −1: none
+    bool wireframe = false;
+    int cascades = 1;  // views: the camera's depth range split into so many
+    bool panels = true;
+    bool help = false;                   // the list of keys
+    bool more = false, history = false;  // the panel's lower parts, unfolded
+    bool paused = false;
+    double time_scale = 1.0;
+    double resolution = 1.0;  // share of the picture's pixels each way that is drawn; the rest is enlarged
+};
+
+// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "other_bounds_kind",
+// "other_cull", "other_triangulation", "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or
+// range; nothing is changed then.
+[[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const Json& value);
+[[nodiscard]] Json to_json(const Settings& settings);
+
+}  // namespace crofton::viewer

@@ -1,0 +1,173 @@
+#include "statistics_panel.hpp"
+
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+namespace crofton::viewer {
+namespace {
+
+using Frame = pipeline::FrameStatistics;
+using Value = double (*)(const Frame&);
+
+constexpr std::size_t kMeanOf = 60;
+
+constexpr StatisticsRow kMainRows[] = {
+    {"instances", "instances", "in the scene"},
+    {"visible", "visible", "whose bound meets the view: inside + straddling"},
+    {"  inside", "inside", "whose bound lies in the view"},
+    {"  straddling", "straddling", "whose bound crosses the view's boundary"},
+    {"  improper", "improper",
+     "whose bound straddles, though the object itself does not: what a tighter bound would save"},
+    {"nodes tested", "nodes_tested", "of the tree, against the view"},
+    {"triangles submitted", "triangles_submitted", "of the visible instances"},
+    {"triangles in view", "triangles_passed", "that meet the view"},
+    {"colliding pairs", "colliding_pairs", "of instances whose boxes meet, where one of them moves"},
+    {"update \u00b5s", "update_us", "to move what moves, and to follow it in the tree"},
+    {"cull \u00b5s", "cull_us", "to find what is visible"},
+    {"collide \u00b5s", "collide_us", "to find what collides"},
+    {"draw \u00b5s", "draw_us", "of the last frame: from submitting until the device is done"},
+};
+constexpr StatisticsRow kMoreRows[] = {
+    {"triangles clipped", "triangles_clipped", "predicted: what is left of the submitted ones after clipping"},
+    {"GPU assembled", "gpu_input_assembly_primitives", "triangles that the device has read"},
+    {"GPU clip invocations", "gpu_clipping_invocations", "triangles that the device has clipped"},
+    {"GPU clip primitives", "gpu_clipping_primitives", "triangles that the device's clipping has left"},
+    {"GPU samples passed", "gpu_samples_passed", "pixels that passed the depth test"},
+    {"box pairs tested", "pairs_tested", "whose axis-aligned bounds meet"},
+    {"  apart by face of A", "separated_by_face_a", "told apart by an axis of the first box"},
+    {"  apart by face of B", "separated_by_face_b", "told apart by an axis of the second box"},
+    {"  apart by edges", "separated_by_edges", "told apart by the cross product of two edges"},
+    {"  refined", "pairs_refined", "decided in double or exactly, where float could not"},
+    {"contact points", "contacts", "of the colliding pairs' manifolds"},
+};
+
+const pipeline::StatisticsColumn& column_named(const char* name) {
+    static const std::map<std::string, pipeline::StatisticsColumn> kByName = [] {
+        std::map<std::string, pipeline::StatisticsColumn> columns;
+        for (const pipeline::StatisticsColumn& column : pipeline::statistics_columns())
+            columns.emplace(column.name, column);
+        return columns;
+    }();
+    return kByName.at(name);
+}
+
+// Ends at the column's right edge.
+void right_aligned(const std::string& text) {
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+    if (room > 0.0f) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    ImGui::TextUnformatted(text.c_str());
+}
+
+void number(double value) {
+    right_aligned(with_thousands(static_cast<std::uint64_t>(std::llround(value))));
+}
+
+// The device's numbers are those of the last frame that it has drawn.
+bool is_counted_later(const std::string& column) {
+    return column == "draw_us" || column == "triangles_clipped" || column.rfind("gpu_", 0) == 0;
+}
+
+void table(const char* id, const PanelInput& input, std::span<const StatisticsRow> rows) {
+    const bool compare = input.other != nullptr;
+    if (!ImGui::BeginTable(id, 3, ImGuiTableFlags_RowBg)) return;
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 2.0f);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted("per frame");
+    ImGui::TableNextColumn();
+    right_aligned(compare ? "A" : "now");
+    ImGui::TableNextColumn();
+    right_aligned(compare ? "B" : "mean of 60");
+    for (const StatisticsRow& row : rows) {
+        const Value value = column_named(row.column).value;
+        const bool later = is_counted_later(row.column);
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(row.label);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.hint);
+        ImGui::TableNextColumn();
+        if (!later)
+            number(value(input.frame));
+        else if (input.drawn != nullptr)
+            number(value(*input.drawn));
+        ImGui::TableNextColumn();
+        if (!compare)
+            number(input.frame_history.mean_of_frames(value, kMeanOf));
+        else if (!later)
+            number(value(*input.other));
+    }
+    ImGui::EndTable();
+}
+
+void prediction(const PanelInput& input) {
+    if (input.drawn == nullptr || !input.drawn->gpu) return;
+    const Frame& frame = *input.drawn;
+    const bool same = frame.triangles_clipped == frame.gpu->clipping_primitives;
+    ImGui::TextColored(same ? ImVec4(0.4f, 0.9f, 0.4f, 1.0f) : ImVec4(1.0f, 0.5f, 0.3f, 1.0f),
+                       "clipped: predicted %s %s %s counted", with_thousands(frame.triangles_clipped).c_str(),
+                       same ? "=" : "but", with_thousands(frame.gpu->clipping_primitives).c_str());
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("triangles that clipping leaves, as computed on the CPU and as the device's counter says");
+}
+
+}  // namespace
+
+std::string with_thousands(std::uint64_t value) {
+    const std::string digits = std::to_string(value);
+    std::string text;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0) text += ' ';
+        text += digits[i];
+    }
+    return text;
+}
+
+std::span<const StatisticsRow> main_rows() {
+    return kMainRows;
+}
+std::span<const StatisticsRow> more_rows() {
+    return kMoreRows;
+}
+
+void statistics_panel(const PanelInput& input) {
+    table("statistics", input, kMainRows);
+    prediction(input);
+}
+
+void more_statistics(const PanelInput& input) {
+    table("more", input, kMoreRows);
+}
+
+void history_plots(const FrameHistory& frame_history) {
+    const float unit = ImGui::GetFontSize();
+    ImGui::PushItemWidth(-6.0f * unit);
+    const auto plot = [&](const char* name, const char* format, double (*value)(const HistoryEntry&)) {
+        const auto history = frame_history.history(value);
+        if (history.empty()) return;
+        char now[64];
+        std::snprintf(now, sizeof now, format, static_cast<double>(history.back()));
+        ImGui::PlotLines(name, history.data(), static_cast<int>(history.size()), 0, now, 0.0f, FLT_MAX,
+                         ImVec2(0.0f, 3.0f * unit));
+    };
+    ImGui::TextDisabled("last %zu frames, each from 0 up", FrameHistory::kHistory);
+    plot("frame", "%.1f ms", [](const HistoryEntry& e) { return e.frame_us * 1e-3; });
+    plot("draw", "%.1f ms", [](const HistoryEntry& e) { return e.frame.draw_us * 1e-3; });
+    plot("cull", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.cull_us; });
+    plot("collide", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.collide_us; });
+    plot("visible", "%.0f instances", [](const HistoryEntry& e) { return static_cast<double>(e.frame.visible); });
+    plot("in view", "%.0f triangles",
+         [](const HistoryEntry& e) { return static_cast<double>(e.frame.triangles_passed); });
+    plot("pairs", "%.0f colliding", [](const HistoryEntry& e) { return static_cast<double>(e.frame.colliding_pairs); });
+    const auto bins = frame_history.frame_time_histogram();
+    ImGui::PlotHistogram("frame ms", bins.data(), static_cast<int>(bins.size()), 0, "0 to 100 ms in steps of 5", 0.0f,
+                         FLT_MAX, ImVec2(0.0f, 4.0f * unit));
+    ImGui::PopItemWidth();
+}
+
+}  // namespace crofton::viewer

@@ -1,0 +1,450 @@
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/scene/scene.hpp>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "counting_memory.hpp"
+#include "oracle/plain_scene.hpp"
+
+using namespace crofton;
+using namespace crofton::scene;
+
+namespace {
+
+TriangleMesh tetrahedron(float size = 1.0f) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+    mesh.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    return mesh;
+}
+
+Transform moved(double x, double y = 0.0, double z = 0.0) {
+    return {glm::dmat3(1.0), {x, y, z}};
+}
+
+template <class T>
+std::vector<T> list(std::span<const T> values) {
+    return {values.begin(), values.end()};
+}
+using Ids = std::vector<std::uint32_t>;
+
+template <class T>
+T pick(const std::vector<T>& from, std::mt19937& random) {
+    return from[random() % from.size()];
+}
+
+template <class Map>
+std::vector<std::uint32_t> keys(const Map& map) {
+    std::vector<std::uint32_t> result;
+    for (const auto& entry : map) result.push_back(entry.first);
+    return result;
+}
+
+// A scene and its oracle under the same edits.
+struct Pair {
+    Scene scene;
+    testing::PlainScene plain;
+    std::mt19937 random;
+
+    explicit Pair(std::uint32_t seed) : random(seed) {
+        for (int m = 0; m < 3; ++m) add_mesh();
+    }
+
+    double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+
+    Transform transform() {
+        const glm::dquat turn =
+            glm::normalize(glm::dquat(1.0, number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)));
+        glm::dvec3 scale(number(0.5, 1.5));
+        switch (random() % 12) {
+            case 0:
+                scale = {number(0.5, 2.0), number(0.5, 2.0), number(0.5, 2.0)};
+                break;
+            case 1:
+                scale.x = -scale.x;
+                break;
+            case 2:
+                scale = glm::dvec3(0.0);
+                break;
+            case 3:
+                scale[static_cast<int>(random() % 3)] = 0.0;
+                break;
+            case 4:
+                scale = glm::dvec3(1e14);
+                break;
+            case 5:
+                scale = glm::dvec3(1e-14);
+                break;
+            default:
+                break;
+        }
+        return from_trs({number(-9.0, 9.0), number(-9.0, 9.0), number(-9.0, 9.0)}, turn, scale).value();
+    }
+
+    void add_mesh() {
+        const MeshId mesh = scene.add_mesh(tetrahedron(static_cast<float>(number(0.5, 2.0)))).value();
+        plain.mesh_boxes[mesh] = scene.mesh_box(mesh);
+    }
+
+    void add_node() {
+        const auto ids = keys(plain.nodes);
+        const NodeId parent = ids.empty() || random() % 4 == 0 ? kNone : pick(ids, random);
+        const Transform local = transform();
+        const std::uint32_t mask = random() % 3 == 0 ? static_cast<std::uint32_t>(random()) : ~0u;
+        const NodeId node = scene.add_node(parent, local, mask).value();
+        REQUIRE(!plain.nodes.contains(node));
+        plain.nodes[node] = {parent, local, mask};
+    }
+
+    void add_instance() {
+        const NodeId node = pick(keys(plain.nodes), random);
+        const MeshId mesh = pick(keys(plain.mesh_boxes), random);
+        const InstanceId instance = scene.add_instance(node, mesh).value();
+        REQUIRE(!plain.instances.contains(instance));
+        plain.instances[instance] = {node, mesh, ~0u};
+    }
+
+    void edit_node(NodeId node) {
+        switch (random() % 8) {
+            case 0:
+                REQUIRE(scene.remove_node(node).has_value());
+                plain.remove_node(node);
+                break;
+            case 1:
+                plain.nodes[node].mask = static_cast<std::uint32_t>(random());
+                REQUIRE(scene.set_layer_mask(node, plain.nodes[node].mask).has_value());
+                break;
+            case 2:
+            case 3:
+            case 4: {
+                const NodeId parent = random() % 5 == 0 ? kNone : pick(keys(plain.nodes), random);
+                const bool cycle = parent != kNone && plain.is_below(parent, node);
+                const auto result = scene.set_parent(node, parent);
+                CHECK(result.has_value() == !cycle);
+                if (cycle) CHECK(result.error().code == ErrorCode::invalid_argument);
+                if (!cycle) plain.nodes[node].parent = parent;
+                break;
+            }
+            default:
+                plain.nodes[node].local = transform();
+                REQUIRE(scene.set_local(node, plain.nodes[node].local).has_value());
+        }
+    }
+
+    void edit_instance(InstanceId instance) {
+        switch (random() % 3) {
+            case 0:
+                REQUIRE(scene.remove_instance(instance).has_value());
+                plain.remove_instance(instance);
+                break;
+            case 1:
+                plain.instances[instance].mesh = pick(keys(plain.mesh_boxes), random);
+                REQUIRE(scene.set_instance_mesh(instance, plain.instances[instance].mesh).has_value());
+                break;
+            default:
+                plain.instances[instance].mask = static_cast<std::uint32_t>(random());
+                REQUIRE(scene.set_instance_layers(instance, plain.instances[instance].mask).has_value());
+        }
+    }
+
+    void edit_mesh(MeshId mesh) {
+        const TriangleMesh shape = tetrahedron(static_cast<float>(number(0.5, 2.0)));
+        bool used = false;
+        for (const auto& [id, instance] : plain.instances) used = used || instance.mesh == mesh;
+        switch (random() % 3) {
+            case 0:
+                REQUIRE(scene.replace_mesh(mesh, shape).has_value());
+                break;
+            case 1:
+                REQUIRE(scene.set_vertices(mesh, shape.positions).has_value());
+                break;
+            default:
+                if (plain.mesh_boxes.size() == 1) return;
+                CHECK(scene.remove_mesh(mesh).has_value() == !used);
+                if (!used) plain.mesh_boxes.erase(mesh);
+                add_mesh();
+                return;
+        }
+        plain.mesh_boxes[mesh] = scene.mesh_box(mesh);
+    }
+
+    void edit() {
+        const auto what = random() % 100;
+        if (what < 25 || plain.nodes.empty())
+            add_node();
+        else if (what < 55)
+            add_instance();
+        else if (what < 80)
+            edit_node(pick(keys(plain.nodes), random));
+        else if (what < 97 && !plain.instances.empty())
+            edit_instance(pick(keys(plain.instances), random));
+        else
+            edit_mesh(pick(keys(plain.mesh_boxes), random));
+    }
+
+    void update_and_compare(Executor& executor) {
+        const std::vector<Obb> boxes = list(scene.world_boxes());
+        std::map<InstanceId, std::uint32_t> masks;
+        for (const auto& [id, instance] : plain.instances) masks[id] = scene.layer_masks()[id];
+        scene.update(executor);
+        Ids moved, relayered;
+        for (auto& [id, instance] : plain.instances) {
+            const auto answer = plain.answer(instance);
+            const Obb& box = scene.world_boxes()[id];
+            const Obb expected = answer.box ? *answer.box : boxes[id];
+            CHECK(std::memcmp(&box, &expected, sizeof box) == 0);
+            CHECK(scene.layer_masks()[id] == answer.mask);
+            if (instance.is_new || std::memcmp(&box, &boxes[id], sizeof box) != 0) moved.push_back(id);
+            if (instance.is_new || answer.mask != masks[id]) relayered.push_back(id);
+            instance.is_new = false;
+        }
+        CHECK(list(scene.moved_instances()) == moved);
+        CHECK(list(scene.relayered_instances()) == relayered);
+        CHECK(list(scene.removed_instances()) == Ids(plain.removed.begin(), plain.removed.end()));
+        plain.removed.clear();
+        for (InstanceId i = 0; i < scene.instance_count(); ++i) {
+            CHECK(scene.is_removed(i) == !plain.instances.contains(i));
+            if (scene.is_removed(i)) CHECK(scene.layer_masks()[i] == 0);
+        }
+        for (NodeId n = 0; n < scene.node_count(); ++n) CHECK(scene.is_node_removed(n) == !plain.nodes.contains(n));
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("scene/edit") {
+    TEST_CASE("removed and unknown ids are refused by name and leave the scene as it was") {
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron()).value();
+        const NodeId node = scene.add_node(kNone, {}).value();
+        const InstanceId instance = scene.add_instance(node, mesh).value();
+        CHECK(scene.remove_node(7).error().code == ErrorCode::out_of_range);
+        CHECK(scene.remove_node(7).error().item == 7);
+        CHECK(scene.set_parent(node, 7).error().item == 7);
+        CHECK(scene.remove_mesh(7).error().code == ErrorCode::out_of_range);
+        CHECK(scene.replace_mesh(7, tetrahedron()).error().code == ErrorCode::out_of_range);
+        CHECK(scene.set_vertices(7, {}).error().code == ErrorCode::out_of_range);
+        CHECK(scene.set_instance_mesh(instance, 7).error().item == 7);
+        CHECK(scene.set_instance_layers(7, 1).error().code == ErrorCode::out_of_range);
+        const auto used = scene.remove_mesh(mesh);
+        REQUIRE_FALSE(used.has_value());
+        CHECK(used.error().code == ErrorCode::invalid_argument);
+        CHECK(used.error().item == mesh);
+        CHECK(used.error().message.find("instance 0") != std::string::npos);
+        REQUIRE(scene.remove_node(node).has_value());
+        CHECK(scene.remove_node(node).error().code == ErrorCode::invalid_argument);
+        CHECK(scene.add_node(node, {}).error().item == node);
+        CHECK(scene.add_instance(node, mesh).error().item == node);
+        CHECK(scene.set_local(node, {}).error().code == ErrorCode::invalid_argument);
+        CHECK(scene.remove_instance(instance).error().code == ErrorCode::invalid_argument);
+        REQUIRE(scene.remove_mesh(mesh).has_value());
+        CHECK(scene.remove_mesh(mesh).error().code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("a node cannot be its own ancestor") {
+        Scene scene;
+        NodeId chain[4];
+        for (int i = 0; i < 4; ++i) chain[i] = scene.add_node(i == 0 ? kNone : chain[i - 1], moved(1.0)).value();
+        for (const NodeId below : chain) {
+            const auto refused = scene.set_parent(chain[0], below);
+            REQUIRE_FALSE(refused.has_value());
+            CHECK(refused.error().code == ErrorCode::invalid_argument);
+            CHECK(refused.error().item == chain[0]);
+        }
+        REQUIRE(scene.set_parent(chain[2], kNone).has_value());
+        REQUIRE(scene.set_parent(chain[0], chain[3]).has_value());
+        CHECK_FALSE(scene.set_parent(chain[2], chain[1]).has_value());
+        scene.update();
+        CHECK(scene.world(chain[1]).translation.x == 4.0);
+    }
+
+    TEST_CASE("removing a node removes all below it, and removed_instances lists what was there at the last update") {
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron()).value();
+        const NodeId root = scene.add_node(kNone, {}).value();
+        const NodeId arm = scene.add_node(root, moved(1.0)).value();
+        const NodeId hand = scene.add_node(arm, moved(1.0)).value();
+        const InstanceId on_hand = scene.add_instance(hand, mesh).value();
+        const InstanceId on_arm = scene.add_instance(arm, mesh).value();
+        const InstanceId on_root = scene.add_instance(root, mesh).value();
+        scene.update();
+        CHECK(scene.removed_instances().empty());
+        (void)scene.add_instance(hand, mesh).value();  // never seen by an update
+        REQUIRE(scene.remove_node(arm).has_value());
+        CHECK(scene.is_node_removed(hand));
+        CHECK(scene.is_removed(on_hand));
+        CHECK(scene.layer_masks()[on_arm] == 0);
+        scene.update();
+        CHECK(list(scene.removed_instances()) == Ids{on_hand, on_arm});
+        CHECK_FALSE(scene.is_removed(on_root));
+        CHECK(scene.moved_instances().empty());
+        scene.update();
+        CHECK(scene.removed_instances().empty());
+    }
+
+    TEST_CASE("an id given out again is listed for what it was and for what it is") {
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron()).value();
+        const NodeId node = scene.add_node(kNone, {}).value();
+        const InstanceId first = scene.add_instance(node, mesh).value();
+        scene.update();
+        REQUIRE(scene.remove_instance(first).has_value());
+        CHECK(scene.add_instance(node, mesh).value() == first);
+        CHECK(scene.layer_masks()[first] == 0);
+        scene.update();
+        CHECK(list(scene.removed_instances()) == Ids{first});
+        CHECK(list(scene.moved_instances()) == Ids{first});
+        CHECK(list(scene.relayered_instances()) == Ids{first});
+    }
+
+    TEST_CASE("many transforms are set all or none") {
+        Scene scene;
+        const NodeId a = scene.add_node(kNone, {}).value(), b = scene.add_node(kNone, {}).value();
+        Transform bad;
+        bad.translation.x = std::numeric_limits<double>::quiet_NaN();
+        const NodeId both[] = {b, a}, unknown[] = {a, 9};
+        const Transform good[] = {moved(1.0), moved(2.0)}, half[] = {moved(3.0), bad};
+        CHECK(scene.set_local(both, half).error().item == 1);
+        CHECK(scene.set_local(both, half).error().code == ErrorCode::non_finite);
+        CHECK(scene.set_local(unknown, good).error().item == 1);
+        CHECK(scene.set_local(both, std::span(good, 1)).error().code == ErrorCode::invalid_argument);
+        CHECK(scene.local(b).translation.x == 0.0);
+        REQUIRE(scene.set_local(both, good).has_value());
+        CHECK(scene.update().nodes_updated == 2);
+        CHECK(scene.world(a).translation.x == 2.0);
+        CHECK(scene.world(b).translation.x == 1.0);
+    }
+
+    TEST_CASE("a mesh's new vertices keep its box's axes and move its instances; bad ones change nothing") {
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron(), "blob").value();
+        const InstanceId instance = scene.add_instance(scene.add_node(kNone, moved(10.0)).value(), mesh).value();
+        scene.update();
+        const Obb before = scene.mesh_box(mesh);
+        const std::uint64_t revision = scene.mesh_revision(mesh);
+        TriangleMesh larger = tetrahedron(3.0f);
+        CHECK(scene.set_vertices(mesh, std::span(larger.positions).first(3)).error().code ==
+              ErrorCode::invalid_argument);
+        larger.positions[2].x = std::numeric_limits<float>::infinity();
+        CHECK(scene.set_vertices(mesh, larger.positions).error().item == 2);
+        CHECK(scene.mesh_revision(mesh) == revision);
+        CHECK(scene.mesh(mesh).positions[1].x == 1.0f);
+        larger = tetrahedron(3.0f);
+        REQUIRE(scene.set_vertices(mesh, larger.positions).has_value());
+        CHECK(scene.mesh_box(mesh).axes == before.axes);
+        CHECK(scene.mesh_revision(mesh) != revision);
+        for (const glm::vec3& p : larger.positions) CHECK(contains(scene.mesh_box(mesh), glm::dvec3(p)));
+        scene.update();
+        CHECK(list(scene.moved_instances()) == Ids{instance});
+        for (const glm::vec3& p : larger.positions)
+            CHECK(contains(scene.world_boxes()[instance], glm::dvec3(p) + glm::dvec3(10.0, 0.0, 0.0)));
+        CHECK(scene.mesh_name(mesh) == "blob");
+        CHECK(scene.replace_mesh(mesh, {}).error().code == ErrorCode::empty);
+        TriangleMesh triangle;
+        triangle.positions = {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}};
+        triangle.indices = {0, 1, 2};
+        REQUIRE(scene.replace_mesh(mesh, triangle).has_value());
+        CHECK(scene.mesh(mesh).triangle_count() == 1);
+        CHECK(scene.mesh_name(mesh) == "blob");
+        scene.update();
+        CHECK(list(scene.moved_instances()) == Ids{instance});
+        CHECK(contains(scene.world_boxes()[instance], {19.0, 0.0, 0.0}));
+    }
+
+    TEST_CASE("an instance's layers are its own and its node's") {
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron()).value();
+        const InstanceId instance = scene.add_instance(scene.add_node(kNone, {}, 0b011).value(), mesh).value();
+        scene.update();
+        REQUIRE(scene.set_instance_layers(instance, 0b110).has_value());
+        CHECK(scene.layer_masks()[instance] == 0b011);
+        scene.update();
+        CHECK(scene.layer_masks()[instance] == 0b010);
+        CHECK(scene.moved_instances().empty());
+        CHECK(list(scene.relayered_instances()) == Ids{instance});
+    }
+
+    TEST_CASE("ten million additions and removals take no more memory than the largest number there at once") {
+        testing::CountingMemory memory;
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron()).value();
+        const NodeId root = scene.add_node(kNone, {}).value();
+        std::vector<NodeId> live;
+        std::mt19937 random(3);
+        std::size_t high = 0;
+        constexpr int kCycles = 10'000'000, kLive = 100;
+        for (int i = 0; i < kCycles; ++i) {
+            if (live.size() == kLive) {
+                const std::size_t at = random() % kLive;
+                REQUIRE(scene.remove_node(live[at]).has_value());
+                live[at] = live.back();
+                live.pop_back();
+            }
+            live.push_back(scene.add_node(i % 2 == 0 ? root : kNone, {}).value());
+            (void)scene.add_instance(live.back(), mesh).value();
+            if (i % 1'000'000 == 500'000) scene.update();
+            if (i == 3'000'000) high = memory.bytes_in_use();
+        }
+        CHECK(memory.bytes_in_use() == high);
+        CHECK(scene.node_count() == kLive + 1);
+        CHECK(scene.instance_count() == kLive);
+    }
+
+    TEST_CASE("chains of a million nodes are moved under others and removed without recursion") {
+        Scene scene;
+        constexpr int kLength = 1'000'000;
+        const NodeId top = scene.add_node(kNone, moved(1.0)).value();
+        NodeId node = top;
+        for (int i = 1; i < kLength; ++i) node = scene.add_node(node, moved(1.0)).value();
+        const NodeId late = scene.add_node(kNone, moved(5.0)).value();
+        CHECK_FALSE(scene.set_parent(top, node).has_value());
+        REQUIRE(scene.set_parent(top, late).has_value());
+        scene.update();
+        CHECK(scene.world(node).translation.x == 5.0 + kLength);
+        ThreadPool pool(2);
+        REQUIRE(scene.set_local(late, moved(6.0)).has_value());
+        CHECK(scene.update(pool).nodes_updated == kLength + 1);
+        CHECK(scene.world(node).translation.x == 6.0 + kLength);
+        REQUIRE(scene.remove_node(late).has_value());
+        CHECK(scene.is_node_removed(node));
+    }
+
+    TEST_CASE("random edits, on one thread and on three, give what a plain model computes from the roots") {
+        ThreadPool pool(3);
+        for (std::uint32_t seed = 0; seed < 60; ++seed) {
+            CAPTURE(seed);
+            Pair pair(seed);
+            for (int round = 0; round < 40; ++round) {
+                const auto edits = pair.random() % 30;
+                for (std::size_t e = 0; e < edits; ++e) pair.edit();
+                if (seed % 2 == 0)
+                    pair.update_and_compare(serial_executor());
+                else
+                    pair.update_and_compare(pool);
+            }
+        }
+    }
+
+    TEST_CASE("updates allocate nothing once warm") {
+        testing::CountingMemory memory;
+        Scene scene;
+        const MeshId mesh = scene.add_mesh(tetrahedron()).value();
+        std::vector<NodeId> nodes;
+        for (int i = 0; i < 1000; ++i) {
+            nodes.push_back(scene.add_node(i % 4 == 0 ? kNone : nodes.back(), moved(i)).value());
+            (void)scene.add_instance(nodes.back(), mesh).value();
+        }
+        const auto frame = [&](double x) {
+            for (const NodeId node : nodes) REQUIRE(scene.set_local(node, moved(x)).has_value());
+            scene.update();
+        };
+        frame(1.0);
+        frame(2.0);
+        const std::size_t warm = memory.allocations();
+        for (int i = 0; i < 10; ++i) frame(i);
+        CHECK(memory.allocations() == warm);
+    }
+}
