@@ -318,7 +318,7 @@ TEST_SUITE("scene/edit") {
         CHECK(scene.world(b).translation.x == 1.0);
     }
 
-    TEST_CASE("a mesh's new vertices keep its box's axes and move its instances; bad ones change nothing") {
+    TEST_CASE("a mesh's new vertices keep its box's axes and move its instances, and bad ones change nothing") {
         Scene scene;
         const MeshId mesh = scene.add_mesh(tetrahedron(), "blob").value();
         const InstanceId instance = scene.add_instance(scene.add_node(kNone, moved(10.0)).value(), mesh).value();
