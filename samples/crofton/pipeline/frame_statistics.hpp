@@ -22,10 +22,11 @@ struct FrameStatistics {
     std::uint64_t straddling = 0;  // the bound meets the frustum's boundary
     std::uint64_t improper = 0;    // the bound straddles, the object itself does not
     std::uint64_t nodes_tested = 0;
-    std::uint64_t triangles_submitted = 0;   // of the visible instances
-    std::uint64_t triangles_passed = 0;      // that meet the frustum
-    std::uint64_t triangles_clipped = 0;     // predicted Σ (vertices of the clipped polygon − 2)
-    std::optional<render::GpuCounters> gpu;  // absent without drawing; docs/render.md: what each counts on lavapipe
+    std::uint64_t triangles_submitted = 0;  // of the visible instances
+    std::uint64_t triangles_passed = 0;     // that meet the frustum
+    std::uint64_t triangles_clipped = 0;    // predicted Σ (vertices of the clipped polygon − 2)
+    std::optional<render::GpuCounters>
+        gpu;  // absent without drawing; docs/notes/render.md: what each counts on lavapipe
     std::uint64_t colliding_pairs = 0;
     // Pairs whose axis-aligned bounds meet, and what told their boxes apart: early outs, by group of axes. The first
     // equals the sum of the next three and colliding_pairs.
