@@ -97,7 +97,8 @@ TEST_SUITE("scene/conventions") {
         camera.far_distance = 50.0;
         const Frustum right = frustum_of(camera).value();
         const Frustum left =
-            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near_distance, camera.far_distance), DepthRange::zero_to_one)
+            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near_distance, camera.far_distance),
+                       DepthRange::zero_to_one)
                 .value();
         Random random{std::mt19937(3)};
         int inside = 0;
@@ -117,7 +118,8 @@ TEST_SUITE("scene/conventions") {
         camera.far_distance = 50.0;
         const Frustum ours = frustum_of(camera).value();
         const Frustum theirs =
-            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near_distance, camera.far_distance), DepthRange::zero_to_one)
+            frustum_of(left_handed_clip(camera.fov_y, camera.aspect, camera.near_distance, camera.far_distance),
+                       DepthRange::zero_to_one)
                 .value();
         const std::size_t same_as[] = {1, 0, 2, 3, 4, 5};
         for (std::size_t i = 0; i < 6; ++i) {

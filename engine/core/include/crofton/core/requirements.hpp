@@ -1,5 +1,5 @@
-// What Crofton asks of the compiler and of GLM. Every public header includes this one, itself or through another, so that
-// a build that lacks something says so first.
+// What Crofton asks of the compiler and of GLM. Every public header includes this one, itself or through another, so
+// that a build that lacks something says so first.
 #ifndef CROFTON_CORE_REQUIREMENTS_HPP
 #define CROFTON_CORE_REQUIREMENTS_HPP
 
