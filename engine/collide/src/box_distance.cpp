@@ -253,9 +253,8 @@ PointPair search_features(const BoxPairInDouble& pair, PointPair best) {
 
 Distance distance(const Obb& a, const Obb& b) {
     const BoxPairInDouble pair(a, b);
-    const BoxOverlap overlap = overlap_of(pair);
-    const double error = error_bound(pair);
-    const bool meet = overlap.least > error || (!(overlap.least < -error) && intersects(a, b));
+    const BoxOverlap overlap = overlap_of(a, b, pair);
+    const bool meet = overlap.surely_meet() || (!overlap.surely_apart() && intersects(a, b));
     glm::dvec3 axis = least_of(overlap).axis;
     if (glm::dot(axis, pair.offset) < 0.0) axis = -axis;
     bool proven = false;

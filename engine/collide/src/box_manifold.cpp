@@ -157,10 +157,8 @@ void touch_somewhere(const Obb& a, const Obb& b, Manifold& manifold) {
 Manifold contact_manifold(const Obb& a, const Obb& b, ManifoldPoints points) {
     Manifold manifold;
     const BoxPairInDouble pair(a, b);
-    const BoxOverlap overlap = overlap_of(pair);
-    const double error = error_bound(pair);
-    if (overlap.least < -error) return manifold;
-    if (!(overlap.least > error) && !intersects(a, b)) return manifold;
+    const BoxOverlap overlap = overlap_of(a, b, pair);
+    if (overlap.surely_apart() || (!overlap.surely_meet() && !intersects(a, b))) return manifold;
     const AxisOverlap& axis = contact_axis(overlap);
     glm::dvec3 normal = axis.axis / std::sqrt(axis.squared_length);
     if (glm::dot(normal, pair.offset) < 0.0) normal = -normal;

@@ -5,6 +5,9 @@
 #include <crofton/collide/convex_query.hpp>
 #include <glm/geometric.hpp>
 
+#include "float_pair.hpp"
+#include "pair_columns.hpp"
+
 namespace crofton::collide {
 namespace {
 
@@ -30,36 +33,30 @@ BoxPairInDouble::BoxPairInDouble(const Obb& first, const Obb& second) : offset(s
     }
 }
 
-// With N the normals of a, M those of b: N_l · b_j and M_l · a_i serve the faces and, as (a_i × b_j) · a_{i+1} =
-// −N_{i+2} · b_j and so on, the edges.
-BoxOverlap overlap_of(const BoxPairInDouble& pair) {
+BoxOverlap overlap_of(const Obb& a, const Obb& b, const BoxPairInDouble& pair) {
+    AxisMeasures measures;
+    measure_axes(columns_of(FloatBox(a), FloatBox(b), pair.offset), measures);
     BoxOverlap overlap;
-    double product[2][3][3];  // [side][l][j]: |normal l of this side · axis j of the other|
-    overlap.least = 1e300;
-    for (int side = 0; side < 2; ++side)
-        for (int l = 0; l < 3; ++l) {
-            const glm::dvec3& n = pair.normals[side][l];
-            double reach = pair.half[side][l] * std::abs(glm::dot(n, pair.axes[side][l]));
-            for (int j = 0; j < 3; ++j) {
-                product[side][l][j] = std::abs(glm::dot(n, pair.axes[1 - side][j]));
-                reach += pair.half[1 - side][j] * product[side][l][j];
-            }
-            AxisOverlap& face = overlap.faces[3 * side + l];
-            face = {n, reach - std::abs(glm::dot(n, pair.offset)), glm::dot(n, n), 3 * side + l};
-            overlap.least = std::min(overlap.least, face.scaled_depth);
-        }
+    overlap.error_bound = 0x1p-49 * measures.size + 1e-300;
+    double widest = -1e300;
+    for (int face = 0; face < 6; ++face) {
+        const int side = face / 3, k = face % 3;
+        const double gap = measures.gap[side][k];
+        widest = std::max(widest, gap);
+        overlap.faces[face] = {pair.normals[side][k], -gap, measures.squared_length[side][k], face};
+    }
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-            const int i1 = next(i), i2 = next(i1), j1 = next(j), j2 = next(j1);
-            const glm::dvec3 n = glm::cross(pair.axes[0][i], pair.axes[1][j]);
-            const double reach = pair.half[0][i1] * product[0][i2][j] + pair.half[0][i2] * product[0][i1][j] +
-                                 (pair.half[1][j1] * product[1][j2][i] + pair.half[1][j2] * product[1][j1][i]);
-            const AxisOverlap edge{n, reach - std::abs(glm::dot(n, pair.offset)), glm::dot(n, n), 6 + 3 * i + j};
-            overlap.least = std::min(overlap.least, edge.scaled_depth);
+            const int group = 2 + (j - i + 3) % 3;
+            const AxisOverlap edge{{}, -measures.gap[group][i], measures.squared_length[group][i], 6 + 3 * i + j};
+            widest = std::max(widest, measures.gap[group][i]);
             if (edge.squared_length > kLeastSquaredSine &&
                 (overlap.edge.number == kNotSeparated || edge.is_less_than(overlap.edge)))
                 overlap.edge = edge;
         }
+    if (const int edge = overlap.edge.number - 6; edge >= 0)
+        overlap.edge.axis = glm::cross(pair.axes[0][edge / 3], pair.axes[1][edge % 3]);
+    overlap.least = -widest;
     return overlap;
 }
 
@@ -73,7 +70,7 @@ const AxisOverlap& least_of(const BoxOverlap& overlap) {
 
 Penetration penetration(const Obb& a, const Obb& b) {
     const BoxPairInDouble pair(a, b);
-    const BoxOverlap overlap = overlap_of(pair);
+    const BoxOverlap overlap = overlap_of(a, b, pair);
     const AxisOverlap& least = least_of(overlap);
     const glm::dvec3 axis = least.axis / std::sqrt(least.squared_length);
     return {least.depth(), glm::dot(axis, pair.offset) < 0.0 ? -axis : axis};

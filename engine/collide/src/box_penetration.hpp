@@ -34,17 +34,16 @@ struct AxisOverlap {
 
 struct BoxOverlap {
     AxisOverlap faces[6];
-    AxisOverlap edge;    // the least of the edges' that are not parallel; number is −1 where all are
-    double least = 0.0;  // scaled depth of all axes, parallel edges too
+    AxisOverlap edge;          // the least of the edges' that are not parallel; number is −1 where all are
+    double error_bound = 0.0;  // of the scaled depths
+    double least = 0.0;        // scaled depth of all axes, parallel edges too
+
+    // Boxes whose depths are all beyond the error bound surely meet; where one is below it, they surely do not.
+    [[nodiscard]] bool surely_meet() const { return least > error_bound; }
+    [[nodiscard]] bool surely_apart() const { return least < -error_bound; }
 };
-[[nodiscard]] BoxOverlap overlap_of(const BoxPairInDouble& pair);
+[[nodiscard]] BoxOverlap overlap_of(const Obb& a, const Obb& b, const BoxPairInDouble& pair);
 // The least of all; a face comes before an edge product of equal depth.
 [[nodiscard]] const AxisOverlap& least_of(const BoxOverlap& overlap);
-
-// The scaled depths are off by less than this (axes_in_double.cpp): boxes meet where all are larger, and are apart
-// where one is smaller than its negative.
-[[nodiscard]] inline double error_bound(const BoxPairInDouble& pair) {
-    return 0x1p-49 * pair.size + 1e-300;
-}
 
 }  // namespace crofton::collide
