@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <gmpxx.h>
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/obb_obb.hpp>
@@ -27,6 +28,26 @@ std::vector<IdPair> brute_force(std::span<const Obb> boxes, std::span<const Filt
             if (validate(boxes[i]) && validate(boxes[j]) && (filters.empty() || passes(filters[i], filters[j])) &&
                 intersects(boxes[i], boxes[j]))
                 pairs.push_back({i, j});
+    return pairs;
+}
+
+// In rational arithmetic.
+bool bounds_meet(const Obb& a, const Obb& b) {
+    for (int i = 0; i < 3; ++i) {
+        mpq_class gap = mpq_class(b.center[i]) - mpq_class(a.center[i]), width = 0;
+        for (const Obb* box : {&a, &b})
+            for (int k = 0; k < 3; ++k)
+                width += abs(mpq_class(double(box->axes[k][i]))) * mpq_class(double(box->half_extents[k]));
+        if (abs(gap) > width) return false;
+    }
+    return true;
+}
+
+std::vector<IdPair> brute_force_bounds(std::span<const Obb> boxes) {
+    std::vector<IdPair> pairs;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
+            if (bounds_meet(boxes[i], boxes[j])) pairs.push_back({i, j});
     return pairs;
 }
 
@@ -133,6 +154,110 @@ TEST_SUITE("collide/broadphase") {
             REQUIRE(exact.update(boxes).has_value());
             CHECK(std::ranges::includes(bounds.pairs(), exact.pairs()));
             CHECK(same(exact.pairs(), brute_force(boxes)));
+        }
+    }
+
+    TEST_CASE("pairs of bounds are exact: none too many, none too few, however near the bounds come") {
+        std::mt19937_64 random(7);
+        std::size_t listed = 0, apart = 0;
+        for (const double place : {0.0, 3.0, 1e7, -1e15}) {
+            std::vector<Obb> boxes;
+            for (int n = 0; n < 60; ++n) {
+                const Obb a = random_box(random, 20.0);
+                Obb b = random_box(random, 20.0);
+                // b's bounds touch a's along an axis, up to a rounding or two.
+                const int i = n % 3;
+                double width = 0.0;
+                for (int k = 0; k < 3; ++k)
+                    width += std::abs(double(a.axes[k][i])) * double(a.half_extents[k]) +
+                             std::abs(double(b.axes[k][i])) * double(b.half_extents[k]);
+                b.center = a.center;
+                b.center[i] += width;
+                for (int step = n % 5; step > 2; --step) b.center[i] = std::nextafter(b.center[i], 1e300);
+                for (int step = n % 5; step < 2; ++step) b.center[i] = std::nextafter(b.center[i], -1e300);
+                boxes.push_back(a);
+                boxes.push_back(b);
+            }
+            for (Obb& box : boxes) box.center += glm::dvec3(place);
+            Broadphase bounds({.exact_boxes = false});
+            REQUIRE(bounds.update(boxes).has_value());
+            CHECK(same(bounds.pairs(), brute_force_bounds(boxes)));
+            for (std::size_t n = 0; n < boxes.size(); n += 2)
+                (bounds_meet(boxes[n], boxes[n + 1]) ? listed : apart) += 1;
+        }
+        CHECK(listed > 50);
+        CHECK(apart > 50);
+    }
+
+    TEST_CASE("only the items that moved are named: the same pairs as from all boxes, frame after frame") {
+        std::mt19937_64 random(8);
+        for (const bool exact : {true, false}) {
+            auto boxes = random_boxes(random, 700, 6.0);
+            std::vector<Filter> filters(boxes.size());
+            Broadphase all({.exact_boxes = exact}), few({.exact_boxes = exact});
+            std::size_t looked_at = 0, began = 0, ended = 0;
+            for (int frame = 0; frame < 60; ++frame) {
+                std::vector<std::uint32_t> moved;
+                if (frame == 30) boxes.resize(600), filters.resize(600);
+                if (frame == 31) boxes.push_back(random_box(random)), filters.emplace_back();
+                const std::size_t count = frame % 7 == 6 ? 0 : 1 + random() % 40;
+                for (std::size_t n = 0; n < count; ++n) {
+                    const auto item = static_cast<std::uint32_t>(random() % boxes.size());
+                    moved.push_back(item);
+                    if (n % 5 == 4) moved.push_back(item);
+                    if (!validate(boxes[item])) boxes[item] = random_box(random, 6.0);
+                    boxes[item].center += (n % 3 == 0 ? 3.0 : 0.3) * random_vector(random);
+                    if (random() % 20 == 0) boxes[item].center.y = std::numeric_limits<double>::quiet_NaN();
+                    if (random() % 10 == 0) filters[item].layers = 1u << random() % 2;
+                    if (random() % 10 == 0) filters[item].collides_with = 1u << random() % 2;
+                }
+                REQUIRE(all.update(boxes, filters).has_value());
+                REQUIRE(few.update_moved(boxes, moved, filters).has_value());
+                CHECK(same(few.pairs(), all.pairs()));
+                CHECK(same(few.began(), all.began()));
+                CHECK(same(few.stayed(), all.stayed()));
+                CHECK(same(few.ended(), all.ended()));
+                CHECK(std::ranges::equal(few.rejected(), all.rejected()));
+                looked_at += few.statistics().bound_pairs < all.statistics().bound_pairs;
+                began += few.began().size();
+                ended += few.ended().size();
+            }
+            CHECK(looked_at > 50);
+            CHECK(began > 100);
+            CHECK(ended > 100);
+        }
+    }
+
+    TEST_CASE("where nothing moves nothing is looked at; moves that name no box are an error") {
+        std::mt19937_64 random(9);
+        const auto boxes = random_boxes(random, 300, 4.0);
+        Broadphase broadphase;
+        REQUIRE(broadphase.update_moved(boxes, {}).has_value());  // the first update looks at all
+        const auto pairs = brute_force(boxes);
+        CHECK(same(broadphase.pairs(), pairs));
+        for (int frame = 0; frame < 3; ++frame) {
+            REQUIRE(broadphase.update_moved(boxes, {}).has_value());
+            CHECK(same(broadphase.pairs(), pairs));
+            CHECK(same(broadphase.stayed(), pairs));
+            CHECK(broadphase.began().empty());
+            CHECK(broadphase.statistics().bound_pairs == 0);
+        }
+        const std::vector<std::uint32_t> wild{4, 300};
+        const auto result = broadphase.update_moved(boxes, wild);
+        REQUIRE_FALSE(result.has_value());
+        CHECK(result.error().code == ErrorCode::out_of_range);
+        CHECK(result.error().item == 300);
+        CHECK(same(broadphase.pairs(), pairs));
+        // All boxes far away: the order is worn out, and made anew.
+        auto far = boxes;
+        for (int frame = 0; frame < 40; ++frame) {
+            std::vector<std::uint32_t> moved;
+            for (std::uint32_t i = static_cast<std::uint32_t>(frame) % 10; i < far.size(); i += 10) {
+                far[i].center += 20.0 * random_vector(random);
+                moved.push_back(i);
+            }
+            REQUIRE(broadphase.update_moved(far, moved).has_value());
+            CHECK(same(broadphase.pairs(), brute_force(far)));
         }
     }
 

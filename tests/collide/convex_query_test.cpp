@@ -3,6 +3,7 @@
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/collide/obb_obb.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
 #include "random_boxes.hpp"
@@ -113,7 +114,8 @@ TEST_SUITE("collide/convex_query") {
         Obb turned = cube({0.0, 0.0, 1.9});
         const float s = float(std::sqrt(0.5));
         turned.axes = glm::mat3(glm::vec3(s, s, 0), glm::vec3(-s, s, 0), glm::vec3(0, 0, 1));
-        CHECK(contact_manifold(cube({}), turned).count == 8);
+        CHECK(contact_manifold(cube({}), turned, ManifoldPoints::all).count == 8);
+        CHECK(contact_manifold(cube({}), turned).count == 4);
         Obb roof = cube({0.0, 0.0, 1.0 + std::sqrt(2.0) - 0.1});
         roof.axes = glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, s, s), glm::vec3(0, -s, s));
         CHECK(contact_manifold(cube({}), roof).count == 2);
@@ -143,6 +145,163 @@ TEST_SUITE("collide/convex_query") {
             }
             if (m.count > 0) CHECK(contact_manifold(b, a).depth == doctest::Approx(m.depth).epsilon(1e-6));
         }
+    }
+
+    TEST_CASE("boxes of no thickness touch within both: a plate on a floor, plates that cross, plates in one plane") {
+        const Obb floor{{0.0, 0.0, -0.5}, glm::mat3(1.0f), glm::vec3(5.0f, 5.0f, 0.5f)};
+        Obb plate{{0.3, 0.2, 0.999}, glm::mat3(1.0f), glm::vec3(1.0f, 1.0f, 0.0f)};
+        plate.axes = glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0, -1, 0));  // upright
+        for (const auto& [a, b] : {std::pair(floor, plate), std::pair(plate, floor)}) {
+            const Manifold m = contact_manifold(a, b);
+            REQUIRE(m.count == 2);
+            for (int i = 0; i < 2; ++i) {
+                CHECK(std::abs(m.points[i].position.x - 0.3) == doctest::Approx(1.0));
+                CHECK(m.points[i].position.y == doctest::Approx(0.2));
+                CHECK(m.points[i].depth == doctest::Approx(0.001));
+            }
+        }
+        std::mt19937_64 random(41);
+        int met = 0;
+        for (int trial = 0; trial < 4000; ++trial) {
+            Obb a = random_box(random), b = random_box(random);
+            if (trial % 4 == 3) b.axes = a.axes;
+            a.half_extents[trial % 3] = 0.0f;
+            if (trial % 2 == 0) b.half_extents[trial / 3 % 3] = 0.0f;
+            if (trial % 8 == 0) a.half_extents[(trial + 1) % 3] = 0.0f;
+            if (trial % 16 == 3) b.center = a.center + 0.5 * glm::dvec3(a.axes[(trial + 1) % 3]);
+            const Manifold m = contact_manifold(a, b);
+            REQUIRE((m.count > 0) == intersects(a, b));
+            met += m.count > 0;
+            for (int i = 0; i < m.count; ++i) {
+                CHECK(outside(a, m.points[i].position) <= 0.5 * m.points[i].depth + 1e-6);
+                CHECK(outside(b, m.points[i].position) <= 0.5 * m.points[i].depth + 1e-6);
+            }
+        }
+        CHECK(met > 500);
+    }
+
+    TEST_CASE("far from the origin contact points lie on the boxes, to the rounding of their coordinates") {
+        std::mt19937_64 random(42);
+        int met = 0;
+        for (const double place : {1e6, 1e7}) {
+            for (int trial = 0; trial < 3000; ++trial) {
+                auto [a, b] = nearly_touching(random, {.parallel = trial % 3 == 0});
+                const glm::dvec3 offset = place * random_vector(random);
+                a.center += offset;
+                b.center += offset;
+                const Manifold m = contact_manifold(a, b);
+                REQUIRE((m.count > 0) == intersects(a, b));
+                met += m.count > 0;
+                for (int i = 0; i < m.count; ++i) {
+                    CHECK(outside(a, m.points[i].position) <= 0.5 * m.points[i].depth + 1e-6);
+                    CHECK(outside(b, m.points[i].position) <= 0.5 * m.points[i].depth + 1e-6);
+                }
+            }
+        }
+        CHECK(met > 1000);
+    }
+
+    TEST_CASE("a manifold is as deep as its deepest point, and its four points keep that and most of the area") {
+        std::mt19937_64 random(43);
+        int reduced = 0;
+        for (int trial = 0; trial < 5000; ++trial) {
+            auto [a, b] = trial % 2 ? std::pair(random_box(random), random_box(random))
+                                    : nearly_touching(random, {.parallel = trial % 4 == 0});
+            if (trial % 5 == 0) {  // turned about the axis that a's face looks along: up to eight points
+                const double angle = 1.6 * random_vector(random).x;
+                b.axes = glm::mat3(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(glm::dvec3(a.axes[2])))) *
+                                   glm::dmat3(a.axes));
+                b.center = a.center + glm::dvec3(a.axes[2]) * (double(a.half_extents.z + b.half_extents.z) - 0.01);
+            }
+            const Manifold all = contact_manifold(a, b, ManifoldPoints::all), few = contact_manifold(a, b);
+            const auto deepest = [](const Manifold& m) {
+                double depth = 0.0;
+                for (int i = 0; i < m.count; ++i) depth = std::max(depth, m.points[i].depth);
+                return depth;
+            };
+            REQUIRE(few.count <= 4);
+            REQUIRE((few.count == 0) == (all.count == 0));
+            CHECK(all.depth == deepest(all));
+            CHECK(few.depth == deepest(few));
+            CHECK(few.depth == all.depth);
+            CHECK(few.normal == all.normal);
+            if (all.count <= 4) {
+                CHECK(few.count == all.count);
+                continue;
+            }
+            ++reduced;
+            const auto area = [](const Manifold& m) {
+                glm::dvec3 sum(0.0);
+                for (int i = 1; i + 1 < m.count; ++i)
+                    sum += glm::cross(m.points[i].position - m.points[0].position,
+                                      m.points[i + 1].position - m.points[0].position);
+                return 0.5 * std::abs(glm::dot(sum, m.normal));
+            };
+            CHECK(area(few) >= 0.5 * area(all));
+        }
+        CHECK(reduced > 300);
+    }
+
+    TEST_CASE("distances of boxes are proven to 1e-12 of their size: parallel, flat, touching, tiny and large") {
+        std::mt19937_64 random(44);
+        int apart = 0, meeting = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            auto [a, b] = trial % 2 ? std::pair(random_box(random), random_box(random, 2.5))
+                                    : nearly_touching(random, {.parallel = trial % 4 == 0, .no_gap = trial % 16 == 2});
+            if (trial % 5 == 0) a.half_extents[trial % 3] = 0.0f;
+            if (trial % 7 == 0) b.half_extents[trial % 3] = 0.0f;
+            if (trial % 11 == 0) a.half_extents[(trial + 1) % 3] *= 1e-6f;
+            if (trial % 13 == 0) b.half_extents *= 1e-3f;
+            if (trial % 17 == 0) b.half_extents *= 1e3f;
+            const Distance d = distance(a, b);
+            const bool meets = intersects(a, b);
+            REQUIRE((d.distance == 0.0) == meets);
+            double size = glm::length(b.center - a.center);
+            for (int k = 0; k < 3; ++k) size += double(a.half_extents[k]) + double(b.half_extents[k]);
+            if (meets) {
+                CHECK(d.on_a == d.on_b);
+                CHECK(outside(a, d.on_a) <= 1e-6 * size);
+                CHECK(outside(b, d.on_a) <= 1e-6 * size);
+                ++meeting;
+                continue;
+            }
+            ++apart;
+            CHECK(outside(a, d.on_a) <= 2e-6 * size);  // axes are orthonormal to float only
+            CHECK(outside(b, d.on_b) <= 2e-6 * size);
+            const glm::dvec3 way = d.on_b - d.on_a;
+            CHECK(std::abs(glm::length(way) - d.distance) <= 1e-14 * size);
+            if (d.distance < 1e-9 * size) continue;  // the way's own rounding is too large to prove anything
+            // The gap along any direction is a lower bound of the distance, and the ends are an upper bound. Tried are
+            // the way between the ends, the same across each axis, and the fifteen axes of the boxes.
+            glm::dvec3 axes[6];
+            std::vector<glm::dvec3> directions{way};
+            for (int k = 0; k < 6; ++k) {
+                axes[k] = glm::dvec3((k < 3 ? a : b).axes[k % 3]);
+                glm::dvec3 across = way;
+                for (int pass = 0; pass < 3; ++pass)
+                    across -= glm::dot(across, axes[k]) / glm::dot(axes[k], axes[k]) * axes[k];
+                directions.push_back(across);
+            }
+            for (int p = 0; p < 6; ++p)
+                for (int q = p + 1; q < 6; ++q) {
+                    const glm::dvec3 n = glm::cross(axes[p], axes[q]);
+                    directions.push_back(glm::dot(n, way) < 0.0 ? -n : n);
+                }
+            double gap = -1e300;
+            for (const glm::dvec3& direction : directions) {
+                const double length = glm::length(direction);
+                if (!(length > 0.0)) continue;
+                const glm::dvec3 n = direction / length;
+                double along = glm::dot(n, b.center - a.center);
+                for (int k = 0; k < 3; ++k)
+                    along -= double(a.half_extents[k]) * std::abs(glm::dot(n, axes[k])) +
+                             double(b.half_extents[k]) * std::abs(glm::dot(n, axes[k + 3]));
+                gap = std::max(gap, along);
+            }
+            CHECK(d.distance - gap <= 1e-12 * size);
+        }
+        CHECK(apart > 5000);
+        CHECK(meeting > 2000);
     }
 
     TEST_CASE("1,000 crates stacked with rounded rotations: every contact is found, and none between crates apart") {

@@ -83,7 +83,7 @@ TEST_SUITE("determinism/collide") {
     }
 
     TEST_CASE("distances, depths and contact points of boxes are the same bits everywhere") {
-        check_everywhere(0x4570a8e99762b500, [](Executor&) { return pairs_closely(); });
+        check_everywhere(0x1a596c1cd76614f4, [](Executor&) { return pairs_closely(); });
     }
 
     TEST_CASE("contacts, depths, distances and rays of meshes are the same bits everywhere") {

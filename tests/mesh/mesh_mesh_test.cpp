@@ -202,6 +202,64 @@ TEST_SUITE("mesh/mesh_mesh") {
               Containment::b_inside_a);
     }
 
+    TEST_CASE("an open mesh contains nothing: cubes that hover over and under a terrain are apart from it") {
+        TriangleMesh terrain;
+        for (std::uint32_t i = 0; i < 20; ++i)
+            for (std::uint32_t j = 0; j < 20; ++j) {
+                terrain.positions.push_back(
+                    glm::vec3(float(i), float(j), 0.3f * float(std::sin(double(i) + 2.0 * double(j)))));
+                if (i == 19 || j == 19) continue;
+                const std::uint32_t at = 20 * i + j;
+                for (const std::uint32_t v : {at, at + 20, at + 21, at, at + 21, at + 1}) terrain.indices.push_back(v);
+            }
+        const auto ground = tree_of(terrain), crate = tree_of(cube(0.2));
+        REQUIRE(ground.pieces().size() == 1);
+        CHECK_FALSE(ground.pieces()[0].closed);
+        CHECK(crate.pieces()[0].closed);
+        std::mt19937_64 random(31);
+        for (int trial = 0; trial < 100; ++trial) {
+            const double height = trial % 2 ? -2.0 : 2.0;
+            const RigidTransform pose{
+                glm::dmat3(1.0), {9.0 + 8.0 * random_vector(random).x, 9.0 + 8.0 * random_vector(random).x, height}};
+            CHECK(containment(ground, crate, pose) == Containment::none);
+            CHECK_FALSE(contains(ground, pose.translation));
+        }
+        // A hole opens a cube; so does a rejected triangle. A closed piece beside an open one still contains.
+        TriangleMesh holed = cube(1.0);
+        holed.indices.resize(33);
+        CHECK(containment(tree_of(holed), crate, {}) == Containment::none);
+        TriangleMesh torn = cube(1.0);
+        torn.indices[35] = 99;
+        CHECK(containment(tree_of(torn), crate, {}) == Containment::none);
+        TriangleMesh mixed = cube(1.0);
+        mixed.positions.insert(mixed.positions.end(), {{-0.1f, -0.1f, 2.0f}, {0.9f, 0.0f, 2.0f}, {0.0f, 0.9f, 2.0f}});
+        mixed.indices.insert(mixed.indices.end(), {8, 9, 10});
+        REQUIRE(tree_of(mixed).pieces().size() == 2);
+        CHECK(tree_of(mixed).pieces()[0].closed);
+        CHECK_FALSE(tree_of(mixed).pieces()[1].closed);
+        CHECK(containment(tree_of(mixed), crate, {}) == Containment::b_inside_a);
+        CHECK_FALSE(contains(tree_of(mixed), {0.2, 0.2, 1.5}));  // between the lid and the loose triangle
+    }
+
+    TEST_CASE(
+        "closed pieces: whatever the winding, with vertices of their own, and where four triangles share an edge") {
+        TriangleMesh turned = cube(1.0);
+        std::swap(turned.indices[0], turned.indices[1]);
+        CHECK(tree_of(turned).pieces()[0].closed);
+        // Two cubes that touch along an edge, their vertices there one.
+        TriangleMesh pair = cube(1.0);
+        const std::uint32_t map[8] = {7, 8, 9, 10, 11, 12, 13, 14};  // the second's vertex 0 is the first's 7
+        for (int v = 1; v < 8; ++v)
+            pair.positions.push_back(cube(1.0).positions[std::size_t(v)] + glm::vec3(2.0f, 2.0f, 0.0f));
+        for (const std::uint32_t v : cube(1.0).indices) pair.indices.push_back(v == 0 ? 3 : map[v]);
+        const auto tree = tree_of(pair);
+        REQUIRE(tree.pieces().size() == 1);
+        CHECK(tree.pieces()[0].closed);
+        CHECK(contains(tree, {0.0, 0.0, 0.0}));
+        CHECK(contains(tree, {2.0, 2.0, 0.0}));
+        CHECK_FALSE(contains(tree, {2.0, 0.0, 0.0}));
+    }
+
     TEST_CASE("the depth is the shortest way out, of the directions tried") {
         const auto a = tree_of(cube(1.0)), b = tree_of(cube(0.5));
         const MeshDepth side = penetration(a, b, {glm::dmat3(1.0), {1.3, 0.1, 0.0}}, {});
@@ -320,5 +378,32 @@ TEST_SUITE("mesh/mesh_mesh") {
             const MeshDistance back = distance(ring, a, inverse(pose));
             CHECK(back.distance == doctest::Approx(d.distance).epsilon(1e-12));
         }
+    }
+
+    TEST_CASE("poses that miss by an ulp are apart: the distance is positive exactly where meshes do not meet") {
+        const auto a = tree_of(cube(1.0)), ring = tree_of(wavy_torus(1.0, 0.3, 0.2));
+        const double beyond = std::nextafter(2.0, 3.0);
+        CHECK(distance(a, a, {glm::dmat3(1.0), {2.0, 0.0, 0.0}}).distance == 0.0);
+        CHECK(distance(a, a, {glm::dmat3(1.0), {beyond, 0.3, 0.0}}).distance > 0.0);
+        std::mt19937_64 random(32);
+        int apart = 0, meeting = 0;
+        for (int trial = 0; trial < 60; ++trial) {
+            RigidTransform pose{glm::mat3_cast(random_rotation(random)), {0.0, 0.0, 0.0}};
+            const glm::dvec3 direction = glm::normalize(random_vector(random));
+            double near = 0.0, far = 8.0;  // bisected to neighbouring doubles
+            for (int step = 0; step < 80; ++step) {
+                const double middle = 0.5 * (near + far);
+                pose.translation = middle * direction;
+                (intersects(a, ring, pose) ? near : far) = middle;
+            }
+            for (const double along : {near, far}) {
+                pose.translation = along * direction;
+                const bool meets = intersects(a, ring, pose);
+                CHECK((distance(a, ring, pose).distance == 0.0) == meets);
+                (meets ? meeting : apart) += 1;
+            }
+        }
+        CHECK(apart >= 30);
+        CHECK(meeting >= 30);
     }
 }

@@ -47,7 +47,12 @@ HWY_INLINE Columns cross(const Columns& u, const Columns& v) {
     return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
-AxisVerdicts JudgeAxes(const PairColumns& pair) {
+struct Gaps {
+    Three gap[5];
+    Three size;
+};
+
+HWY_INLINE Gaps gaps_of(const PairColumns& pair) {
     const Columns a[3] = {columns(pair.a), next(columns(pair.a)), after_next(columns(pair.a))};
     const Columns b[3] = {columns(pair.b), next(columns(pair.b)), after_next(columns(pair.b))};
     const Columns offset = {all3(pair.offset[0]), all3(pair.offset[1]), all3(pair.offset[2])};
@@ -62,17 +67,39 @@ AxisVerdicts JudgeAxes(const PairColumns& pair) {
     const Three own_a = magnitude(dot(normal_a, a[0])) * ha, own_b = magnitude(dot(normal_b, b[0])) * hb;
     // |normal j of b · edge i of a| with j − i = 1, 2, in lanes i; for 0 it is q[0].
     const Three s1 = next(q[2]), s2 = after_next(q[1]);
-    const Three gap[5] = {
-        magnitude(dot(normal_a, offset)) - ((own_a + p[0] * hb) + (p[1] * hb1 + p[2] * hb2)),
-        magnitude(dot(normal_b, offset)) - ((own_b + q[0] * ha) + (q[1] * ha1 + q[2] * ha2)),
-        magnitude(dot(moment, b[0])) - ((ha1 * after_next(p[1]) + ha2 * next(p[2])) + (hb1 * s2 + hb2 * s1)),
-        magnitude(dot(moment, b[1])) - ((ha1 * after_next(p[2]) + ha2 * next(p[0])) + (hb2 * q[0] + hb * s2)),
-        magnitude(dot(moment, b[2])) - ((ha1 * after_next(p[0]) + ha2 * next(p[1])) + (hb * s1 + hb1 * q[0])),
-    };
+    Gaps gaps = {
+        {
+            magnitude(dot(normal_a, offset)) - ((own_a + p[0] * hb) + (p[1] * hb1 + p[2] * hb2)),
+            magnitude(dot(normal_b, offset)) - ((own_b + q[0] * ha) + (q[1] * ha1 + q[2] * ha2)),
+            magnitude(dot(moment, b[0])) - ((ha1 * after_next(p[1]) + ha2 * next(p[2])) + (hb1 * s2 + hb2 * s1)),
+            magnitude(dot(moment, b[1])) - ((ha1 * after_next(p[2]) + ha2 * next(p[0])) + (hb2 * q[0] + hb * s2)),
+            magnitude(dot(moment, b[2])) - ((ha1 * after_next(p[0]) + ha2 * next(p[1])) + (hb * s1 + hb1 * q[0])),
+        },
+        {}};
     const Three h = ha + hb;
-    const Three size =
-        (h + next(h) + after_next(h)) + (magnitude(offset.x) + magnitude(offset.y) + magnitude(offset.z));
-    const Three error = size * all3(0x1p-49) + all3(1e-300);
+    gaps.size = (h + next(h) + after_next(h)) + (magnitude(offset.x) + magnitude(offset.y) + magnitude(offset.z));
+    return gaps;
+}
+
+void MeasureAxes(const PairColumns& pair, AxisMeasures& measures) {
+    const Gaps gaps = gaps_of(pair);
+    const Columns a[3] = {columns(pair.a), next(columns(pair.a)), after_next(columns(pair.a))};
+    const Columns b[3] = {columns(pair.b), next(columns(pair.b)), after_next(columns(pair.b))};
+    const Columns axes[5] = {cross(a[1], a[2]), cross(b[1], b[2]), cross(a[0], b[0]), cross(a[0], b[1]),
+                             cross(a[0], b[2])};
+    for (int g = 0; g < 5; ++g) {
+        store3(gaps.gap[g], measures.gap[g]);
+        store3(dot(axes[g], axes[g]), measures.squared_length[g]);
+    }
+    alignas(32) double size[4];
+    store3(gaps.size, size);
+    measures.size = size[0];
+}
+
+AxisVerdicts JudgeAxes(const PairColumns& pair) {
+    const Gaps gaps = gaps_of(pair);
+    const Three(&gap)[5] = gaps.gap;
+    const Three error = gaps.size * all3(0x1p-49) + all3(1e-300);
     const Three overlap = all3(0.0) - error;
     if (lanes_all_below(gap, overlap) == 7u) return {};
     std::uint32_t separated[5], overlapping[5];
@@ -93,9 +120,13 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::collide {
 
 HWY_EXPORT(JudgeAxes);
+HWY_EXPORT(MeasureAxes);
 
 AxisVerdicts judge_axes(const PairColumns& pair) {
     return HWY_DYNAMIC_DISPATCH(JudgeAxes)(pair);
+}
+void measure_axes(const PairColumns& pair, AxisMeasures& measures) {
+    HWY_DYNAMIC_DISPATCH(MeasureAxes)(pair, measures);
 }
 
 }  // namespace crofton::collide

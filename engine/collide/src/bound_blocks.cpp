@@ -236,6 +236,41 @@ void FindPairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPa
         if (!visit_block(tree, block, pairs, grow)) return;
 }
 
+bool visit_partners(const BoundTree& tree, std::uint32_t slot, SlotPairs& pairs, GrowPairs grow) {
+    struct Step {
+        std::size_t level, block;
+    };
+    Step stack[kMaxLevels * kBoxBlock];
+    std::size_t height = 0;
+    const BoundBlock& own = tree.levels[0][slot / kBoxBlock];
+    const std::size_t own_lane = slot % kBoxBlock;
+    stack[height++] = {tree.level_count - 1, 0};
+    while (height > 0) {
+        const Step step = stack[--height];
+        std::uint32_t lanes = lanes_that_meet(tree.levels[step.level][step.block], own, own_lane);
+        const std::size_t first = step.block * kBoxBlock;
+        if (step.level > 0) {
+            for (; lanes != 0; lanes &= lanes - 1) stack[height++] = {step.level - 1, first + lowest(lanes)};
+            continue;
+        }
+        ++pairs.leaf_pairs;
+        if (pairs.capacity - pairs.count < kPairRoom && !grow(pairs)) return false;
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const auto other = static_cast<std::uint32_t>(first + lowest(lanes));
+            pairs.first[pairs.count] = slot;
+            pairs.second[pairs.count] = other;
+            pairs.count += other != slot;
+        }
+    }
+    return true;
+}
+
+void FindPartners(const BoundTree& tree, const std::uint32_t* slots, std::size_t count, SlotPairs& pairs,
+                  GrowPairs grow) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!visit_partners(tree, slots[i], pairs, grow)) return;
+}
+
 }  // namespace crofton::collide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -245,6 +280,7 @@ namespace crofton::collide {
 HWY_EXPORT(BoundBoxes);
 HWY_EXPORT(BoundBlocks);
 HWY_EXPORT(FindPairs);
+HWY_EXPORT(FindPartners);
 
 std::uint32_t bound_boxes(BoxBlock& boxes, BoundBlock& bounds) {
     measure_deviation(boxes);
@@ -255,6 +291,10 @@ void bound_blocks(const BoundBlock* blocks, std::size_t begin, std::size_t end, 
 }
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow) {
     HWY_DYNAMIC_DISPATCH(FindPairs)(tree, begin, end, pairs, grow);
+}
+void find_partners(const BoundTree& tree, const std::uint32_t* slots, std::size_t count, SlotPairs& pairs,
+                   GrowPairs grow) {
+    HWY_DYNAMIC_DISPATCH(FindPartners)(tree, slots, count, pairs, grow);
 }
 
 }  // namespace crofton::collide

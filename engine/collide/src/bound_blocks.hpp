@@ -43,4 +43,8 @@ inline constexpr std::size_t kPairRoom = (kCandidates + 1) * kBoxBlock;
 // each once.
 void find_pairs(const BoundTree& tree, std::size_t begin, std::size_t end, SlotPairs& pairs, GrowPairs grow);
 
+// For each of `slots`, all other slots whose bounds meet its own: {slot, other}. A pair of two of `slots` comes twice.
+void find_partners(const BoundTree& tree, const std::uint32_t* slots, std::size_t count, SlotPairs& pairs,
+                   GrowPairs grow);
+
 }  // namespace crofton::collide

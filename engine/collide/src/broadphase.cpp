@@ -2,62 +2,22 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <crofton/collide/broadphase.hpp>
-#include <limits>
 #include <string>
 
-#include "bound_blocks.hpp"
+#include "bounds_meet.hpp"
 #include "box_lanes.hpp"
-#include "pair_list.hpp"
-#include "space_order.hpp"
+#include "broadphase_state.hpp"
 
 namespace crofton::collide {
 namespace {
 
-constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr std::size_t kLeafGrain = 64;    // leaves a task
 constexpr std::size_t kBlockGrain = 4;    // blocks of leaves a task
 constexpr std::size_t kPairGrain = 2048;  // pairs a task
-// The order is made anew once the leaves' bounds have grown by this factor; a sort costs about as much as one update.
-constexpr double kWornOut = 1.2;
-
-void clear_lane(BoundBlock& block, std::size_t lane) {
-    for (int i = 0; i < 3; ++i) {
-        block.low[i][lane] = kLargest;
-        block.high[i][lane] = -kLargest;
-    }
-}
-
-struct Worker {
-    Vector<std::uint32_t> first, second;
-    SlotPairs pairs;
-    Vector<std::uint32_t> rejected;
-    BatchStatistics boxes;
-};
+// Items are looked at one by one while fewer than one in this many move: then both ways cost about the same.
+constexpr std::size_t kFewMovers = 8;
 
 }  // namespace
-
-struct Broadphase::State {
-    BroadphaseOptions options;
-    BroadphaseStatistics statistics;
-    SpaceOrder order;
-    glm::dvec3 origin{0.0};
-    Vector<BoundBlock> levels[kMaxLevels];
-    BoundTree tree{};
-    double leaf_extent = 0.0, leaf_extent_when_sorted = 0.0;
-    Vector<Worker> workers;
-    PairList list;
-    Vector<std::uint8_t> hits;
-    Vector<IdPair> pairs, previous, began, stayed, ended;
-    Vector<std::uint32_t> rejected;
-
-    void refit(std::span<const Obb> boxes, Executor& executor);
-    void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, Worker& worker);
-    void build_levels();
-    [[nodiscard]] bool collect(Executor& executor);
-    void sort_pairs(std::size_t item_count, std::span<const Filter> filters);
-    void keep_boxes_that_meet(std::span<const Obb> boxes, Executor& executor);
-};
 
 Broadphase::Broadphase(const BroadphaseOptions& options) : state_(std::make_unique<State>()) {
     state_->options = options;
@@ -86,7 +46,7 @@ const BroadphaseStatistics& Broadphase::statistics() const {
     return state_->statistics;
 }
 
-void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf, Worker& worker) {
+void Broadphase::State::bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker) {
     BoxBlock block;
     const std::span<const std::uint32_t> items = order.items();
     const std::size_t begin = leaf * kBoxBlock, count = std::min(kBoxBlock, items.size() - begin);
@@ -129,45 +89,46 @@ void Broadphase::State::build_levels() {
     }
     leaf_extent = 0.0;
     for (const BoundBlock& block : levels[1])
-        for (std::size_t lane = 0; lane < kBoxBlock; ++lane)
-            for (int i = 0; i < 3; ++i)
-                if (block.low[i][lane] <= block.high[i][lane])
-                    leaf_extent += static_cast<double>(block.high[i][lane]) - static_cast<double>(block.low[i][lane]);
+        for (std::size_t lane = 0; lane < kBoxBlock; ++lane) leaf_extent += extent_of_lane(block, lane);
 }
 
 void Broadphase::State::refit(std::span<const Obb> boxes, Executor& executor) {
     levels[0].resize((boxes.size() + kBoxBlock - 1) / kBoxBlock);
-    for (Worker& worker : workers) worker.rejected.clear();
+    for (BroadphaseWorker& worker : workers) worker.rejected.clear();
     executor.parallel_for(levels[0].size(), kLeafGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t leaf = begin; leaf < end; ++leaf) bound_leaf(boxes, leaf, workers[worker]);
     });
     build_levels();
 }
 
+// Makes room for more pairs; false when there are too many.
+bool Broadphase::State::grow(SlotPairs& slots, BroadphaseWorker& worker) const {
+    if (slots.count > options.max_pairs) return false;
+    const std::size_t size = std::max(2 * kPairRoom, 2 * worker.first.size());
+    worker.first.resize(size);
+    worker.second.resize(size);
+    slots.first = worker.first.data();
+    slots.second = worker.second.data();
+    slots.capacity = size;
+    return true;
+}
+
 // Pairs of slots whose bounds meet, into the workers' lists; false when there are too many.
 bool Broadphase::State::collect(Executor& executor) {
     std::atomic<bool> too_many = false;
-    for (Worker& worker : workers)
+    for (BroadphaseWorker& worker : workers)
         worker.pairs = {worker.first.data(), worker.second.data(), 0, worker.first.size(), 0};
     executor.parallel_for(tree.sizes[1], kBlockGrain, [&](std::size_t begin, std::size_t end, unsigned index) {
-        Worker& worker = workers[index];
+        BroadphaseWorker& worker = workers[index];
         if (too_many) return;
-        find_pairs(tree, begin, end, worker.pairs, [&](SlotPairs& found) {
-            if (found.count > options.max_pairs) {
-                too_many = true;
-                return false;
-            }
-            const std::size_t size = std::max(2 * kPairRoom, 2 * worker.first.size());
-            worker.first.resize(size);
-            worker.second.resize(size);
-            found.first = worker.first.data();
-            found.second = worker.second.data();
-            found.capacity = size;
-            return true;
+        find_pairs(tree, begin, end, worker.pairs, [&](SlotPairs& slots) {
+            const bool grown = grow(slots, worker);
+            if (!grown) too_many = true;
+            return grown;
         });
     });
     std::uint64_t total = 0;
-    for (const Worker& worker : workers) {
+    for (const BroadphaseWorker& worker : workers) {
         total += worker.pairs.count;
         statistics.nodes_tested += worker.pairs.leaf_pairs;
     }
@@ -175,70 +136,103 @@ bool Broadphase::State::collect(Executor& executor) {
 }
 
 void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const Filter> filters) {
-    const auto found = [](Worker& worker, Vector<std::uint32_t>& slots) {
+    const auto slots_of = [](BroadphaseWorker& worker, Vector<std::uint32_t>& slots) {
         return std::span<std::uint32_t>(slots).first(worker.pairs.count);
     };
     list.begin(item_count);
-    for (Worker& worker : workers)
-        list.count(found(worker, worker.first), found(worker, worker.second), order.items(), filters);
+    for (BroadphaseWorker& worker : workers)
+        list.count(slots_of(worker, worker.first), slots_of(worker, worker.second), order.items(), filters);
     list.place(pairs);
-    for (Worker& worker : workers) list.add(found(worker, worker.first), found(worker, worker.second), pairs);
+    for (BroadphaseWorker& worker : workers) list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), pairs);
     list.finish(pairs);
 }
 
-void Broadphase::State::keep_boxes_that_meet(std::span<const Obb> boxes, Executor& executor) {
-    hits.resize(pairs.size());
-    for (Worker& worker : workers) worker.boxes = {};
-    executor.parallel_for(pairs.size(), kPairGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
-        workers[worker].boxes += intersects(boxes, std::span<const IdPair>(pairs).subspan(begin, end - begin),
-                                            std::span<std::uint8_t>(hits).subspan(begin, end - begin));
+void Broadphase::State::keep_pairs_that_meet(std::span<const Obb> boxes, Vector<IdPair>& candidates,
+                                             Executor& executor) {
+    hits.resize(candidates.size());
+    for (BroadphaseWorker& worker : workers) worker.boxes = {};
+    executor.parallel_for(candidates.size(), kPairGrain, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        const auto some = std::span<const IdPair>(candidates).subspan(begin, end - begin);
+        const auto verdicts = std::span<std::uint8_t>(hits).subspan(begin, end - begin);
+        if (options.exact_boxes) {
+            workers[worker].boxes += intersects(boxes, some, verdicts);
+            return;
+        }
+        for (std::size_t i = 0; i < some.size(); ++i)
+            verdicts[i] = bounds_meet(boxes[some[i].first], boxes[some[i].second]);
     });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        pairs[kept] = pairs[i];
-        kept += hits[i];
+    std::size_t kept_count = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        candidates[kept_count] = candidates[i];
+        kept_count += hits[i];
     }
-    pairs.resize(kept);
-    for (const Worker& worker : workers) statistics.boxes += worker.boxes;
+    candidates.resize(kept_count);
+    for (const BroadphaseWorker& worker : workers) statistics.boxes += worker.boxes;
 }
 
-Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const Filter> filters, Executor& executor) {
-    State& s = *state_;
+Result<void> Broadphase::State::too_many_pairs() const {
+    return fail(ErrorCode::budget_exceeded, kNoItem,
+                "broadphase: the bounds of more than " + std::to_string(options.max_pairs) + " pairs meet");
+}
+
+Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<const Filter> filters) {
     if (!filters.empty() && filters.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, filters.size(), "broadphase: filters and boxes differ in number");
     if (boxes.size() >= 0xffffffffu)
         return fail(ErrorCode::out_of_range, boxes.size(), "broadphase: at most 2^32 - 2 boxes");
-    s.statistics = {};
-    s.rejected.clear();
-    std::swap(s.pairs, s.previous);
-    s.pairs.clear();
-    s.workers.resize(std::max<std::size_t>(s.workers.size(), executor.concurrency()));
-    if (!boxes.empty()) {
-        s.origin = middle_of(boxes);
-        s.statistics.rebuilt = s.order.items().size() != boxes.size();
-        if (!s.statistics.rebuilt) {
-            s.refit(boxes, executor);
-            s.statistics.rebuilt = s.leaf_extent > kWornOut * s.leaf_extent_when_sorted;
-        }
-        if (s.statistics.rebuilt) {
-            s.order.sort(boxes);
-            s.refit(boxes, executor);
-            s.leaf_extent_when_sorted = s.leaf_extent;
-        }
-        for (const Worker& worker : s.workers)
-            s.rejected.insert(s.rejected.end(), worker.rejected.begin(), worker.rejected.end());
-        std::sort(s.rejected.begin(), s.rejected.end());
-        if (!s.collect(executor))
-            return fail(ErrorCode::budget_exceeded, kNoItem,
-                        "broadphase: the bounds of more than " + std::to_string(s.options.max_pairs) + " pairs meet");
-        s.sort_pairs(boxes.size(), filters);
-        s.statistics.bound_pairs = s.pairs.size();
-        if (s.options.exact_boxes) s.keep_boxes_that_meet(boxes, executor);
-    }
-    s.statistics.box_pairs = s.pairs.size();
-    s.statistics.rejected = static_cast<std::uint32_t>(s.rejected.size());
-    compare_pairs(s.previous, s.pairs, s.began, s.stayed, s.ended);
     return {};
+}
+
+Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span<const Filter> filters,
+                                           Executor& executor) {
+    statistics = {};
+    rejected.clear();
+    std::swap(pairs, previous);
+    pairs.clear();
+    current = false;
+    workers.resize(std::max<std::size_t>(workers.size(), executor.concurrency()));
+    if (!boxes.empty()) {
+        origin = middle_of(boxes);
+        statistics.rebuilt = order.items().size() != boxes.size();
+        if (!statistics.rebuilt) {
+            refit(boxes, executor);
+            statistics.rebuilt = leaf_extent > kWornOut * leaf_extent_when_sorted;
+        }
+        if (statistics.rebuilt) {
+            order.sort(boxes);
+            refit(boxes, executor);
+            leaf_extent_when_sorted = leaf_extent;
+        }
+        for (const BroadphaseWorker& worker : workers)
+            rejected.insert(rejected.end(), worker.rejected.begin(), worker.rejected.end());
+        std::sort(rejected.begin(), rejected.end());
+        if (!collect(executor)) return too_many_pairs();
+        sort_pairs(boxes.size(), filters);
+        statistics.bound_pairs = pairs.size();
+        keep_pairs_that_meet(boxes, pairs, executor);
+    }
+    statistics.box_pairs = pairs.size();
+    statistics.rejected = static_cast<std::uint32_t>(rejected.size());
+    compare_pairs(previous, pairs, began, stayed, ended);
+    current = order.items().size() == boxes.size();
+    return {};
+}
+
+Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const Filter> filters, Executor& executor) {
+    if (auto checked = state_->check(boxes, filters); !checked) return checked;
+    return state_->update_all(boxes, filters, executor);
+}
+
+Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
+                                      std::span<const Filter> filters, Executor& executor) {
+    State& s = *state_;
+    if (auto checked = s.check(boxes, filters); !checked) return checked;
+    const bool few = moved.size() <= boxes.size() / kFewMovers && s.leaf_extent <= kWornOut * s.leaf_extent_when_sorted;
+    if (!s.current || s.order.items().size() != boxes.size() || !few) return s.update_all(boxes, filters, executor);
+    if (!s.gather_movers(boxes.size(), moved))
+        return fail(ErrorCode::out_of_range, *std::max_element(moved.begin(), moved.end()),
+                    "broadphase: an item in `moved` is no index of a box");
+    return s.update_few(boxes, filters, executor);
 }
 
 }  // namespace crofton::collide

@@ -147,8 +147,4 @@ Distance distance(const Convex& a, const Convex& b) {
     return result;
 }
 
-Distance distance(const Obb& a, const Obb& b) {
-    return distance(convex(a), convex(b));
-}
-
 }  // namespace crofton::collide

@@ -34,6 +34,14 @@ struct AxisVerdicts {
     std::uint32_t separated = 0, unknown = 0;
 };
 
+// Of each axis, by group and lane: the gap along it, which is negative where the boxes overlap, times its length, and
+// the square of that length. Gaps are off by less than 2^-49 of `size`, the sum of all half extents and |offset|₁.
+struct AxisMeasures {
+    alignas(32) double gap[5][4], squared_length[5][4];
+    double size;
+};
+void measure_axes(const PairColumns& pair, AxisMeasures& measures);
+
 // All fifteen axes in double, three or four lanes at a time.
 [[nodiscard]] AxisVerdicts judge_axes(const PairColumns& pair);
 

@@ -60,10 +60,6 @@ Penetration penetration(const Convex& a, const Convex& b) {
     return best;
 }
 
-Penetration penetration(const Obb& a, const Obb& b) {
-    return penetration(convex(a), convex(b));
-}
-
 Penetration penetration(const Plane& half_space, const Convex& body) {
     const double length = glm::length(half_space.normal);
     if (!(length > 0.0)) return {-std::numeric_limits<double>::infinity(), {}};

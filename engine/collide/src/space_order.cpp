@@ -125,6 +125,8 @@ void SpaceOrder::sort(std::span<const Obb> boxes) {
         const std::size_t count = std::min(kChunk, boxes.size() - begin);
         arrange({keyed_.data() + begin, count}, boxes, low, {items_.data() + begin, count});
     }
+    slots_.resize(boxes.size());
+    for (std::uint32_t slot = 0; slot < items_.size(); ++slot) slots_[items_[slot]] = slot;
 }
 
 // Halves ranges along the axis in which their centres spread most, down to a leaf: squarer leaves than the curve's,

@@ -17,6 +17,7 @@ class SpaceOrder {
     // neighbours. Invalid boxes come somewhere.
     void sort(std::span<const Obb> boxes);
     [[nodiscard]] std::span<const std::uint32_t> items() const { return items_; }  // by slot
+    [[nodiscard]] std::span<const std::uint32_t> slots() const { return slots_; }  // by item
 
   private:
     struct Keyed {
@@ -25,7 +26,7 @@ class SpaceOrder {
     static void arrange(std::span<const Keyed> chunk, std::span<const Obb> boxes, const glm::dvec3& origin,
                         std::span<std::uint32_t> items);
 
-    Vector<std::uint32_t> items_;
+    Vector<std::uint32_t> items_, slots_;
     Vector<Keyed> keyed_, other_;
 };
 

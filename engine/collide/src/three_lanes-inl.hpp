@@ -58,6 +58,11 @@ HWY_INLINE Three load3(const float* from) {
     return result;
 }
 
+// To four doubles, aligned, the last of which becomes anything.
+HWY_INLINE void store3(const Three& u, double* to) {
+    for (std::size_t i = 0; i < kParts; ++i) hn::Store(u.part[i], D3(), to + i * kWidth);
+}
+
 template <class Comparison>
 HWY_INLINE std::uint32_t lanes_where(Comparison comparison) {
     std::uint32_t bits = 0;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_mesh.hpp>
 #include <glm/geometric.hpp>
@@ -32,7 +33,7 @@ Crossing crossing(const glm::dvec3& p, const Triangle& t) {
 
 struct Ray {
     glm::dvec3 origin, direction;  // in the mesh's frame
-    double slop;
+    double error_bound;            // of positions carried to the mesh's frame
 };
 
 // Separating axes of a ray and a box: the cross products of the ray with the box's axes, and the ray itself.
@@ -46,20 +47,22 @@ bool may_meet(const Ray& ray, const mesh::MeshNode& node, std::uint32_t lane) {
         for (int i = 0; i < 3; ++i) axis[i] = static_cast<double>(node.axes[k][i][lane]);
         o[k] = glm::dot(axis, offset);
         d[k] = glm::dot(axis, ray.direction);
-        h[k] = static_cast<double>(node.half[k][lane]) + ray.slop;
+        h[k] = static_cast<double>(node.half[k][lane]) + ray.error_bound;
         behind -= h[k] * std::abs(d[k]);
     }
-    if (behind > ray.slop) return false;
+    if (behind > ray.error_bound) return false;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
-        if (std::abs(o[i] * d[j] - o[j] * d[i]) > h[i] * std::abs(d[j]) + h[j] * std::abs(d[i]) + ray.slop)
+        if (std::abs(o[i] * d[j] - o[j] * d[i]) > h[i] * std::abs(d[j]) + h[j] * std::abs(d[i]) + ray.error_bound)
             return false;
     }
     return true;
 }
 
-// Parity of the crossings of p's ray with the posed mesh; on the surface counts as inside.
+// Parity of the crossings of p's ray with the closed pieces of the posed mesh; on their surface counts as inside.
 bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm::dvec3& p) {
+    const std::span<const MeshPiece> pieces = mesh.pieces();
+    if (std::none_of(pieces.begin(), pieces.end(), [](const MeshPiece& piece) { return piece.closed; })) return false;
     const RigidTransform back = inverse(pose);
     const Ray ray{transform(back, p), back.rotation * glm::dvec3(0.0, 0.0, 1.0),
                   2e-6 * (static_cast<double>(mesh.extent()) + glm::length(p) + glm::length(pose.translation))};
@@ -77,6 +80,7 @@ bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm
             }
             const mesh::MeshLeaf& leaf = mesh.leaves()[node.child[lane] & ~mesh::kMeshLeaf];
             for (std::uint32_t i = 0; i < leaf.count; ++i) {
+                if (!pieces[leaf.piece[i]].closed) continue;
                 const Crossing found = crossing(p, triangle_of(leaf, i, pose));
                 if (found == Crossing::touches) return true;
                 inside ^= found == Crossing::crosses;
@@ -94,9 +98,10 @@ bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
 
 Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a) {
     std::size_t of_a = 0, of_b = 0;
-    for (const glm::vec3& p : b.pieces()) of_b += is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(p)));
+    for (const MeshPiece& piece : b.pieces())
+        of_b += is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(piece.vertex)));
     if (of_b == b.pieces().size()) return Containment::b_inside_a;
-    for (const glm::vec3& p : a.pieces()) of_a += is_inside(b, b_to_a, glm::dvec3(p));
+    for (const MeshPiece& piece : a.pieces()) of_a += is_inside(b, b_to_a, glm::dvec3(piece.vertex));
     if (of_a == a.pieces().size()) return Containment::a_inside_b;
     return of_a + of_b > 0 ? Containment::partly : Containment::none;
 }

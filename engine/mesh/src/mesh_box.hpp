@@ -8,6 +8,8 @@
 
 namespace crofton::mesh {
 
+inline constexpr float kMaxMeshCoordinate = 1e12f;  // cubes of differences stay within float
+
 class MeshBoxFitter {
   public:
     // Holds all the points, of which there is one at least, none beyond 1e12. The same bits on every machine.

@@ -124,6 +124,8 @@ void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTrans
 
 namespace {
 
+constexpr double kLeastSquaredDistance = 1e-300;
+
 Nearest towards(const glm::dvec3& from, const glm::dvec3& to, double squared) {
     const glm::dvec3 way = to - from;
     const double length = glm::length(way);
@@ -156,6 +158,7 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
         }
         const double before = best.squared;
         closest_of_triangles(first, second, best);
+        best.squared = std::max(best.squared, kLeastSquaredDistance);  // they do not meet, though by less than rounding
         if (best.squared < before) {
             result = {std::sqrt(best.squared), best.on_a, best.on_b, indices};
             nearest = towards(best.on_a, best.on_b, best.squared);

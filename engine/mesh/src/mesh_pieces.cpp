@@ -7,9 +7,9 @@ namespace crofton::mesh {
 namespace {
 
 // Disjoint sets of vertices, with paths halved on the way (Tarjan, van Leeuwen 1984).
-class Sets {
+class VertexSets {
   public:
-    explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+    explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
     [[nodiscard]] std::uint32_t find(std::uint32_t v) {
         while (parent_[v] != v) {
             parent_[v] = parent_[parent_[v]];
@@ -27,47 +27,154 @@ class Sets {
     Vector<std::uint32_t> parent_;
 };
 
-Vector<std::uint32_t> first_vertices(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, Sets& sets) {
-    Vector<std::uint32_t> first;
-    Vector<std::uint8_t> seen(mesh.positions.size(), 0);
-    for (const std::uint32_t t : triangles) {
-        const std::uint32_t root = sets.find(mesh.indices[3 * std::size_t{t}]);
-        if (seen[root] == 0) first.push_back(mesh.indices[3 * std::size_t{t}]);
-        seen[root] = 1;
-    }
-    return first;
+struct Edge {
+    std::uint32_t low, high;
+    friend auto operator<=>(const Edge&, const Edge&) = default;
+};
+
+Edge edge_of(std::uint32_t a, std::uint32_t b) {
+    return {std::min(a, b), std::max(a, b)};
 }
 
-void unite_equal_positions(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, Sets& sets) {
-    Vector<std::uint32_t> corners;
-    for (const std::uint32_t t : triangles)
-        for (std::size_t v = 0; v < 3; ++v) corners.push_back(mesh.indices[3 * std::size_t{t} + v]);
-    const auto before = [&](std::uint32_t a, std::uint32_t b) {
-        const glm::vec3 &p = mesh.positions[a], &q = mesh.positions[b];
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+// Sorts the edges and keeps one of each that occurs an odd number of times.
+template <class Iterator>
+Iterator keep_odd(Iterator begin, Iterator end) {
+    std::sort(begin, end);
+    Iterator kept = begin;
+    for (Iterator i = begin; i != end; ++i) {
+        if (kept != begin && *(kept - 1) == *i)
+            --kept;
+        else
+            *kept++ = *i;
+    }
+    return kept;
+}
+
+class PieceFinder {
+  public:
+    PieceFinder(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles)
+        : mesh_(mesh), triangles_(triangles), sets_(mesh.positions.size()), lowest_(mesh.positions.size()) {
+        std::iota(lowest_.begin(), lowest_.end(), 0u);
+    }
+
+    MeshPieces find();
+
+  private:
+    [[nodiscard]] const std::uint32_t* corners(std::uint32_t triangle) const {
+        return &mesh_.indices[3 * std::size_t{triangle}];
+    }
+    [[nodiscard]] Vector<Edge> odd_edges() const;
+    [[nodiscard]] bool has_one_piece();
+    void weld(Vector<std::uint32_t> vertices);
+    [[nodiscard]] Vector<std::uint32_t> used_vertices() const;
+    void number_pieces(MeshPieces& pieces);
+
+    const TriangleMesh& mesh_;
+    std::span<const std::uint32_t> triangles_;
+    VertexSets sets_;
+    Vector<std::uint32_t> lowest_;  // by vertex: the lowest of those welded to it
+};
+
+// Edges, by index, of an odd number of triangles. Bucketed by their lower vertex, which leaves few to sort.
+Vector<Edge> PieceFinder::odd_edges() const {
+    Vector<std::uint32_t> end(mesh_.positions.size() + 1, 0);
+    const auto for_each_edge = [&](auto visit) {
+        for (const std::uint32_t t : triangles_)
+            for (std::size_t v = 0; v < 3; ++v) {
+                const Edge edge = edge_of(corners(t)[v], corners(t)[(v + 1) % 3]);
+                if (edge.low != edge.high) visit(edge);
+            }
     };
-    std::sort(corners.begin(), corners.end(), before);
-    for (std::size_t i = 1; i < corners.size(); ++i)
-        if (mesh.positions[corners[i - 1]] == mesh.positions[corners[i]]) sets.unite(corners[i - 1], corners[i]);
+    for_each_edge([&](const Edge& edge) { ++end[edge.low + 1]; });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    Vector<std::uint32_t> high(end.back());
+    for_each_edge([&](const Edge& edge) { high[end[edge.low]++] = edge.high; });
+    Vector<Edge> odd;
+    std::uint32_t begin = 0;
+    for (std::uint32_t low = 0; low < mesh_.positions.size(); ++low) {
+        const auto bucket = high.begin() + begin, bucket_end = high.begin() + end[low];
+        const auto kept = keep_odd(bucket, bucket_end);
+        for (auto h = bucket; h != kept; ++h) odd.push_back({low, *h});
+        begin = end[low];
+    }
+    return odd;
+}
+
+bool PieceFinder::has_one_piece() {
+    const std::uint32_t first = sets_.find(corners(triangles_.front())[0]);
+    return std::all_of(triangles_.begin(), triangles_.end(),
+                       [&](std::uint32_t t) { return sets_.find(corners(t)[0]) == first; });
+}
+
+Vector<std::uint32_t> PieceFinder::used_vertices() const {
+    Vector<std::uint8_t> used(mesh_.positions.size(), 0);
+    for (const std::uint32_t t : triangles_)
+        for (std::size_t v = 0; v < 3; ++v) used[corners(t)[v]] = 1;
+    Vector<std::uint32_t> vertices;
+    for (std::uint32_t v = 0; v < used.size(); ++v)
+        if (used[v] != 0) vertices.push_back(v);
+    return vertices;
+}
+
+void PieceFinder::weld(Vector<std::uint32_t> vertices) {
+    std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const glm::vec3 &p = mesh_.positions[a], &q = mesh_.positions[b];
+        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z != q.z ? p.z < q.z : a < b;
+    });
+    for (std::size_t i = 1; i < vertices.size(); ++i) {
+        if (mesh_.positions[vertices[i - 1]] != mesh_.positions[vertices[i]]) continue;
+        lowest_[vertices[i]] = lowest_[vertices[i - 1]];
+        sets_.unite(vertices[i - 1], vertices[i]);
+    }
+}
+
+void PieceFinder::number_pieces(MeshPieces& pieces) {
+    constexpr std::uint32_t kUnnumbered = ~std::uint32_t{0};
+    Vector<std::uint32_t> number(mesh_.positions.size(), kUnnumbered);
+    pieces.piece.reserve(triangles_.size());
+    for (const std::uint32_t t : triangles_) {
+        const std::uint32_t root = sets_.find(corners(t)[0]);
+        if (number[root] == kUnnumbered) {
+            number[root] = static_cast<std::uint32_t>(pieces.vertex.size());
+            pieces.vertex.push_back(corners(t)[0]);
+        }
+        pieces.piece.push_back(number[root]);
+    }
+    pieces.closed.assign(pieces.vertex.size(), 1);
+}
+
+// Edges that are even by index stay so when vertices are welded; only the odd ones are looked at again.
+MeshPieces PieceFinder::find() {
+    for (const std::uint32_t t : triangles_) {
+        sets_.unite(corners(t)[0], corners(t)[1]);
+        sets_.unite(corners(t)[1], corners(t)[2]);
+    }
+    const Vector<Edge> odd = odd_edges();
+    Vector<std::uint32_t> ends;
+    for (const Edge& edge : odd) ends.insert(ends.end(), {edge.low, edge.high});
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    weld(has_one_piece() ? ends : used_vertices());
+
+    MeshPieces pieces;
+    number_pieces(pieces);
+    Vector<std::uint32_t> piece_of_root(mesh_.positions.size(), 0);
+    for (std::uint32_t p = 0; p < pieces.vertex.size(); ++p) piece_of_root[sets_.find(pieces.vertex[p])] = p;
+    Vector<Edge> welded;
+    for (const Edge& edge : odd)
+        if (const Edge e = edge_of(lowest_[edge.low], lowest_[edge.high]); e.low != e.high) welded.push_back(e);
+    welded.erase(keep_odd(welded.begin(), welded.end()), welded.end());
+    for (const Edge& edge : welded) pieces.closed[piece_of_root[sets_.find(edge.low)]] = 0;
+    for (const std::uint32_t v : ends)
+        if (const std::uint32_t p = piece_of_root[sets_.find(v)]; lowest_[v] != v && pieces.closed[p] != 0)
+            pieces.welds.push_back({v, lowest_[v], p});
+    return pieces;
 }
 
 }  // namespace
 
-Vector<glm::vec3> piece_points(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
-    Sets sets(mesh.positions.size());
-    for (const std::uint32_t t : triangles) {
-        const std::uint32_t* corner = &mesh.indices[3 * std::size_t{t}];
-        sets.unite(corner[0], corner[1]);
-        sets.unite(corner[1], corner[2]);
-    }
-    Vector<std::uint32_t> first = first_vertices(mesh, triangles, sets);
-    if (first.size() > 1) {
-        unite_equal_positions(mesh, triangles, sets);
-        first = first_vertices(mesh, triangles, sets);
-    }
-    Vector<glm::vec3> points;
-    for (const std::uint32_t v : first) points.push_back(mesh.positions[v]);
-    return points;
+MeshPieces find_pieces(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
+    return PieceFinder(mesh, triangles).find();
 }
 
 }  // namespace crofton::mesh

@@ -1,13 +1,25 @@
-// The connected pieces of a mesh.
+// The connected pieces of a mesh, and which of them are closed.
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>
+#include <cstdint>
 #include <span>
 
 namespace crofton::mesh {
 
-// One vertex of each piece that the triangles make, in order of its lowest triangle. Triangles are connected where they
-// share a vertex: by index, or by equal position.
-[[nodiscard]] Vector<glm::vec3> piece_points(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles);
+// A vertex and the lowest one of equal position, where that makes two edges one.
+struct WeldedVertex {
+    std::uint32_t vertex, lowest, piece;
+};
+
+struct MeshPieces {
+    Vector<std::uint32_t> vertex;  // of each piece: one of its lowest triangle; pieces are in the order of these
+    Vector<std::uint8_t> closed;   // of each piece, as MeshPiece says
+    Vector<std::uint32_t> piece;   // of each triangle asked about
+    Vector<WeldedVertex> welds;    // of closed pieces
+};
+
+// Triangles are connected where they share a vertex: by index, or by equal position.
+[[nodiscard]] MeshPieces find_pieces(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles);
 
 }  // namespace crofton::mesh

@@ -4,14 +4,13 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "box_anchors.hpp"
 #include "mesh_box.hpp"
 #include "mesh_pieces.hpp"
 #include "symmetric_eigen.hpp"
 
 namespace crofton::mesh {
 namespace {
-
-constexpr float kMaxMeshCoordinate = 1e12f;  // cubes of differences stay within float
 
 struct Reference {
     glm::vec3 centroid;
@@ -64,6 +63,8 @@ class MeshTreeBuilder {
     Part split(Part& part);
     MeshBox fit(const Range& range);
     std::uint32_t add_leaf(const Range& range);
+    void set_pieces(std::span<const std::uint32_t> triangles);
+    void set_leaf_ranges(std::uint32_t node);
     [[nodiscard]] const glm::vec3& vertex(std::uint32_t triangle, std::size_t v) const {
         return mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + v]];
     }
@@ -74,8 +75,10 @@ class MeshTreeBuilder {
     Vector<Reference> references_;
     Vector<Task> tasks_;
     MeshBoxFitter fitter_;
+    Vector<std::uint32_t> piece_of_;  // by triangle
     Vector<glm::vec3> points_;
-    Vector<std::uint32_t> last_range_;  // by vertex: the last range whose points it was put among
+    Vector<std::uint32_t> point_vertices_;  // indices of points_
+    Vector<std::uint32_t> last_range_;      // by vertex: the last range whose points it was put among
     std::uint32_t range_number_ = 0;
 };
 
@@ -131,25 +134,32 @@ Part MeshTreeBuilder::split(Part& part) {
 MeshBox MeshTreeBuilder::fit(const Range& range) {
     ++range_number_;
     points_.clear();
+    point_vertices_.clear();
     for (std::size_t r = range.begin; r < range.end; ++r)
         for (std::size_t v = 0; v < 3; ++v) {
             const std::uint32_t index = mesh_.indices[3 * std::size_t{references_[r].triangle} + v];
-            if (std::exchange(last_range_[index], range_number_) != range_number_)
-                points_.push_back(mesh_.positions[index]);
+            if (std::exchange(last_range_[index], range_number_) == range_number_) continue;
+            points_.push_back(mesh_.positions[index]);
+            point_vertices_.push_back(index);
         }
     return fitter_.fit(points_, options_.boxes);
 }
 
 std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
     MeshLeaf leaf{};
+    LeafVertices vertices{};
     leaf.count = static_cast<std::uint32_t>(range.size());
     for (std::size_t lane = 0; lane < kMeshLeafWidth; ++lane) {
         const std::uint32_t triangle = references_[range.begin + std::min(lane, range.size() - 1)].triangle;
         leaf.triangle[lane] = triangle;
-        for (std::size_t v = 0; v < 3; ++v)
+        leaf.piece[lane] = piece_of_[triangle];
+        for (std::size_t v = 0; v < 3; ++v) {
+            vertices.vertex[v][lane] = mesh_.indices[3 * std::size_t{triangle} + v];
             for (int i = 0; i < 3; ++i) leaf.vertex[v][i][lane] = vertex(triangle, v)[i];
+        }
     }
     tree_.leaves_.push_back(leaf);
+    if (options_.refittable) tree_.refit_.leaves.push_back(vertices);
     return static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
 }
 
@@ -159,6 +169,7 @@ void MeshTreeBuilder::split_node(const Task& task) {
     for (std::uint32_t i = 0; i < count; ++i)
         while (parts[i].count > 1) parts[count++] = split(parts[i]);
     MeshNode node{};
+    BoxAnchors anchors{};
     node.count = count;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Range& range = parts[lane].range;
@@ -168,15 +179,49 @@ void MeshTreeBuilder::split_node(const Task& task) {
             node.half[k][lane] = box.half[k];
             for (int i = 0; i < 3; ++i) node.axes[k][i][lane] = box.axes[k][i];
         }
+        if (options_.refittable) set_anchors(box, points_, point_vertices_, lane, anchors);
         if (range.size() <= kMeshLeafWidth) {
             node.child[lane] = kMeshLeaf | add_leaf(range);
         } else {
             node.child[lane] = static_cast<std::uint32_t>(tree_.nodes_.size());
             tree_.nodes_.emplace_back();
+            if (options_.refittable) tree_.refit_.nodes.emplace_back();
             tasks_.push_back({range, node.child[lane]});
         }
     }
     tree_.nodes_[task.node] = node;
+    if (options_.refittable) tree_.refit_.nodes[task.node] = anchors;
+}
+
+void MeshTreeBuilder::set_pieces(std::span<const std::uint32_t> triangles) {
+    MeshPieces found = find_pieces(mesh_, triangles);
+    piece_of_.resize(mesh_.triangle_count());
+    for (std::size_t t = 0; t < triangles.size(); ++t) piece_of_[triangles[t]] = found.piece[t];
+    for (std::size_t p = 0; p < found.vertex.size(); ++p)
+        tree_.pieces_.push_back({mesh_.positions[found.vertex[p]], found.closed[p] != 0});
+    if (!options_.refittable) return;
+    for (const WeldedVertex& weld : found.welds) tree_.refit_.welds.push_back({weld.vertex, weld.lowest, weld.piece});
+    tree_.refit_.piece_vertices = std::move(found.vertex);
+    tree_.refit_.piece_closed = std::move(found.closed);
+}
+
+// Leaves are numbered subtree by subtree, so that those below a box are a range.
+void MeshTreeBuilder::set_leaf_ranges(std::uint32_t index) {
+    const MeshNode& node = tree_.nodes_[index];
+    BoxAnchors& anchors = tree_.refit_.nodes[index];
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        const std::uint32_t child = node.child[lane];
+        if (child & kMeshLeaf) {
+            anchors.first_leaf[lane] = child & ~kMeshLeaf;
+            anchors.end_leaf[lane] = anchors.first_leaf[lane] + 1;
+            continue;
+        }
+        set_leaf_ranges(child);
+        const BoxAnchors& below = tree_.refit_.nodes[child];
+        const std::uint32_t count = tree_.nodes_[child].count;
+        anchors.first_leaf[lane] = *std::min_element(below.first_leaf, below.first_leaf + count);
+        anchors.end_leaf[lane] = *std::max_element(below.end_leaf, below.end_leaf + count);
+    }
 }
 
 Result<MeshTree> MeshTreeBuilder::build() {
@@ -191,18 +236,27 @@ Result<MeshTree> MeshTreeBuilder::build() {
     Vector<std::uint32_t> valid;
     valid.reserve(references_.size());
     for (const Reference& reference : references_) valid.push_back(reference.triangle);
-    tree_.pieces_ = piece_points(mesh_, valid);
+    set_pieces(valid);
     const std::size_t leaf_estimate = references_.size() / kMeshLeafWidth + 1;
     tree_.leaves_.reserve(leaf_estimate);
     tree_.nodes_.reserve(leaf_estimate / 4 + 1);
     const Range all{0, references_.size()};
     tree_.root_box_ = fit(all);
     tree_.nodes_.emplace_back();
+    if (options_.refittable) {
+        set_anchors(tree_.root_box_, points_, point_vertices_, 0, tree_.refit_.root);
+        tree_.refit_.nodes.emplace_back();
+        tree_.refit_.vertex_count = mesh_.positions.size();
+    }
     tasks_.push_back({all, 0});
     while (!tasks_.empty()) {
         const Task task = tasks_.back();
         tasks_.pop_back();
         split_node(task);
+    }
+    if (options_.refittable) {
+        set_leaf_ranges(0);
+        tree_.refit_.root.end_leaf[0] = static_cast<std::uint32_t>(tree_.leaves_.size());
     }
     return std::move(tree_);
 }

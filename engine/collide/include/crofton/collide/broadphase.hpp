@@ -22,22 +22,24 @@ struct Filter {
 }
 
 struct BroadphaseOptions {
-    bool exact_boxes = true;  // pairs of boxes that meet; false: pairs whose axis-aligned bounds meet
+    // Pairs of boxes that meet; false: pairs whose axis-aligned bounds meet. Both are decided exactly.
+    bool exact_boxes = true;
     std::size_t max_pairs = std::size_t{1} << 28;  // of bounds; more is an error, not an exhausted memory
 };
 
+// Of one update. After update_moved, counts are of pairs with an item that moved.
 struct BroadphaseStatistics {
-    std::uint64_t bound_pairs =
-        0;  // pairs whose axis-aligned bounds meet and whose filters pass: given to the exact test
-    std::uint64_t box_pairs = 0;     // of those, pairs listed
+    std::uint64_t bound_pairs = 0;   // pairs of bounds that may meet and whose filters pass: given to the exact test
+    std::uint64_t box_pairs = 0;     // pairs listed
     std::uint64_t nodes_tested = 0;  // pairs of leaves of sixteen that were compared
     BatchStatistics boxes;           // how the exact test decided, by group of axes
     std::uint32_t rejected = 0;      // items whose box is invalid
     bool rebuilt = false;            // the order of the items was made anew in this update
 };
 
-// Keeps, between updates, an order of the items in which neighbours in space are neighbours in memory; it is made anew
-// only when motion has worn it out. Answers do not depend on that history.
+// All pairs of boxes that meet, kept from frame to frame. Call update() when most boxes move, update_moved() when few
+// do: its cost follows those. Between updates it keeps an order of the items in which neighbours in space are
+// neighbours in memory; it is made anew only when motion has worn it out. Answers do not depend on that history.
 class Broadphase {
   public:
     explicit Broadphase(const BroadphaseOptions& options = {});
@@ -52,6 +54,12 @@ class Broadphase {
     // boxes or more; max_pairs exceeded (no pairs are kept then).
     Result<void> update(std::span<const Obb> boxes, std::span<const Filter> filters = {},
                         Executor& executor = serial_executor());
+
+    // As update(), where only the boxes and filters of the items in `moved` differ from those of the update before. Any
+    // order; repeated items count once. With many items moved, another number of boxes, or after an error, it looks at
+    // all boxes, as update() does. Errors: those of update(); an item that is no index of `boxes`.
+    Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
+                              std::span<const Filter> filters = {}, Executor& executor = serial_executor());
 
     [[nodiscard]] std::span<const IdPair> pairs() const;  // all, in order
     [[nodiscard]] std::span<const IdPair> began() const;  // in pairs() now, not after the update before

@@ -1,16 +1,19 @@
 // How far apart two convex bodies are, how deep they overlap, where they touch, and when they will.
 #pragma once
 #include <crofton/collide/shapes.hpp>
+#include <cstdint>
 #include <optional>
 
 namespace crofton::collide {
 
 struct Distance {
-    double distance = 0.0;  // 0 when they meet
-    glm::dvec3 on_a{0.0}, on_b{0.0};
+    double distance = 0.0;            // 0 when they meet
+    glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of boxes that meet, one point within 1e-6 of the size of both
 };
-// Gilbert, Johnson, Keerthi 1988, in double: within 1e-9 of the bodies' size.
+// Gilbert, Johnson, Keerthi 1988, in double: within 1e-7 of the bodies' size.
 [[nodiscard]] Distance distance(const Convex& a, const Convex& b);
+// Whether it is 0 is exact: iff intersects(a, b). Else within 1e-12 of the size, which is the sum of the half extents
+// and of the offset of the centres.
 [[nodiscard]] Distance distance(const Obb& a, const Obb& b);
 
 // The shortest motion of b that ends the overlap is depth · axis (axis of unit length, pointing from a to b); negative
@@ -26,21 +29,27 @@ struct Penetration {
 [[nodiscard]] Penetration penetration(const Plane& half_space, const Convex& body);
 
 struct ContactPoint {
-    glm::dvec3 position{0.0};  // midway between the surfaces
-    double depth = 0.0;        // ≥ 0
+    glm::dvec3 position{0.0};  // midway between the surfaces, in the frame of the bodies asked about
+    double depth = 0.0;        // ≥ 0, along the normal
 };
 struct Manifold {
     glm::dvec3 normal{0.0};  // unit, from a to b
-    double depth = 0.0;
-    int count = 0;  // 0 when the bodies do not meet
+    double depth = 0.0;      // of the deepest point
+    int count = 0;           // 0 when the bodies do not meet
     ContactPoint points[8];
 };
+enum class ManifoldPoints : std::uint8_t {
+    reduced,  // at most four: the deepest, and those that keep most of the area
+    all,      // up to eight
+};
 // Where two boxes touch: the incident face clipped against the reference face (Sutherland, Hodgman), or the nearest
-// points of two edges. At most eight points, ordered around the reference face from its first corner: the same input
-// gives the same order. Boxes that meet exactly, but by less than rounding tells, give one point at least.
-[[nodiscard]] Manifold contact_manifold(const Obb& a, const Obb& b);
+// points of two edges. Points come in order around the incident face: the same input gives the same order. Boxes that
+// meet exactly, but by less than rounding tells, give one point at least. Points are off by rounding of the boxes' size
+// and distance, not of their coordinates.
+[[nodiscard]] Manifold contact_manifold(const Obb& a, const Obb& b, ManifoldPoints points = ManifoldPoints::reduced);
 [[nodiscard]] Manifold contact_manifold(const Convex& a, const Convex& b);  // one point, at the deepest place
-[[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box);
+[[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box,
+                                        ManifoldPoints points = ManifoldPoints::reduced);
 
 // Constant linear and angular velocity (rad per unit time) about `pivot`, which moves along.
 struct Motion {

@@ -23,11 +23,25 @@ struct alignas(64) MeshNode {
 struct alignas(64) MeshLeaf {
     float vertex[3][3][kMeshLeafWidth];  // [v][i]: component i of vertex v, exactly the mesh's own
     std::uint32_t triangle[kMeshLeafWidth];
+    std::uint32_t piece[kMeshLeafWidth];  // connected pieces: indices in MeshTree::pieces()
     std::uint32_t count;
 };
 
 struct MeshBox {
     float center[3], axes[3][3], half[3];
+};
+
+// The vertices of a leaf's triangles, by index: where a refit finds their new positions.
+struct LeafVertices {
+    std::uint32_t vertex[3][kMeshLeafWidth];
+};
+
+// How the boxes of a node are turned when vertices move. Three vertices of each box, far apart, span a frame; the box
+// keeps its axes in that frame.
+struct alignas(64) BoxAnchors {
+    float axes[3][3][kMeshNodeWidth];  // [k][i]: component i of axis k, in the frame of the three vertices
+    std::uint32_t vertex[3][kMeshNodeWidth];
+    std::uint32_t first_leaf[kMeshNodeWidth], end_leaf[kMeshNodeWidth];  // the leaves below each box
 };
 
 }  // namespace crofton::mesh

@@ -55,13 +55,14 @@ struct MeshDepth {
 // Of a mesh in several pieces each is asked: all of them inside the other mesh, or `partly`: some but not all.
 enum class Containment : std::uint8_t { none, a_inside_b, b_inside_a, partly };
 
-// Whether one mesh lies within the other without their surfaces meeting; `none` when they meet. The outer mesh is to be
-// closed: the answer is the parity of its surface's crossings with a line, decided exactly.
+// Whether one mesh lies within the other without their surfaces meeting; `none` when they meet. Only closed pieces
+// contain (MeshPiece): the answer is the parity of their crossings with a line, decided exactly.
 [[nodiscard]] Containment containment(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                       MeshStatistics* statistics = nullptr);
 // As above where it is known that the surfaces do not meet.
 [[nodiscard]] Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b,
                                                   const RigidTransform& b_to_a);
+// Whether the point lies within the closed pieces of the mesh, their surfaces included.
 [[nodiscard]] bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point);
 
 struct MeshDistance {
@@ -69,8 +70,8 @@ struct MeshDistance {
     glm::dvec3 on_a{0.0}, on_b{0.0};  // in a's frame
     TrianglePair triangles{};
 };
-// The smallest distance between the surfaces: 0 when they meet (exactly then), else within 1e-12 of the coordinates'
-// size. Gives up, with `distance` infinite, where it is at least `limit`.
+// The smallest distance between the surfaces: 0 when they meet and positive when they do not, exactly so; else within
+// 1e-12 of the coordinates' size. Gives up, with `distance` infinite, where it is at least `limit`.
 [[nodiscard]] MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                     double limit = std::numeric_limits<double>::infinity(),
                                     MeshStatistics* statistics = nullptr);

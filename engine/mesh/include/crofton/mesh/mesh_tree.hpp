@@ -1,5 +1,4 @@
-// A static hierarchy of oriented boxes over the triangles of one mesh, sixteen boxes to a node, for collisions and
-// rays.
+// A hierarchy of oriented boxes over the triangles of one mesh, for collisions and rays. A node has sixteen boxes.
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
@@ -21,6 +20,15 @@ enum class MeshBoxes : std::uint8_t {
 
 struct MeshTreeOptions {
     MeshBoxes boxes = MeshBoxes::small_perimeter;
+    bool refittable = false;  // for meshes that deform: refit() needs 20 bytes more a triangle
+};
+
+// Triangles that share vertices, by index or by equal position, make a connected piece.
+struct MeshPiece {
+    glm::vec3 vertex{0.0f};  // of the piece's lowest triangle
+    // Every edge belongs to an even number of the piece's triangles, where vertices of equal position are one. Then all
+    // lines from a point cross the piece equally often, modulo two: it has an inside. An open piece contains nothing.
+    bool closed = false;
 };
 
 // Every node but the root has at least eight children, and the nodes make no more levels than sixteen-way splits need:
@@ -32,22 +40,46 @@ class MeshTree {
     // triangles or more.
     [[nodiscard]] static Result<MeshTree> build(const TriangleMesh& mesh, const MeshTreeOptions& options = {});
 
+    // Moves the vertices: `positions` are those of the mesh that the tree was built from, in its order. Triangles stay
+    // in their leaves; boxes turn with three of their vertices and are bounded anew. The result depends on the build
+    // and on `positions` alone, not on earlier refits. Boxes widen as neighbours part: rebuild when queries slow down.
+    // A piece whose vertices of equal position part is open from then on. Allocates nothing. Errors, after which the
+    // tree is as before: a tree that is not refittable; another number of positions; a vertex of a triangle that is
+    // NaN, infinite or beyond 1e12.
+    [[nodiscard]] Result<void> refit(std::span<const glm::vec3> positions);
+
     [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }  // the root is the first
     [[nodiscard]] std::span<const MeshLeaf> leaves() const { return leaves_; }
     [[nodiscard]] const MeshBox& root_box() const { return root_box_; }
     [[nodiscard]] std::span<const std::uint32_t> rejected() const { return rejected_; }  // triangles, ascending
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }         // rejected ones not counted
-    // A vertex of each connected piece; triangles are connected where vertices are shared by index or by position.
-    [[nodiscard]] std::span<const glm::vec3> pieces() const { return pieces_; }
+    [[nodiscard]] std::span<const MeshPiece> pieces() const { return pieces_; }          // by their lowest triangles
     // The largest magnitude of any coordinate: rounding errors in the mesh's frame scale with it.
     [[nodiscard]] float extent() const { return extent_; }
 
   private:
     friend class MeshTreeBuilder;
+    // Two vertices of equal position that close a piece.
+    struct Weld {
+        std::uint32_t vertex, other, piece;
+    };
+    // What refit() needs; empty in a tree that is not refittable.
+    struct RefitData {
+        Vector<LeafVertices> leaves;
+        Vector<BoxAnchors> nodes;
+        BoxAnchors root{};
+        Vector<std::uint32_t> piece_vertices;
+        Vector<std::uint8_t> piece_closed;  // at the build
+        Vector<Weld> welds;
+        std::size_t vertex_count = 0;
+    };
+    [[nodiscard]] Result<void> check_positions(std::span<const glm::vec3> positions) const;
+
     Vector<MeshNode> nodes_;
     Vector<MeshLeaf> leaves_;
     Vector<std::uint32_t> rejected_;
-    Vector<glm::vec3> pieces_;
+    Vector<MeshPiece> pieces_;
+    RefitData refit_;
     MeshBox root_box_{};
     std::size_t triangle_count_ = 0;
     float extent_ = 0.0f;

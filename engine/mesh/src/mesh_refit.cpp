@@ -1,0 +1,61 @@
+#include "mesh_refit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <string>
+
+#include "mesh_box.hpp"
+
+namespace crofton::mesh {
+namespace {
+
+bool is_usable(const glm::vec3& p) {
+    return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
+           std::abs(p.z) <= kMaxMeshCoordinate;
+}
+
+}  // namespace
+
+// Vertices of no triangle may be anything: which are used is looked up only when some vertex is bad.
+Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) const {
+    if (refit_.leaves.empty())
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "mesh refit: the tree is not refittable; build it with MeshTreeOptions::refittable");
+    if (positions.size() != refit_.vertex_count)
+        return fail(ErrorCode::invalid_argument, positions.size(),
+                    "mesh refit: the tree was built from " + std::to_string(refit_.vertex_count) + " positions");
+    bool all_usable = true;
+    for (const glm::vec3& p : positions) all_usable &= is_usable(p);
+    if (all_usable) return {};
+    std::uint32_t bad = ~std::uint32_t{0};
+    for (const LeafVertices& leaf : refit_.leaves)
+        for (const auto& corner : leaf.vertex)
+            for (const std::uint32_t v : corner)
+                if (!is_usable(positions[v])) bad = std::min(bad, v);
+    if (bad == ~std::uint32_t{0}) return {};
+    return fail(ErrorCode::non_finite, bad, "mesh refit: vertex " + std::to_string(bad) + " is not within 1e12");
+}
+
+Result<void> MeshTree::refit(std::span<const glm::vec3> positions) {
+    if (auto checked = check_positions(positions); !checked) return checked;
+    const float* const numbers = glm::value_ptr(positions.front());
+    extent_ = move_leaves(numbers, refit_.leaves.data(), leaves_.size(), leaves_.data());
+    for (std::size_t n = 0; n < nodes_.size(); ++n) refit_boxes(numbers, leaves_.data(), refit_.nodes[n], nodes_[n]);
+    MeshNode root{};
+    root.count = 1;
+    refit_boxes(numbers, leaves_.data(), refit_.root, root);
+    for (int k = 0; k < 3; ++k) {
+        root_box_.center[k] = root.center[k][0];
+        root_box_.half[k] = root.half[k][0];
+        for (int i = 0; i < 3; ++i) root_box_.axes[k][i] = root.axes[k][i][0];
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p)
+        pieces_[p] = {positions[refit_.piece_vertices[p]], refit_.piece_closed[p] != 0};
+    for (const Weld& weld : refit_.welds)
+        if (positions[weld.vertex] != positions[weld.other]) pieces_[weld.piece].closed = false;
+    return {};
+}
+
+}  // namespace crofton::mesh
