@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "least_times.hpp"
+#include "simd_target.hpp"
 
 namespace {
 
@@ -49,6 +50,8 @@ class Ratios : public crofton::bench::LeastTimes {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (!crofton::bench::take_target_option(argc, argv)) return 1;
+    std::printf("Instruction set: %s\n", crofton::bench::target_in_use());
     Ratios reporter;
     return crofton::bench::run(argc, argv, reporter);
 }

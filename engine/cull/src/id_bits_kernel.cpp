@@ -1,5 +1,7 @@
 #include "id_bits_kernel.hpp"
 
+#include <cstring>
+
 // Compressing bytes is worth a target of its own.
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
@@ -82,12 +84,11 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
     }
     return count;
 #else
-    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
+    constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
     std::size_t count = 0;
-    for (std::uint32_t l = 0; l < 64; l += static_cast<std::uint32_t>(hn::Lanes(du))) {
-        const auto mask = mask_of(word >> l);
-        hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, base + l)), mask), du, ids + count);
-        count += hn::CountTrue(du, mask);
+    for (std::uint32_t l = 0; l < 64; l += kLanes) {
+        const std::uint32_t bits = static_cast<std::uint32_t>(word >> l) & kAll;
+        count += simd::store_positions(du, bits, base + l, ids + count);
     }
     return count;
 #endif
@@ -102,7 +103,12 @@ HWY_INLINE void mark_word(std::uint64_t word, std::uint64_t marks, MarkBytes val
     const auto all = hn::IfThenElse(marked, hn::Set(d8, values.marked), hn::Set(d8, values.others));
     hn::StoreU(hn::Compress(all, mask), d8, bytes);
 #else
-    for (; word; word &= word - 1) *bytes++ = marks & word & (~word + 1) ? values.marked : values.others;
+    // Few are marked. Room for a word's length is kept.
+    std::memset(bytes, values.others, 64);
+    for (std::uint64_t rest = word & marks; rest; rest &= rest - 1) {
+        const std::uint64_t below = (rest & (~rest + 1)) - 1;
+        bytes[hwy::PopCount(word & below)] = values.marked;
+    }
 #endif
 }
 

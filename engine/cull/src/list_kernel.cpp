@@ -23,7 +23,9 @@ template <class Record>
 class ChunkQuery {
   public:
     ChunkQuery(const ListKernelInput<Record>& input, ListKernelOutput& output)
-        : in_(input), out_(output), words_((input.count + 63) / 64), rows_(row_planes(*input.view, *input.chunk)) {}
+        : in_(input), out_(output), words_((input.count + 63) / 64) {
+        set_row_planes(*input.view, *input.chunk, rows_);
+    }
 
     void run() {
         out_.undecided_count = out_.settled_count = 0;

@@ -2,6 +2,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <cstring>
 
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
@@ -14,6 +15,17 @@
 
 #include "open_records-inl.hpp"
 #include "row_tests-inl.hpp"
+
+#if HWY_ONCE
+namespace crofton::cull {
+
+// A function of its own: where the compiler knows that `count` is small it would use `rep movs`.
+HWY_NOINLINE void copy_masks(const std::uint32_t* from, std::size_t count, std::uint32_t* to) {
+    std::memcpy(to, from, count * sizeof(*to));
+}
+
+}  // namespace crofton::cull
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
@@ -48,9 +60,9 @@ class ChunkViews {
             }
             alignas(64) std::uint32_t last[64], layers[64];
             std::fill_n(layers, 64, ~0u);
-            if (in_.layers) std::copy_n(in_.layers + 64 * w, left, layers);
+            if (in_.layers) copy_masks(in_.layers + 64 * w, left, layers);
             test_rows<true>(w, last, layers);
-            std::copy_n(last, left, masks_ + 64 * w);
+            copy_masks(last, left, masks_ + 64 * w);
             for (std::size_t n = 0; n < asked_count_; ++n) asked_[n].open[w] &= ~std::uint64_t{0} >> (64 - left);
         }
         // One view's records are on their way while another's are tested.
@@ -71,27 +83,29 @@ class ChunkViews {
     void plan() {
         std::uint32_t useless = 0;
         for_each_bit(in_.view_bits, [&](unsigned v) {
-            const RowPlanes planes = row_planes(in_.views[v], *in_.chunk);
+            const RowPlanes& planes = next(v).planes;
             if (planes.outside) return;
             if (planes.useless)
                 useless |= 1u << v;
             else if (planes.planes != 0)
-                ask(v, planes);
+                ++asked_count_;
             if (planes.useless || planes.planes == 0) whole_[whole_count_++] = {1u << v, in_.views[v].layer_mask};
         });
         rows_count_ = asked_count_;
         for_each_bit(useless, [&](unsigned v) {
-            ask(v, row_planes(in_.views[v], *in_.chunk));
-            std::fill_n(asked_[asked_count_ - 1].open, words_, ~std::uint64_t{0});
+            std::fill_n(next(v).open, words_, ~std::uint64_t{0});
+            ++asked_count_;
         });
     }
 
-    void ask(unsigned v, const RowPlanes& planes) {
-        RowView& asked = asked_[asked_count_++];
-        asked.planes = planes;
+    // Fills the first free place with view v.
+    RowView& next(unsigned v) {
+        RowView& asked = asked_[asked_count_];
+        set_row_planes(in_.views[v], *in_.chunk, asked.planes);
         asked.view = v;
         asked.bit = 1u << v;
         asked.layer_mask = in_.views[v].layer_mask;
+        return asked;
     }
 
     // Rows, and masks, which are only written, some words ahead. May lie beyond the end.

@@ -29,6 +29,8 @@ struct ListViewsInput {
     void* context;
 };
 
+void copy_masks(const std::uint32_t* from, std::size_t count, std::uint32_t* to);
+
 // Bit v of masks[i]: view v sees bound i, and they share a layer. `costs`, by view, are added to.
 void run_list_views_kernel(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs);
 void run_list_views_kernel(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs);

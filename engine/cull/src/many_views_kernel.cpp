@@ -187,8 +187,7 @@ class ManyWalk {
             whole |= bits_of(hn::RebindMask(DF(), only)) << l;
             hn::Store(seen, du, views + l);
             hn::Store(hn::IfThenElseZero(open, seen), du, out_.whole + first + l);
-            hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, first + l)), open), du, out_.listed + listed);
-            listed += hn::CountTrue(du, open);
+            listed += simd::compress_store(du, hn::Add(lanes, hn::Set(du, first + l)), open, out_.listed + listed);
         }
         if (uniform && is_full(first)) {
             for (std::uint32_t leaf = 0; leaf < 16; ++leaf) copy_leaf(first + leaf, same, std::size_t{16} * leaf);
@@ -252,10 +251,9 @@ class ManyWalk {
                 mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(du, sees), hn::Set(du, 1u << v)));
             });
             const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, count - l));
-            hn::StoreU(hn::Compress(hn::Load(du, in_.slot_items + std::size_t{id} * boxtree::kWidth + l), seen), du,
-                       out_.ids + out_.count);
-            store_masks(hn::Compress(mask, seen), out_.count);
-            out_.count += hn::CountTrue(du, seen);
+            const VU items = hn::Load(du, in_.slot_items + std::size_t{id} * boxtree::kWidth + l);
+            store_masks(simd::compress(du, mask, seen), out_.count);
+            out_.count += simd::compress_store(du, items, seen, out_.ids + out_.count);
         }
     }
 

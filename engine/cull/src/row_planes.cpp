@@ -15,8 +15,10 @@ constexpr double kMaxSlack = 1 << 26;
 
 }  // namespace
 
-RowPlanes row_planes(const KernelView& view, const ListChunk& chunk) {
-    RowPlanes result;
+void set_row_planes(const KernelView& view, const ListChunk& chunk, RowPlanes& result) {
+    result.count = result.planes = 0;
+    result.slack = 0;
+    result.outside = result.useless = false;
     const LocalOrigin at = local_origin(view, chunk.origin, 0.0f);
     const double per_quantum = kScale / chunk.quantum;
     double lowest[KernelView::kMaxPlanes], highest[KernelView::kMaxPlanes], largest_slack = 0.0;
@@ -44,7 +46,7 @@ RowPlanes row_planes(const KernelView& view, const ListChunk& chunk) {
     result.useless = !(largest_slack < kMaxSlack);
     if (result.useless) {
         result.planes = (1u << view.plane_count) - 1;
-        return result;
+        return;
     }
     result.slack = static_cast<std::int32_t>(std::ceil(largest_slack));
     const bool bounded = chunk.largest_radius != kUnboundedRadius;
@@ -58,7 +60,6 @@ RowPlanes row_planes(const KernelView& view, const ListChunk& chunk) {
         result.offset[n] = result.offset[i];
         result.planes |= 1u << i;
     }
-    return result;
 }
 
 }  // namespace crofton::cull

@@ -15,13 +15,14 @@ struct RowPlanes {
     std::uint32_t normal_xy[KernelView::kMaxPlanes];  // as RowBlock::xy
     std::uint32_t normal_z[KernelView::kMaxPlanes];   // upper half 0
     std::int32_t offset[KernelView::kMaxPlanes];
-    std::uint32_t count = 0;
-    std::int32_t slack = 0;    // the largest of the planes
-    std::uint32_t planes = 0;  // those above as bits of the view's: all but those that the whole chunk is inside of
-    bool outside = false;      // the whole chunk, of one plane
-    bool useless = false;      // the integers are too coarse here to say anything
+    std::uint32_t count;
+    std::int32_t slack;    // the largest of the planes
+    std::uint32_t planes;  // those above as bits of the view's: all but those that the whole chunk is inside of
+    bool outside;          // the whole chunk, of one plane
+    bool useless;          // the integers are too coarse here to say anything
 };
 
-[[nodiscard]] RowPlanes row_planes(const KernelView& view, const ListChunk& chunk);
+// Writes to the caller's struct, which is too large to be copied.
+void set_row_planes(const KernelView& view, const ListChunk& chunk, RowPlanes& planes);
 
 }  // namespace crofton::cull

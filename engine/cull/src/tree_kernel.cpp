@@ -62,9 +62,8 @@ class Walk {
 
         HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
             const DU du;
-            hn::StoreU(hn::Compress(which, mask), du, children + count);
-            hn::StoreU(hn::Compress(their_planes, mask), du, planes + count);
-            count += hn::CountTrue(du, mask);
+            simd::compress_store(du, which, mask, children + count);
+            count += simd::compress_store(du, their_planes, mask, planes + count);
         }
         HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
             children[count] = child;
@@ -137,8 +136,7 @@ class Walk {
             const VU seen = hn::And(hn::Load(du, node.layers_all + l), hn::Set(du, in_.view->layer_mask));
             whole = hn::And(whole, hn::Ne(seen, zero));
         }
-        hn::StoreU(hn::Compress(children, whole), du, whole_ + whole_count_);
-        whole_count_ += hn::CountTrue(du, whole);
+        whole_count_ += simd::compress_store(du, children, whole, whole_ + whole_count_);
         const auto open = hn::AndNot(whole, lanes);
         const VU leaves = hn::AndNot(hn::Set(du, boxtree::kLeafBit), children);
         auto of_leaves = open;
@@ -217,9 +215,7 @@ class Walk {
     template <class V>
     static HWY_INLINE void append(const V& values, MF mask, std::uint32_t* list, std::size_t& count) {
         const DU du;
-        const auto bits = hn::RebindMask(du, mask);
-        hn::StoreU(hn::Compress(values, bits), du, list + count);
-        count += hn::CountTrue(du, bits);
+        count += simd::compress_store(du, values, hn::RebindMask(du, mask), list + count);
     }
 
     HWY_INLINE void emit(boxtree::LeafId id, std::size_t l, const BoxTest& test) {
