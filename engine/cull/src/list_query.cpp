@@ -1,6 +1,5 @@
 // Queries of lists: chunks through the kernels, and what those leave undecided.
 #include <algorithm>
-#include <cmath>
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <mutex>
@@ -30,11 +29,7 @@ struct ListQuery {
                 mode == Mode::exact};
             run_list_kernel(input, output);
         } else {
-            output.settled_count = output.improper = 0;
-            output.open = output.undecided_count = count;
-            for (std::size_t i = 0; i < count; ++i) output.undecided[i] = static_cast<std::uint32_t>(i);
-            std::fill_n(output.visible, (count + 63) / 64, 0);
-            std::fill_n(output.inside, (count + 63) / 64, 0);
+            leave_all_undecided(count, output);
         }
         Statistics statistics;
         if (kCountStatistics) {
@@ -67,14 +62,6 @@ struct ListQuery {
     }
 };
 
-// What vectors can take. Without planes nothing would tell invalid bounds from others; beyond 1e32 their slack would
-// not.
-bool takes_vectors(const Frustum& frustum) {
-    for (const Plane& plane : frustum.view())
-        if (!(std::fabs(plane.offset) <= 1e32)) return false;
-    return frustum.plane_count > 0 && is_usable(frustum) && has_unit_normals(frustum);
-}
-
 }  // namespace
 
 template <class Bound>
@@ -87,7 +74,7 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
     const bool usable = is_usable(view.frustum), vectors = takes_vectors(view.frustum);
     const KernelView kernel_view = kernel_view_of(view);
     const ListQuery<Bound> query{set, bounds, mode};
-    executor.parallel_for(set.chunks().size(), 2, [&](std::size_t begin, std::size_t end, unsigned) {
+    const auto ask = [&](std::size_t begin, std::size_t end, unsigned) {
         ListKernelOutput output;
         for (std::size_t c = begin; c < end; ++c) {
             verdicts.by_chunk[c] = query.run(c, view, kernel_view, usable, vectors, output);
@@ -95,7 +82,11 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
             std::copy_n(output.visible, words, verdicts.visible.data() + word);
             std::copy_n(output.inside, words, verdicts.inside.data() + word);
         }
-    });
+    };
+    if (set.chunks().size() == 1)
+        ask(0, 1, 0);
+    else
+        executor.parallel_for(set.chunks().size(), 2, ask);
     verdicts.statistics = {};
     if (!kCountStatistics) return;
     for (const Statistics& chunk : verdicts.by_chunk) verdicts.statistics += chunk;

@@ -39,10 +39,10 @@ struct OpenCounts {
 
 // One view's questions. Tells `sink` by outside(i), inside(i) and undecided(i) what the records know; the others are
 // certainly straddling.
-template <class Record, class Sink>
+template <class Record, class Sink, class Records = const Record*>
 class OpenRecords {
   public:
-    HWY_INLINE OpenRecords(const KernelView& view, const ListChunk& chunk, const Record* records, std::uint32_t planes,
+    HWY_INLINE OpenRecords(const KernelView& view, const ListChunk& chunk, Records records, std::uint32_t planes,
                            bool exact, Sink& sink)
         : view_(view), records_(records), planes_(planes), exact_(exact), sink_(sink) {
         const LocalOrigin at = local_origin(view, chunk.origin, chunk.reach);
@@ -108,7 +108,7 @@ class OpenRecords {
     }
 
     const KernelView& view_;
-    const Record* records_;
+    Records records_;  // records_[i] is bound i's
     std::uint32_t planes_;
     bool exact_;
     Sink& sink_;

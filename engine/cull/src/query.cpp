@@ -2,17 +2,21 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "block_planes.hpp"
 #include "box_constraints.hpp"
+#include "direct_kernel.hpp"
 #include "id_bits_kernel.hpp"
 
 namespace crofton::cull {
 namespace {
 
 // Vector stores run past the end of what they mean to write.
-constexpr std::size_t kPadding = boxtree::kWidth;
+constexpr std::size_t kPadding = boxtree::kWidth, kListPadding = 64;
 // Below this a query is over before another thread has woken.
 constexpr std::size_t kParallelItems = 65536;
 // Beside an item's id, which is below 2^30.
@@ -26,7 +30,7 @@ void grow(Vector<T>& buffer, std::size_t size) {
 }  // namespace
 
 KernelView kernel_view_of(const View& view) {
-    KernelView result{};
+    KernelView result;  // planes beyond the last are not read
     for (int j = 0; j < 3; ++j) result.origin[j] = view.frustum.origin[j];
     result.plane_count = view.frustum.plane_count;
     result.layer_mask = view.layer_mask;
@@ -37,13 +41,31 @@ KernelView kernel_view_of(const View& view) {
             result.planes[i].normal_f[j] = static_cast<float>(plane.normal[j]);
         }
         result.planes[i].offset = plane.offset;
+        // To the nearest, without the C library's function: a view is set up anew for every query.
         int n[3];
-        for (int j = 0; j < 3; ++j) n[j] = static_cast<int>(std::lround(plane.normal[j] * 0x1p14));
+        for (int j = 0; j < 3; ++j) {
+            const double scaled = plane.normal[j] * 0x1p14;
+            n[j] = std::fabs(scaled) < 0x1p16 ? static_cast<int>(scaled + std::copysign(0.5, scaled)) : 0;
+        }
         result.pair_planes[i] = {boxtree::pair_of(n[0], n[1]), boxtree::pair_of(n[2], 0),
                                  boxtree::pair_of(std::abs(n[0]), std::abs(n[1])), boxtree::pair_of(0, std::abs(n[2]))};
         result.planes[i].length_f = static_cast<float>(glm::length(plane.normal));
     }
     return result;
+}
+
+bool takes_vectors(const Frustum& frustum) {
+    for (const Plane& plane : frustum.view())
+        if (!(std::fabs(plane.offset) <= 1e32)) return false;
+    return frustum.plane_count > 0 && is_usable(frustum) && has_unit_normals(frustum);
+}
+
+void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
+    output.settled_count = output.improper = 0;
+    output.open = output.undecided_count = count;
+    for (std::size_t i = 0; i < count; ++i) output.undecided[i] = static_cast<std::uint32_t>(i);
+    std::fill_n(output.visible, (count + 63) / 64, 0);
+    std::fill_n(output.inside, (count + 63) / 64, 0);
 }
 
 // A large tree is asked for subtree by subtree, two levels down, whether they are shared among threads or not: so the
@@ -67,16 +89,89 @@ void Query::start(std::size_t items) {
 }
 
 void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks) {
-    start(boxes.size());
-    std::size_t inside = 0, straddling = 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (!layer_masks.empty() && !(layer_masks[i] & view_.layer_mask)) continue;
-        if (kCountStatistics) ++visible_.statistics_.boxes_tested;
-        const Verdict verdict = classify(view_.frustum, boxes[i], options_.mode);
-        if (verdict == Verdict::inside) visible_.ids_[inside++] = static_cast<ItemId>(i);
-        if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = static_cast<ItemId>(i);
+    visible_.statistics_ = {};
+    const std::size_t words = (boxes.size() + 63) / 64;
+    grow(visible_.bits_, 2 * words);
+    std::uint64_t *const seen = visible_.bits_.data(), *const marked = seen + words;
+    const glm::dvec3 origin = glm::abs(view_.frustum.origin);
+    const bool vectors = takes_vectors(view_.frustum) && std::max({origin.x, origin.y, origin.z}) <= kFarthestOrigin;
+    const KernelView view = kernel_view_of(view_);
+    ListKernelOutput output;
+    for (std::size_t first = 0; first < boxes.size(); first += kChunk) {
+        const std::size_t count = std::min(kChunk, boxes.size() - first), chunk_words = (count + 63) / 64;
+        if (vectors)
+            run_direct_kernel(
+                {reinterpret_cast<const unsigned char*>(&boxes[first]), count, &view, options_.mode == Mode::exact},
+                output);
+        else
+            leave_all_undecided(count, output);
+        decide(boxes.subspan(first, count), output);
+        for (std::size_t w = 0; w < chunk_words; ++w) {
+            std::uint64_t visible = output.visible[w];
+            if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
+            seen[first / 64 + w] = visible;
+            marked[first / 64 + w] = visible & ~output.inside[w];
+        }
     }
-    finish(inside, straddling, boxes.size());
+    finish(seen, marked, words, boxes.size());
+}
+
+// Which of the first 64 layer masks share a layer with the view.
+std::uint64_t Query::layer_bits(std::span<const std::uint32_t> layer_masks) const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(64, layer_masks.size()); ++i)
+        bits |= std::uint64_t{(layer_masks[i] & view_.layer_mask) != 0} << i;
+    return bits;
+}
+
+// What the kernel left of these boxes, and their statistics.
+void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
+    std::size_t rejected = 0;
+    for (std::size_t n = 0; n < output.undecided_count; ++n) {
+        const std::uint32_t i = output.undecided[n];
+        const Verdict verdict = classify(view_.frustum, boxes[i], options_.mode);
+        const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+        output.visible[i / 64] &= ~bit;
+        output.inside[i / 64] &= ~bit;
+        if (verdict != Verdict::outside) output.visible[i / 64] |= bit;
+        if (verdict == Verdict::inside) output.inside[i / 64] |= bit;
+        rejected += kCountStatistics && options_.mode == Mode::exact && verdict == Verdict::outside &&
+                    classify(view_.frustum, boxes[i], Mode::conservative) != Verdict::outside;
+    }
+    if (!kCountStatistics) return;
+    visible_.statistics_.boxes_tested += boxes.size();
+    visible_.statistics_.exact_tests += output.settled_count + output.undecided_count;
+    visible_.statistics_.improper += output.improper + rejected;
+}
+
+// The ids of the bits in `seen`; those in `marked` straddle.
+void Query::finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items) {
+    grow(visible_.ids_, items + kListPadding);
+    std::size_t size = 0, straddling = 0;
+    for (std::size_t w = 0; w < words; ++w) straddling += static_cast<std::size_t>(std::popcount(marked[w]));
+    if (options_.order == Order::ascending) {
+        grow(visible_.verdicts_, items + 64);
+        size = list_marked(seen, marked, words);
+    } else {
+        grow(visible_.straddling_, items + kListPadding);
+        // All that are seen, then those that straddle taken out: what is left is inside, in ascending order.
+        Vector<std::uint64_t>& bits = visible_.bits_;
+        for (std::size_t w = 0; w < words; ++w) bits[w] &= ~marked[w];
+        size = list_bits_kernel(bits.data(), words, visible_.ids_.data());
+        size += list_bits_kernel(marked, words, visible_.ids_.data() + size);
+        visible_.verdicts_.clear();
+    }
+    visible_.size_ = size;
+    visible_.inside_ = size - straddling;
+    if (kCountStatistics) visible_.statistics_.straddling = straddling;
+}
+
+std::size_t Query::list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words) {
+    constexpr MarkBytes kBytes{static_cast<std::uint8_t>(Verdict::straddling),
+                               static_cast<std::uint8_t>(Verdict::inside)};
+    static_assert(sizeof(Verdict) == 1);
+    return list_marked_bits_kernel(seen, marked, words, kBytes, visible_.ids_.data(),
+                                   reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data()));
 }
 
 void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
@@ -245,11 +340,7 @@ void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) 
     mark_ids_kernel(visible_.straddling_.data(), straddling, marked);
     std::copy_n(marked, words, seen);
     mark_ids_kernel(visible_.ids_.data(), inside, seen);
-    constexpr MarkBytes kBytes{static_cast<std::uint8_t>(Verdict::straddling),
-                               static_cast<std::uint8_t>(Verdict::inside)};
-    static_assert(sizeof(Verdict) == 1);
-    list_marked_bits_kernel(seen, marked, words, kBytes, visible_.ids_.data(),
-                            reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data()));
+    list_marked(seen, marked, words);
 }
 
 }  // namespace crofton::cull

@@ -3,11 +3,19 @@
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 
+#include "list_kernel.hpp"
 #include "tree_kernel.hpp"
 
 namespace crofton::cull {
 
 [[nodiscard]] KernelView kernel_view_of(const View& view);
+
+// Whether the kernels can take this frustum. Without planes nothing would tell invalid bounds from others; beyond 1e32
+// the offsets' error bounds would not.
+[[nodiscard]] bool takes_vectors(const Frustum& frustum);
+
+// What a kernel would answer that decides nothing.
+void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 
 class Query {
   public:
@@ -37,6 +45,10 @@ class Query {
                        std::size_t& count);
     void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
+    [[nodiscard]] std::uint64_t layer_bits(std::span<const std::uint32_t> layer_masks) const;
+    void decide(std::span<const Obb> boxes, ListKernelOutput& output);
+    void finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items);
+    std::size_t list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words);
     void sort(std::size_t inside, std::size_t straddling, std::size_t items);
 
     const View& view_;
