@@ -11,7 +11,7 @@ using namespace crofton;
 using bench::boxes_of, bench::report;
 
 // Every box against the view; `ids` lists the visible ones besides.
-void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
+void flat_cull(benchmark::State& state, cull::CullMode mode, bool ids) {
     const auto& boxes = boxes_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes, 0.2);
     cull::BoxSet set;
@@ -28,9 +28,9 @@ void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
     report(state, visible);
     state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
 }
-BENCHMARK_CAPTURE(flat_cull, conservative, cull::Mode::conservative, false)->Arg(10000)->Arg(1000000);
-BENCHMARK_CAPTURE(flat_cull, exact, cull::Mode::exact, false)->Arg(10000)->Arg(1000000);
-BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::Mode::exact, true)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, conservative, cull::CullMode::conservative, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact, cull::CullMode::exact, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::CullMode::exact, true)->Arg(10000)->Arg(1000000);
 
 // Every fifth bit of a million, as ids.
 void list_ids(benchmark::State& state) {
@@ -72,7 +72,7 @@ void few_boxes_tree(benchmark::State& state) {
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+        cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
         benchmark::DoNotOptimize(visible.ids().data());
     }
     report(state, visible.size());

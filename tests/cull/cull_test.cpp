@@ -65,8 +65,8 @@ TEST_SUITE("cull/cull") {
                     Camera camera = random.camera();
                     camera.far = camera.near + random.number(1.0, 60.0);
                     const cull::View view{*frustum_of(camera), trial % 3 ? ~0u : 5u};
-                    cull::Options options;
-                    options.mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
+                    cull::CullOptions options;
+                    options.mode = trial % 2 ? cull::CullMode::exact : cull::CullMode::conservative;
                     std::vector<cull::ItemId> ids;
                     std::vector<Verdict> verdicts;
                     for (std::size_t i = 0; i < count; ++i) {
@@ -81,7 +81,7 @@ TEST_SUITE("cull/cull") {
                         CHECK(std::ranges::equal(visible->ids(), ids));
                         CHECK(std::ranges::equal(visible->verdicts(), verdicts));
                     }
-                    options.order = cull::Order::tree;
+                    options.order = cull::ResultOrder::tree;
                     cull::find_visible(*tree, view, from_tree, options);
                     std::vector<cull::ItemId> sorted(from_tree.ids().begin(), from_tree.ids().end());
                     std::ranges::sort(sorted);
@@ -148,7 +148,7 @@ TEST_SUITE("cull/cull") {
                             break;
                     }
                 }
-                for (const cull::Mode mode : {cull::Mode::exact, cull::Mode::conservative}) {
+                for (const cull::CullMode mode : {cull::CullMode::exact, cull::CullMode::conservative}) {
                     std::vector<cull::ItemId> ids, inside, straddling;
                     std::vector<Verdict> verdicts;
                     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -167,7 +167,7 @@ TEST_SUITE("cull/cull") {
                         CHECK(std::ranges::equal(visible.ids(), ids));
                         CHECK(std::ranges::equal(visible.verdicts(), verdicts));
                         CHECK(visible.inside_count() == ids.size() - straddling.size());
-                        cull::find_visible(boxes, layers, view, visible, {mode, cull::Order::tree});
+                        cull::find_visible(boxes, layers, view, visible, {mode, cull::ResultOrder::tree});
                         CHECK(std::ranges::equal(visible.ids(), inside));
                         CHECK(visible.verdicts().empty());
                     }
@@ -189,7 +189,7 @@ TEST_SUITE("cull/cull") {
                 hwy::SetSupportedTargetsForTest(rest & -rest);
                 cull::VisibleSet sorted, unsorted;
                 cull::find_visible(tree, view, sorted);
-                cull::find_visible(tree, view, unsorted, {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(tree, view, unsorted, {cull::CullMode::exact, cull::ResultOrder::tree});
                 std::vector<std::pair<cull::ItemId, Verdict>> expected;
                 for (std::size_t i = 0; i < unsorted.size(); ++i)
                     expected.emplace_back(unsorted.ids()[i],
@@ -249,7 +249,7 @@ TEST_SUITE("cull/cull") {
                     ids.push_back(static_cast<cull::ItemId>(i));
             cull::find_visible(tree, view, visible);
             CHECK(std::ranges::equal(visible.ids(), ids));
-            cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+            cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
             sorted.assign(visible.ids().begin(), visible.ids().end());
             std::ranges::sort(sorted);
             CHECK(sorted == ids);

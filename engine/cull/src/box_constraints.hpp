@@ -116,8 +116,8 @@ template <class Box>
 [[nodiscard]] bool has_unit_normals(const Frustum& frustum);
 
 // classify() for numbers that are known to be usable.
-[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Obb& box, Mode mode);
-[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Aabb& box, Mode mode);
-[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Sphere& sphere, Mode mode);
+[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Obb& box, CullMode mode);
+[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Aabb& box, CullMode mode);
+[[nodiscard]] Verdict classify_usable(const Frustum& frustum, const Sphere& sphere, CullMode mode);
 
 }  // namespace crofton::cull

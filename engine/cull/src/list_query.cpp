@@ -17,7 +17,7 @@ template <class Bound>
 struct ListQuery {
     const BoundSet<Bound>& set;
     std::span<const Bound> bounds;
-    Mode mode;
+    CullMode mode;
 
     // Verdicts of chunk c, and what they cost.
     Statistics run(std::size_t c, const View& view, const KernelView& kernel_view, bool usable, bool vectors,
@@ -26,7 +26,7 @@ struct ListQuery {
         if (vectors) {
             const ListKernelInput<typename BoundSet<Bound>::Record> input{
                 &set.rows()[first / 16], &set.records()[first], &set.chunks()[c], &kernel_view, count,
-                mode == Mode::exact};
+                mode == CullMode::exact};
             run_list_kernel(input, output);
         } else {
             leave_all_undecided(count, output);
@@ -56,8 +56,8 @@ struct ListQuery {
             usable && is_usable(bound) ? classify_usable(view.frustum, bound, mode) : Verdict::straddling;
         if (!kCountStatistics || verdict == Verdict::straddling) return verdict;
         --statistics.straddling;
-        statistics.improper += mode == Mode::exact && verdict == Verdict::outside &&
-                               classify_usable(view.frustum, bound, Mode::conservative) != Verdict::outside;
+        statistics.improper += mode == CullMode::exact && verdict == Verdict::outside &&
+                               classify_usable(view.frustum, bound, CullMode::conservative) != Verdict::outside;
         return verdict;
     }
 };
@@ -66,7 +66,7 @@ struct ListQuery {
 
 template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
-                  VerdictBits& verdicts, Mode mode, Executor& executor) {
+                  VerdictBits& verdicts, CullMode mode, Executor& executor) {
     CROFTON_ASSERT(bounds.size() == set.size(), "cull needs the bounds that the set was given");
     verdicts.visible.resize((set.size() + 63) / 64);
     verdicts.inside.resize((set.size() + 63) / 64);
@@ -122,7 +122,7 @@ class ListViews {
                                                                      kernel_views_,
                                                                      vectors_,
                                                                      count,
-                                                                     query_.mode == Mode::exact,
+                                                                     query_.mode == CullMode::exact,
                                                                      set.size() > kCachedList,
                                                                      layers,
                                                                      Chunk::decide,
@@ -176,7 +176,7 @@ class ListViews {
 template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
                   std::span<const std::uint32_t> layer_masks, std::span<const View> views,
-                  std::span<std::uint32_t> view_masks, Mode mode, Executor& executor,
+                  std::span<std::uint32_t> view_masks, CullMode mode, Executor& executor,
                   std::span<Statistics> statistics) {
     CROFTON_ASSERT(bounds.size() == set.size(), "cull needs the bounds that the set was given");
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
@@ -200,12 +200,12 @@ std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids
     return list_bits_kernel(bits.data(), bits.size(), ids.data());
 }
 
-#define CROFTON_CULL_LIST_QUERIES(Bound)                                                                              \
-    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&,     \
-                               VerdictBits&, Mode, Executor&);                                                        \
-    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,                  \
-                               std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>, Mode, \
-                               Executor&, std::span<Statistics>);
+#define CROFTON_CULL_LIST_QUERIES(Bound)                                                                          \
+    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&, \
+                               VerdictBits&, CullMode, Executor&);                                                \
+    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,              \
+                               std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>,   \
+                               CullMode, Executor&, std::span<Statistics>);
 CROFTON_CULL_LIST_QUERIES(Obb)
 CROFTON_CULL_LIST_QUERIES(Aabb)
 CROFTON_CULL_LIST_QUERIES(Sphere)

@@ -13,7 +13,7 @@ namespace crofton::cull {
 
 class ManyViewsQuery {
   public:
-    ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, Mode mode)
+    ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode)
         : tree_(tree), views_(views), mode_(mode) {}
 
     void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
@@ -57,7 +57,7 @@ class ManyViewsQuery {
                                    static_cast<std::uint32_t>(tree_.leaves().size()),
                                    kernel_views,
                                    static_cast<std::uint32_t>(views_.size()),
-                                   mode_ == Mode::exact,
+                                   mode_ == CullMode::exact,
                                    decide,
                                    this};
         ManyViewsOutput output{};
@@ -121,16 +121,16 @@ class ManyViewsQuery {
 
     const boxtree::BoxTree& tree_;
     std::span<const View> views_;
-    Mode mode_;
+    CullMode mode_;
 };
 
-void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, Mode mode) {
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, CullMode mode) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     ManyViewsQuery(tree, views, mode).run(visible);
 }
 
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                  ManyVisible& visible, Mode mode) {
+                  ManyVisible& visible, CullMode mode) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
     ManyViewsQuery(resting, views, mode).run(visible, &moving);
 }

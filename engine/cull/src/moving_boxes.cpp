@@ -22,7 +22,7 @@ Result<void> MovingBoxes::update(const boxtree::BoxTree& tree, std::span<const I
 }
 
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
-                  const Options& options, Executor& executor) {
+                  const CullOptions& options, Executor& executor) {
     Query(view, visible, options, &moving).run(resting, executor);
 }
 

@@ -101,7 +101,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
         const std::size_t count = std::min(kChunk, boxes.size() - first), chunk_words = (count + 63) / 64;
         if (vectors)
             run_direct_kernel(
-                {reinterpret_cast<const unsigned char*>(&boxes[first]), count, &view, options_.mode == Mode::exact},
+                {reinterpret_cast<const unsigned char*>(&boxes[first]), count, &view, options_.mode == CullMode::exact},
                 output);
         else
             leave_all_undecided(count, output);
@@ -135,8 +135,8 @@ void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
         output.inside[i / 64] &= ~bit;
         if (verdict != Verdict::outside) output.visible[i / 64] |= bit;
         if (verdict == Verdict::inside) output.inside[i / 64] |= bit;
-        rejected += kCountStatistics && options_.mode == Mode::exact && verdict == Verdict::outside &&
-                    classify(view_.frustum, boxes[i], Mode::conservative) != Verdict::outside;
+        rejected += kCountStatistics && options_.mode == CullMode::exact && verdict == Verdict::outside &&
+                    classify(view_.frustum, boxes[i], CullMode::conservative) != Verdict::outside;
     }
     if (!kCountStatistics) return;
     visible_.statistics_.boxes_tested += boxes.size();
@@ -149,7 +149,7 @@ void Query::finish(const std::uint64_t* seen, const std::uint64_t* marked, std::
     grow(visible_.ids_, items + kListPadding);
     std::size_t size = 0, straddling = 0;
     for (std::size_t w = 0; w < words; ++w) straddling += static_cast<std::size_t>(std::popcount(marked[w]));
-    if (options_.order == Order::ascending) {
+    if (options_.order == ResultOrder::ascending) {
         grow(visible_.verdicts_, items + 64);
         size = list_marked(seen, marked, words);
     } else {
@@ -180,9 +180,13 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     KernelView view = kernel_view_of(view_);
     bring_before(tree.nodes()[0], view);
-    const TreeKernelInput input{tree.nodes().data(),         tree.leaves().data(),     tree.leaf_ranges().data(),
-                                tree.leaf_counts().data(),   tree.slot_items().data(), &view,
-                                options_.mode == Mode::exact};
+    const TreeKernelInput input{tree.nodes().data(),
+                                tree.leaves().data(),
+                                tree.leaf_ranges().data(),
+                                tree.leaf_counts().data(),
+                                tree.slot_items().data(),
+                                &view,
+                                options_.mode == CullMode::exact};
     const Tasks tasks(input, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1) return run_parallel(tree, input, tasks, executor);
     TreeKernelOutput output{};
@@ -324,7 +328,7 @@ void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items
     if (kCountStatistics) visible_.statistics_.straddling = straddling;
     visible_.size_ = inside + straddling;
     visible_.inside_ = inside;
-    if (options_.order == Order::ascending) return sort(inside, straddling, items);
+    if (options_.order == ResultOrder::ascending) return sort(inside, straddling, items);
     std::copy_n(visible_.straddling_.begin(), straddling, visible_.ids_.begin() + static_cast<std::ptrdiff_t>(inside));
     visible_.verdicts_.clear();
 }

@@ -20,7 +20,7 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output);
 class Query {
   public:
     // What moves, if there is any, is asked beside a BoxTree.
-    Query(const View& view, VisibleSet& visible, const Options& options, const MovingBoxes* moving = nullptr)
+    Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr)
         : view_(view), visible_(visible), options_(options), moving_(moving) {}
 
     void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
@@ -53,7 +53,7 @@ class Query {
 
     const View& view_;
     VisibleSet& visible_;
-    const Options& options_;
+    const CullOptions& options_;
     const MovingBoxes* moving_;
 };
 

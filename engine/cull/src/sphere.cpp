@@ -173,8 +173,8 @@ bool is_moderate(const Frustum& frustum, const Sphere& sphere) {
 
 }  // namespace
 
-Verdict classify_usable(const Frustum& frustum, const Sphere& sphere, Mode mode) {
-    const std::uint32_t largest = mode == Mode::exact ? 3 : 1;
+Verdict classify_usable(const Frustum& frustum, const Sphere& sphere, CullMode mode) {
+    const std::uint32_t largest = mode == CullMode::exact ? 3 : 1;
     const BallTest<Bounded> filter(frustum, sphere);
     Answer outside = filter.is_outside(largest), inside = filter.is_inside();
     if ((outside == Answer::unknown || inside == Answer::unknown) && outside != Answer::yes) {
