@@ -1,7 +1,7 @@
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/cull.hpp>
 
-#include "query.hpp"
+#include "tree/query.hpp"
 
 namespace crofton::cull {
 

@@ -11,7 +11,7 @@
 // clang-format on
 #include <hwy/highway.h>
 
-#include "block_tests-inl.hpp"
+#include "tree/block_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {

@@ -1,4 +1,4 @@
-#include "query.hpp"
+#include "tree/query.hpp"
 
 #include <hwy/cache_control.h>
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "block_planes.hpp"
-#include "box_constraints.hpp"
-#include "direct_kernel.hpp"
+#include "exact/box_constraints.hpp"
 #include "id_bits_kernel.hpp"
+#include "list/direct_kernel.hpp"
+#include "tree/block_planes.hpp"
 
 namespace crofton::cull {
 namespace {

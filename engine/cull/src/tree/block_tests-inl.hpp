@@ -1,7 +1,7 @@
 // Nodes and leaves against one view's planes, 16 lanes at a time. Compiled once per instruction set (Highway).
-#include "block_planes.hpp"
 #include "lanes-inl.hpp"
 #include "second_stage-inl.hpp"
+#include "tree/block_planes.hpp"
 
 #if defined(CROFTON_CULL_BLOCK_TESTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_BLOCK_TESTS_INL

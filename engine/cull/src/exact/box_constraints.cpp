@@ -1,4 +1,4 @@
-#include "box_constraints.hpp"
+#include "exact/box_constraints.hpp"
 
 namespace crofton::cull {
 namespace {

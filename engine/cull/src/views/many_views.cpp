@@ -4,10 +4,10 @@
 #include <crofton/cull/moving_boxes.hpp>
 #include <cstring>
 
-#include "block_planes.hpp"
-#include "box_constraints.hpp"
-#include "many_views_kernel.hpp"
-#include "query.hpp"
+#include "exact/box_constraints.hpp"
+#include "tree/block_planes.hpp"
+#include "tree/query.hpp"
+#include "views/many_views_kernel.hpp"
 
 namespace crofton::cull {
 

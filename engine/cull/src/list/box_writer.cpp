@@ -1,4 +1,4 @@
-#include "box_writer.hpp"
+#include "list/box_writer.hpp"
 
 #include <hwy/cache_control.h>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "box_writer.cpp"
+#define HWY_TARGET_INCLUDE "list/box_writer.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on

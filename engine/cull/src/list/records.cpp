@@ -1,11 +1,11 @@
-#include "records.hpp"
+#include "list/records.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
-#include "box_constraints.hpp"
+#include "exact/box_constraints.hpp"
 
 namespace crofton::cull {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <crofton/cull/list_layout.hpp>
 
-#include "list_lanes-inl.hpp"
+#include "list/list_lanes-inl.hpp"
 
 #if defined(CROFTON_CULL_OPEN_RECORDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_OPEN_RECORDS_INL

@@ -3,8 +3,8 @@
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 
-#include "list_kernel.hpp"
-#include "tree_kernel.hpp"
+#include "list/list_kernel.hpp"
+#include "tree/tree_kernel.hpp"
 
 namespace crofton::cull {
 

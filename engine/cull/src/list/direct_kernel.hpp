@@ -1,6 +1,6 @@
 // One view against boxes as the caller has them, in vectors: nothing is prepared and nothing kept.
 #pragma once
-#include "list_kernel.hpp"
+#include "list/list_kernel.hpp"
 
 namespace crofton::cull {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "box_constraints.hpp"
+#include "exact/box_constraints.hpp"
 
 namespace crofton::cull {
 namespace {

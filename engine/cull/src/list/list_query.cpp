@@ -4,11 +4,11 @@
 #include <crofton/cull/bound_set.hpp>
 #include <mutex>
 
-#include "box_constraints.hpp"
+#include "exact/box_constraints.hpp"
 #include "id_bits_kernel.hpp"
-#include "list_kernel.hpp"
-#include "list_views_kernel.hpp"
-#include "query.hpp"
+#include "list/list_kernel.hpp"
+#include "list/list_views_kernel.hpp"
+#include "tree/query.hpp"
 
 namespace crofton::cull {
 namespace {

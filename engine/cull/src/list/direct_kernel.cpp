@@ -1,4 +1,4 @@
-#include "direct_kernel.hpp"
+#include "list/direct_kernel.hpp"
 
 #include <algorithm>
 #include <crofton/geometry/obb.hpp>
@@ -6,14 +6,14 @@
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "direct_kernel.cpp"
+#define HWY_TARGET_INCLUDE "list/direct_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
 #include <hwy/highway.h>
 
-#include "open_records-inl.hpp"
-#include "row_tests-inl.hpp"
+#include "list/open_records-inl.hpp"
+#include "list/row_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {

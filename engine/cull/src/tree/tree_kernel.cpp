@@ -1,4 +1,4 @@
-#include "tree_kernel.hpp"
+#include "tree/tree_kernel.hpp"
 
 #include <hwy/cache_control.h>
 #include <algorithm>
@@ -8,13 +8,13 @@
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tree_kernel.cpp"
+#define HWY_TARGET_INCLUDE "tree/tree_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
 #include <hwy/highway.h>
 
-#include "leaf_tests-inl.hpp"
+#include "tree/leaf_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {

@@ -1,5 +1,5 @@
 // The boxes of a leaf against planes, in integers. Compiled once per instruction set (Highway).
-#include "block_tests-inl.hpp"
+#include "tree/block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_LEAF_TESTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_LEAF_TESTS_INL

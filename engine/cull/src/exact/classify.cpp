@@ -1,7 +1,7 @@
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/classify.hpp>
 
-#include "box_constraints.hpp"
+#include "exact/box_constraints.hpp"
 
 namespace crofton::cull {
 

@@ -1,4 +1,4 @@
-#include "row_planes.hpp"
+#include "list/row_planes.hpp"
 
 #include <algorithm>
 

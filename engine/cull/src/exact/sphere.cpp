@@ -9,7 +9,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "box_constraints.hpp"
+#include "exact/box_constraints.hpp"
 
 namespace crofton::cull {
 namespace {

@@ -1,4 +1,4 @@
-#include "many_views_kernel.hpp"
+#include "views/many_views_kernel.hpp"
 
 #include <hwy/cache_control.h>
 #include <algorithm>
@@ -8,13 +8,13 @@
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "many_views_kernel.cpp"
+#define HWY_TARGET_INCLUDE "views/many_views_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
 #include <hwy/highway.h>
 
-#include "leaf_tests-inl.hpp"
+#include "tree/leaf_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {

@@ -2,8 +2,8 @@
 #include <crofton/cull/list_layout.hpp>
 #include <cstring>
 
-#include "ball_tests-inl.hpp"
-#include "block_tests-inl.hpp"
+#include "list/ball_tests-inl.hpp"
+#include "tree/block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_LIST_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_LIST_LANES_INL

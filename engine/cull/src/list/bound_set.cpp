@@ -5,9 +5,9 @@
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/bound_set.hpp>
 
-#include "box_constraints.hpp"
-#include "box_writer.hpp"
-#include "records.hpp"
+#include "exact/box_constraints.hpp"
+#include "list/box_writer.hpp"
+#include "list/records.hpp"
 
 namespace crofton::cull {
 namespace {

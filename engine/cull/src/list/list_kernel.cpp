@@ -1,4 +1,4 @@
-#include "list_kernel.hpp"
+#include "list/list_kernel.hpp"
 
 #include <algorithm>
 #include <crofton/cull/statistics.hpp>
@@ -6,14 +6,14 @@
 // Integer products that are summed in the same step are worth a target of their own.
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "list_kernel.cpp"
+#define HWY_TARGET_INCLUDE "list/list_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>
 // clang-format on
 #include <hwy/highway.h>
 
-#include "open_records-inl.hpp"
-#include "row_tests-inl.hpp"
+#include "list/open_records-inl.hpp"
+#include "list/row_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {

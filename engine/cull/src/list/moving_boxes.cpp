@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <crofton/cull/moving_boxes.hpp>
 
-#include "query.hpp"
+#include "tree/query.hpp"
 
 namespace crofton::cull {
 

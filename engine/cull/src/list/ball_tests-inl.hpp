@@ -1,5 +1,5 @@
 // The second stage for balls, 16 lanes at a time. Compiled once per instruction set (Highway).
-#include "block_tests-inl.hpp"
+#include "tree/block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_BALL_TESTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_BALL_TESTS_INL
