@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-// Compressing bytes is worth a target of its own.
+// Also compile for AVX-512 VBMI2, which compresses bytes.
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "id_bits_kernel.cpp"
@@ -36,7 +36,7 @@ HWY_INLINE void mark(std::uint32_t id, std::uint64_t* bits) {
     bits[id / 64] |= std::uint64_t{1} << (id % 64);
 }
 
-void MarkIds(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
+void mark_ids(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
     std::size_t i = 0;
 #if HWY_TARGET != HWY_SCALAR
     const DU du;
@@ -112,15 +112,15 @@ HWY_INLINE void mark_word(std::uint64_t word, std::uint64_t marks, MarkBytes val
 #endif
 }
 
-std::size_t ListBits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
+std::size_t list_ids(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w)
         if (bits[w] != 0) count += list_word(bits[w], static_cast<std::uint32_t>(64 * w), ids + count);
     return count;
 }
 
-std::size_t ListMarkedBits(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words, MarkBytes values,
-                           std::uint32_t* ids, std::uint8_t* bytes) {
+std::size_t list_marked_ids(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words, MarkBytes values,
+                            std::uint32_t* ids, std::uint8_t* bytes) {
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w) {
         if (bits[w] == 0) continue;
@@ -137,21 +137,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(MarkIds);
-HWY_EXPORT(ListBits);
-HWY_EXPORT(ListMarkedBits);
+HWY_EXPORT(mark_ids);
+HWY_EXPORT(list_ids);
+HWY_EXPORT(list_marked_ids);
 
 void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
-    HWY_DYNAMIC_DISPATCH(MarkIds)(ids, count, bits);
+    HWY_DYNAMIC_DISPATCH(mark_ids)(ids, count, bits);
 }
 
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
-    return HWY_DYNAMIC_DISPATCH(ListBits)(bits, words, ids);
+    return HWY_DYNAMIC_DISPATCH(list_ids)(bits, words, ids);
 }
 
 std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words,
                                     MarkBytes values, std::uint32_t* ids, std::uint8_t* bytes) {
-    return HWY_DYNAMIC_DISPATCH(ListMarkedBits)(bits, marks, words, values, ids, bytes);
+    return HWY_DYNAMIC_DISPATCH(list_marked_ids)(bits, marks, words, values, ids, bytes);
 }
 
 }  // namespace crofton::cull

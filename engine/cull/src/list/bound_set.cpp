@@ -102,11 +102,11 @@ std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bo
     const std::size_t first = c * kChunk, count = std::min(size_ - first, kChunk);
     ListChunk& chunk = chunks_[c];
     if constexpr (std::is_same_v<Bound, Obb>) {
-        std::uint32_t left[kChunk];
-        const std::size_t left_count =
-            write_boxes(&bounds[first], count, chunk, &rows_[first / 16], &records_[first], left);
-        for (std::size_t n = left_count; n-- > 0;) {
-            const std::size_t i = first + left[n];
+        std::uint32_t rejected[kChunk];
+        const std::size_t rejected_count =
+            write_boxes(&bounds[first], count, chunk, &rows_[first / 16], &records_[first], rejected);
+        for (std::size_t n = rejected_count; n-- > 0;) {
+            const std::size_t i = first + rejected[n];
             write(i, bounds[i]);
             if (!validate(bounds[i])) invalid = i;
         }
@@ -157,10 +157,10 @@ void BoundSet<Bound>::update(std::span<const std::uint32_t> items, std::span<con
     for (; !items.empty(); items = items.subspan(std::min(items.size(), kWriteBatch))) {
         const std::span<const std::uint32_t> batch = items.first(std::min(items.size(), kWriteBatch));
         if constexpr (std::is_same_v<Bound, Obb>) {
-            std::uint32_t left[kWriteBatch];
-            const std::size_t left_count = write_boxes(bounds.data(), batch.data(), batch.size(), chunks_.data(),
-                                                       rows_.data(), records_.data(), left);
-            for (std::size_t i = 0; i < left_count; ++i) write(left[i], bounds[left[i]]);
+            std::uint32_t rejected[kWriteBatch];
+            const std::size_t rejected_count = write_boxes(bounds.data(), batch.data(), batch.size(), chunks_.data(),
+                                                           rows_.data(), records_.data(), rejected);
+            for (std::size_t i = 0; i < rejected_count; ++i) write(rejected[i], bounds[rejected[i]]);
         } else {
             for (const std::uint32_t i : batch) write(i, bounds[i]);
         }

@@ -176,9 +176,9 @@ struct Extremes {
     }
 };
 
-std::size_t WriteChunk(const unsigned char* all_boxes, std::size_t count, ListChunk& chunk, RowBlock* rows,
-                       BoxRecord* records, std::uint32_t* left) {
-    Boxes boxes[2];  // by turns: what was stored in narrow pieces is read in wide ones when it has settled
+std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListChunk& chunk, RowBlock* rows,
+                        BoxRecord* records, std::uint32_t* rejected) {
+    Boxes boxes[2];  // in turn: a wide load right after narrow stores to the same bytes stalls
     const auto put = [&](Boxes& to, std::size_t first) HWY_ATTR {
         for (std::size_t lane = 0; lane < kSixteen; ++lane)
             to.put(lane, all_boxes + kBoxBytes * std::min(first + lane, count - 1));
@@ -187,7 +187,7 @@ std::size_t WriteChunk(const unsigned char* all_boxes, std::size_t count, ListCh
         for (std::size_t lane = 0; lane < kSixteen; ++lane) to.put_frame(lane, chunk);
     Extremes extremes;
     Written written;
-    std::size_t left_count = 0, bounded = 0;
+    std::size_t rejected_count = 0, bounded = 0;
     if (count > 0) put(boxes[0], 0);
     for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
         if (first + kSixteen < count) put(boxes[turn ^ 1], first + kSixteen);
@@ -201,17 +201,17 @@ std::size_t WriteChunk(const unsigned char* all_boxes, std::size_t count, ListCh
         const std::uint32_t valid = (1u << used) - 1;
         bounded += hwy::PopCount(std::uint64_t{written.bounded & valid});
         for (std::uint32_t rest = ~written.usable & valid; rest; rest &= rest - 1)
-            left[left_count++] = static_cast<std::uint32_t>(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+            rejected[rejected_count++] = static_cast<std::uint32_t>(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
     }
     for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = *std::max_element(extremes.at[j], extremes.at[j] + kSixteen);
     chunk.largest_radius = *std::max_element(extremes.radius, extremes.radius + kSixteen);
     chunk.reach = *std::max_element(extremes.reach, extremes.reach + kSixteen);
     chunk.strays = static_cast<std::uint32_t>(count - bounded);
-    return left_count;
+    return rejected_count;
 }
 
-std::size_t WriteItems(const unsigned char* all_boxes, const std::uint32_t* items, std::size_t count, ListChunk* chunks,
-                       RowBlock* rows, BoxRecord* records, std::uint32_t* left) {
+std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* items, std::size_t count,
+                        ListChunk* chunks, RowBlock* rows, BoxRecord* records, std::uint32_t* rejected) {
     Boxes boxes[2];
     const auto put = [&](Boxes& to, std::size_t first) HWY_ATTR {
         for (std::size_t lane = 0; lane < kSixteen; ++lane) {
@@ -232,7 +232,7 @@ std::size_t WriteItems(const unsigned char* all_boxes, const std::uint32_t* item
     };
     for (std::size_t i = 0; i < std::min(kAhead, count); ++i) ask(i);
     Written written;
-    std::size_t left_count = 0;
+    std::size_t rejected_count = 0;
     if (count > 0) put(boxes[0], 0);
     for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
         for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSixteen, count); ++i) ask(i);
@@ -241,7 +241,7 @@ std::size_t WriteItems(const unsigned char* all_boxes, const std::uint32_t* item
         for (std::size_t lane = 0; lane < std::min(kSixteen, count - first); ++lane) {
             const std::uint32_t item = items[first + lane];
             if (!(written.usable >> lane & 1)) {
-                left[left_count++] = item;
+                rejected[rejected_count++] = item;
                 continue;
             }
             ListChunk& chunk = chunks[item / kChunk];
@@ -257,7 +257,7 @@ std::size_t WriteItems(const unsigned char* all_boxes, const std::uint32_t* item
             chunk.reach = std::max(chunk.reach, written.reach[lane]);
         }
     }
-    return left_count;
+    return rejected_count;
 }
 
 }  // namespace
@@ -267,19 +267,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(WriteChunk);
-HWY_EXPORT(WriteItems);
+HWY_EXPORT(write_chunk);
+HWY_EXPORT(write_items);
 
 std::size_t write_boxes(const Obb* boxes, std::size_t count, ListChunk& chunk, RowBlock* rows, BoxRecord* records,
-                        std::uint32_t* left) {
-    return HWY_DYNAMIC_DISPATCH(WriteChunk)(reinterpret_cast<const unsigned char*>(boxes), count, chunk, rows, records,
-                                            left);
+                        std::uint32_t* rejected) {
+    return HWY_DYNAMIC_DISPATCH(write_chunk)(reinterpret_cast<const unsigned char*>(boxes), count, chunk, rows, records,
+                                             rejected);
 }
 
 std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_t count, ListChunk* chunks,
-                        RowBlock* rows, BoxRecord* records, std::uint32_t* left) {
-    return HWY_DYNAMIC_DISPATCH(WriteItems)(reinterpret_cast<const unsigned char*>(boxes), items, count, chunks, rows,
-                                            records, left);
+                        RowBlock* rows, BoxRecord* records, std::uint32_t* rejected) {
+    return HWY_DYNAMIC_DISPATCH(write_items)(reinterpret_cast<const unsigned char*>(boxes), items, count, chunks, rows,
+                                             records, rejected);
 }
 
 }  // namespace crofton::cull

@@ -7,16 +7,16 @@
 
 namespace crofton::cull {
 
-// `boxes` into the rows and records of a chunk whose frame is chosen; its extent, reach and strays become theirs. Rows
-// of boxes that vectors cannot take say nothing, and their indices go to `left`, which has room for all; returns how
-// many. All that validate(Obb) refuses are among them.
+// Writes `boxes` as the rows and records of a chunk whose frame is chosen, and sets the chunk's extent, reach and
+// strays from them. A box that the kernel cannot take gets an empty row, and its index is appended to `rejected`, which
+// has room for all. Every box that validate(Obb) refuses is rejected. Returns how many are.
 std::size_t write_boxes(const Obb* boxes, std::size_t count, ListChunk& chunk, RowBlock* rows, BoxRecord* records,
-                        std::uint32_t* left);
+                        std::uint32_t* rejected);
 
-// The same for boxes[i] with i in `items`, at most kWriteBatch of them, in whatever chunks; extents and reach only
-// grow. Those that are left stay as they were.
+// The same for boxes[i] with i in `items`, at most kWriteBatch of them, in any chunks. Extents and reach only grow. The
+// rows and records of rejected boxes stay as they were.
 inline constexpr std::size_t kWriteBatch = 256;
 std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_t count, ListChunk* chunks,
-                        RowBlock* rows, BoxRecord* records, std::uint32_t* left);
+                        RowBlock* rows, BoxRecord* records, std::uint32_t* rejected);
 
 }  // namespace crofton::cull

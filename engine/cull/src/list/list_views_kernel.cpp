@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-// Integer products that are summed in the same step are worth a target of their own.
+// Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "list/list_views_kernel.cpp"
@@ -38,8 +38,8 @@ struct RowView {
     std::uint64_t open[kChunk / 64];
 };
 
-// The rows of 64 bounds stay in registers from one view to the next, and so do the masks. What the records then know
-// better is few bounds, and is taken back one by one.
+// The rows of 64 bounds stay in registers from one view to the next, and so do the masks. Then the records of what the
+// rows left open are tested: they are few, and those that are outside lose their bit one by one.
 template <class Record>
 class ChunkViews {
   public:
@@ -78,8 +78,8 @@ class ChunkViews {
         std::uint32_t bit, layer_mask;
     };
 
-    // Sorts the views: those that see nothing, those that see all that their records do not take back, those whose rows
-    // are asked first.
+    // Sorts the views. A view that the whole chunk is outside of is dropped. Where rows can tell nothing, or need not,
+    // all bounds are seen at first (whole_). For the others the rows are tested (asked_).
     void plan() {
         std::uint32_t useless = 0;
         for_each_bit(in_.view_bits, [&](unsigned v) {
@@ -192,13 +192,13 @@ class ChunkViews {
     std::size_t open_counts_[2];
 };
 
-void RunBoxes(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
+void run_boxes(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
     ChunkViews<BoxRecord>(input, masks).run(costs);
 }
-void RunAabbs(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
+void run_aabbs(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
     ChunkViews<AabbRecord>(input, masks).run(costs);
 }
-void RunSpheres(const ListViewsInput<SphereRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
+void run_spheres(const ListViewsInput<SphereRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
     ChunkViews<SphereRecord>(input, masks).run(costs);
 }
 
@@ -209,18 +209,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(RunBoxes);
-HWY_EXPORT(RunAabbs);
-HWY_EXPORT(RunSpheres);
+HWY_EXPORT(run_boxes);
+HWY_EXPORT(run_aabbs);
+HWY_EXPORT(run_spheres);
 
 void run_list_views_kernel(const ListViewsInput<BoxRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
-    HWY_DYNAMIC_DISPATCH(RunBoxes)(input, masks, costs);
+    HWY_DYNAMIC_DISPATCH(run_boxes)(input, masks, costs);
 }
 void run_list_views_kernel(const ListViewsInput<AabbRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
-    HWY_DYNAMIC_DISPATCH(RunAabbs)(input, masks, costs);
+    HWY_DYNAMIC_DISPATCH(run_aabbs)(input, masks, costs);
 }
 void run_list_views_kernel(const ListViewsInput<SphereRecord>& input, std::uint32_t* masks, ListViewCost* costs) {
-    HWY_DYNAMIC_DISPATCH(RunSpheres)(input, masks, costs);
+    HWY_DYNAMIC_DISPATCH(run_spheres)(input, masks, costs);
 }
 
 }  // namespace crofton::cull

@@ -6,9 +6,10 @@ namespace crofton::cull {
 namespace {
 
 constexpr double kScale = 1 << kRowNormalBits;
-// |normal|₁ ≤ √3 · 1.0005 · 2^14 + 3/2 and coordinates up to 2^14 − 1: |normal · x| < 4.66e8 < kMaxOffset. A larger
-// offset stands for all such: at +kMaxOffset s is positive, so that it rejects nothing, and too small, so that what it
-// accepts is accepted rightly; at −kMaxOffset the other way about. s stays below 2^14 · kUnboundedRadius + slack in
+// |normal|₁ ≤ √3 · 1.0005 · 2^14 + 3/2 and coordinates up to 2^14 − 1: |normal · x| < 4.66e8 < kMaxOffset. Larger
+// offsets are clamped. At +kMaxOffset s is positive and at most the true value: it rejects nothing, and what it accepts
+// is inside. At −kMaxOffset it is negative and at least the true value: it accepts nothing, and what it rejects is
+// outside. s stays below 2^14 · kUnboundedRadius + slack in
 // magnitude, so that an unbounded radius neither rejects nor accepts; the sums stay within 32 bits.
 constexpr double kMaxOffset = 1 << 29;
 constexpr double kMaxSlack = 1 << 26;

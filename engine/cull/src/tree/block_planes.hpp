@@ -41,8 +41,8 @@ ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& blo
             (static_cast<double>(block.rounding) + view.far[i]) * per_quantum};
 }
 
-// Offsets are cut off where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits: they are too small
-// there, so that what is certainly inside is so rightly, and likewise what is certainly outside.
+// Offsets are clamped where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits. A clamped offset is
+// nearer to 0 than the true one: a block that it finds certainly inside or outside is so.
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Node& node) {
     const ScaledPlane plane = scaled_plane(view, i, node);
     return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, plane.offset))),

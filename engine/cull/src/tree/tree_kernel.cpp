@@ -5,7 +5,7 @@
 #include <crofton/cull/statistics.hpp>
 #include <cstddef>
 
-// Integer products that are summed in the same step are worth a target of their own.
+// Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tree/tree_kernel.cpp"
@@ -69,7 +69,7 @@ class Walk {
             children[count] = child;
             planes[count++] = child_planes;
         }
-        // Looking ahead beyond the last finds it again.
+        // Pads the list with its last entry, so that prefetching past the end stays in range.
         HWY_INLINE void pad() {
             const std::uint32_t last = count > 0 ? children[count - 1] : 0;
             for (std::size_t i = 0; i < kLeavesAhead; ++i) children[count + i] = last;
@@ -145,7 +145,7 @@ class Walk {
             nodes_.append(children, straddled, hn::And(open, is_node));
             of_leaves = hn::AndNot(is_node, open);
         }
-        // A leaf whose layers alone are open straddles none.
+        // Where every child is in a layer that the view sees, a leaf is open only because it straddles a plane.
         if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
             return crossing_.append(leaves, straddled, of_leaves);
         const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
@@ -281,14 +281,14 @@ class Walk {
     std::uint32_t run_end_ = 0;
 };
 
-void RunTree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
+void run_tree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
     Walk walk(input, output);
     walk.run(entries, count);
     output = walk.result();
 }
 
 // One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
-std::size_t ExpandTree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
+std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
     const auto child = static_cast<std::uint32_t>(entry >> 32);
     const auto planes = static_cast<std::uint32_t>(entry);
     if (child & boxtree::kLeafBit || planes & kWhole) {
@@ -313,16 +313,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(RunTree);
-HWY_EXPORT(ExpandTree);
+HWY_EXPORT(run_tree);
+HWY_EXPORT(expand_tree);
 
 std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
-    return HWY_DYNAMIC_DISPATCH(ExpandTree)(input, entry, entries);
+    return HWY_DYNAMIC_DISPATCH(expand_tree)(input, entry, entries);
 }
 
 void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                      TreeKernelOutput& output) {
-    HWY_DYNAMIC_DISPATCH(RunTree)(input, entries, count, output);
+    HWY_DYNAMIC_DISPATCH(run_tree)(input, entries, count, output);
 }
 
 }  // namespace crofton::cull

@@ -21,10 +21,10 @@ struct SlotRun {
     std::uint32_t first, count;
 };
 
-// The lists have room for all items and 16 more, `runs` for all leaves, `work` for nine lists of `work_size`: all nodes
-// and all leaves that the entries name and that lie below them, and 16 more. The items that a node above them settles,
-// `whole_count` of them, come first in `inside`, or where there are `runs` stay in the tree's slots and are named
-// there.
+// Capacities: each list has room for all items and 16 more, `runs` for all leaves. `work` has room for kWorkLists lists
+// of `work_size`: the number of nodes and leaves that the entries name, and of those below them, and 16 more. The
+// `whole_count` items that a node above them accepted come first in `inside`; where `runs` is given they are named
+// there instead, as runs of the tree's slots.
 struct TreeKernelOutput {
     boxtree::ItemId* inside;
     boxtree::ItemId* straddling;

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-// Integer products that are summed in the same step are worth a target of their own.
+// Also compile for AVX-512 VNNI (`vpdpwssd`).
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "views/many_views_kernel.cpp"
@@ -291,7 +291,7 @@ void walk(const ManyViewsInput& input, ManyViewsOutput& output) {
     output = walk.result();
 }
 
-void RunManyViews(const ManyViewsInput& input, ManyViewsOutput& output) {
+void run_many_views(const ManyViewsInput& input, ManyViewsOutput& output) {
     if (output.mask_bytes == 1) return walk<std::uint8_t>(input, output);
     if (output.mask_bytes == 2) return walk<std::uint16_t>(input, output);
     walk<std::uint32_t>(input, output);
@@ -304,10 +304,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(RunManyViews);
+HWY_EXPORT(run_many_views);
 
 void run_many_views_kernel(const ManyViewsInput& input, ManyViewsOutput& output) {
-    HWY_DYNAMIC_DISPATCH(RunManyViews)(input, output);
+    HWY_DYNAMIC_DISPATCH(run_many_views)(input, output);
 }
 
 }  // namespace crofton::cull
