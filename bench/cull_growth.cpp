@@ -49,10 +49,10 @@ int main(int argc, char** argv) {
         const auto tree = boxtree::BoxTree::build(boxes);
         lines[0].points.emplace_back(count, least_time([&] { cull::find_visible(set, boxes, view, bits); }));
         lines[1].points.emplace_back(
-            count, least_time([&] { cull::find_visible(set, boxes, view, bits, cull::Mode::conservative); }));
+            count, least_time([&] { cull::find_visible(set, boxes, view, bits, cull::CullMode::conservative); }));
         lines[2].points.emplace_back(
             count, least_time([&] {
-                cull::find_visible(*tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(*tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
             }));
         const auto per_box = [&](const bench::GrowthLine& line) {
             return 1e3 * line.points.back().second / static_cast<double>(n);

@@ -11,7 +11,7 @@ using namespace crofton;
 using bench::boxes_of, bench::report;
 
 // Every box against the view; `ids` lists the visible ones besides.
-void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
+void flat_cull(benchmark::State& state, cull::CullMode mode, bool ids) {
     const auto& boxes = boxes_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes, 0.2);
     cull::BoxSet set;
@@ -28,9 +28,58 @@ void flat_cull(benchmark::State& state, cull::Mode mode, bool ids) {
     report(state, visible);
     state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
 }
-BENCHMARK_CAPTURE(flat_cull, conservative, cull::Mode::conservative, false)->Arg(10000)->Arg(1000000);
-BENCHMARK_CAPTURE(flat_cull, exact, cull::Mode::exact, false)->Arg(10000)->Arg(1000000);
-BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::Mode::exact, true)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, conservative, cull::CullMode::conservative, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact, cull::CullMode::exact, false)->Arg(10000)->Arg(1000000);
+BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::CullMode::exact, true)->Arg(10000)->Arg(1000000);
+
+// Every fifth bit of a million, as ids.
+void list_ids(benchmark::State& state) {
+    std::vector<std::uint64_t> bits(15625);
+    for (std::size_t i = 0; i < 64 * bits.size(); i += 5) bits[i / 64] |= std::uint64_t{1} << (i % 64);
+    std::vector<cull::ItemId> ids(200000 + 16);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(cull::list_bits(bits, ids));
+        benchmark::DoNotOptimize(ids.data());
+    }
+}
+BENCHMARK(list_ids)->Unit(benchmark::kMicrosecond);
+
+// Few boxes: unprepared, prepared as a list, and in a tree.
+void few_boxes(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::find_visible(boxes, {}, view, visible);
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+}
+void few_boxes_list(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::find_visible(set, boxes, view, verdicts);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+    report(state, 0);
+}
+void few_boxes_tree(benchmark::State& state) {
+    const boxtree::BoxTree& tree = bench::tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+}
+BENCHMARK(few_boxes)->Arg(20)->Arg(100)->Arg(1000)->Arg(100000);
+BENCHMARK(few_boxes_list)->Arg(20)->Arg(100)->Arg(1000);
+BENCHMARK(few_boxes_tree)->Arg(20)->Arg(100)->Arg(1000);
 
 // The same for axis-aligned boxes and for balls around the boxes.
 template <class Bound>
@@ -105,6 +154,6 @@ void aabb_loop(benchmark::State& state) {
     for (const unsigned char s : seen) visible += s;
     report(state, visible);
 }
-BENCHMARK(aabb_loop)->Arg(10000)->Arg(1000000);
+BENCHMARK(aabb_loop)->Arg(20)->Arg(100)->Arg(1000)->Arg(10000)->Arg(1000000);
 
 }  // namespace

@@ -44,7 +44,7 @@ void aged_cull(benchmark::State& state, bool fresh) {
     const cull::View view = bench::view_of_share(boxes_of(count), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::find_visible(fresh ? fresh_tree : old, view, visible, {cull::Mode::exact, cull::Order::tree});
+        cull::find_visible(fresh ? fresh_tree : old, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
         benchmark::DoNotOptimize(visible.ids().data());
     }
     report(state, visible.size());
@@ -95,7 +95,7 @@ void move_and_cull(benchmark::State& state, Tenth tenth, bool rebuilt) {
     cull::VisibleSet visible;
     for (auto _ : state) {
         moving.move();
-        cull::find_visible(moving.tree, view, visible, {cull::Mode::conservative, cull::Order::tree});
+        cull::find_visible(moving.tree, view, visible, {cull::CullMode::conservative, cull::ResultOrder::tree});
     }
     report(state, visible.size());
 }
@@ -116,7 +116,7 @@ BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, Tenth::neighbours_numbered
 
 // The tenth is lifted out of the tree and kept as a list over the caller's boxes. Parts of the frame: 0 the caller's
 // own change of the boxes, 1 the list's update as well, 2 all.
-void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::Options options) {
+void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::CullOptions options) {
     Moving moving(state.range(0), tenth);
     if (tenth == Tenth::scattered) {  // each once
         std::ranges::sort(moving.items);
@@ -139,7 +139,7 @@ void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::Options
     }
     report(state, visible.size());
 }
-constexpr cull::Options kPlanes{cull::Mode::conservative, cull::Order::tree};
+constexpr cull::CullOptions kPlanes{cull::CullMode::conservative, cull::ResultOrder::tree};
 BENCHMARK_CAPTURE(list_and_cull, change, Tenth::scattered, 0, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(list_and_cull, update, Tenth::scattered, 1, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(list_and_cull, scattered, Tenth::scattered, 2, kPlanes)->Arg(1000000)->Unit(benchmark::kMillisecond);
@@ -153,10 +153,10 @@ BENCHMARK_CAPTURE(list_and_cull, neighbours_numbered, Tenth::neighbours_numbered
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(list_and_cull, scattered_exact, Tenth::scattered, 2,
-                  (cull::Options{cull::Mode::exact, cull::Order::tree}))
+                  (cull::CullOptions{cull::CullMode::exact, cull::ResultOrder::tree}))
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(list_and_cull, scattered_ascending, Tenth::scattered, 2, cull::Options{})
+BENCHMARK_CAPTURE(list_and_cull, scattered_ascending, Tenth::scattered, 2, cull::CullOptions{})
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
 
@@ -178,7 +178,7 @@ void list_of_all(benchmark::State& state, bool told) {
             set.update(items, boxes);
         else
             set.update(boxes);
-        cull::find_visible(set, boxes, view, bits, cull::Mode::conservative);
+        cull::find_visible(set, boxes, view, bits, cull::CullMode::conservative);
         state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
 }

@@ -20,7 +20,7 @@ void threads(benchmark::State& state) {
     set.assign(boxes);
     cull::VerdictBits verdicts;
     for (auto _ : state) {
-        cull::find_visible(set, boxes, view, verdicts, cull::Mode::exact, pool);
+        cull::find_visible(set, boxes, view, verdicts, cull::CullMode::exact, pool);
         benchmark::DoNotOptimize(verdicts.visible.data());
     }
 }
@@ -32,7 +32,7 @@ void tree_threads(benchmark::State& state) {
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree}, pool);
+        cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree}, pool);
         benchmark::DoNotOptimize(visible.ids().data());
     }
 }
@@ -49,7 +49,7 @@ void threads_apart(benchmark::State& state) {
     }();
     cull::VerdictBits verdicts;
     for (auto _ : state) {
-        cull::find_visible(set, boxes, view, verdicts, cull::Mode::exact);
+        cull::find_visible(set, boxes, view, verdicts, cull::CullMode::exact);
         benchmark::DoNotOptimize(verdicts.visible.data());
     }
 }
@@ -60,7 +60,7 @@ void tree_threads_apart(benchmark::State& state) {
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+        cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
         benchmark::DoNotOptimize(visible.ids().data());
     }
 }

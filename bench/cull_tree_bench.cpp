@@ -10,7 +10,7 @@ namespace {
 using namespace crofton;
 using bench::boxes_in_tree_order, bench::boxes_of, bench::report, bench::tree_of;
 
-void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, double share) {
+void tree_cull(benchmark::State& state, cull::CullMode mode, cull::ResultOrder order, double share) {
     const boxtree::BoxTree& tree = tree_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
     cull::VisibleSet visible;
@@ -24,31 +24,31 @@ void tree_cull(benchmark::State& state, cull::Mode mode, cull::Order order, doub
     state.counters["exact_tests"] = static_cast<double>(visible.statistics().exact_tests);
     state.counters["straddling"] = static_cast<double>(visible.statistics().straddling);
 }
-BENCHMARK_CAPTURE(tree_cull, conservative, cull::Mode::conservative, cull::Order::tree, 0.2)
+BENCHMARK_CAPTURE(tree_cull, conservative, cull::CullMode::conservative, cull::ResultOrder::tree, 0.2)
     ->RangeMultiplier(10)
     ->Range(10000, 1000000);
-BENCHMARK_CAPTURE(tree_cull, exact, cull::Mode::exact, cull::Order::tree, 0.2)
+BENCHMARK_CAPTURE(tree_cull, exact, cull::CullMode::exact, cull::ResultOrder::tree, 0.2)
     ->RangeMultiplier(10)
     ->Range(10000, 1000000);
-BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::Mode::exact, cull::Order::ascending, 0.2)->Arg(1000000);
-BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::Mode::exact, cull::Order::tree, 0.01)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::CullMode::exact, cull::ResultOrder::ascending, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::CullMode::exact, cull::ResultOrder::tree, 0.01)->Arg(1000000);
 
-void tree_cull_numbered(benchmark::State& state, cull::Order order) {
+void tree_cull_numbered(benchmark::State& state, cull::ResultOrder order) {
     const auto& boxes = boxes_in_tree_order(state.range(0));
     const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
     const cull::View view = bench::view_of_share(boxes, 0.2);
     cull::VisibleSet visible;
     for (auto _ : state) {
-        cull::find_visible(tree, view, visible, {cull::Mode::exact, order});
+        cull::find_visible(tree, view, visible, {cull::CullMode::exact, order});
         benchmark::DoNotOptimize(visible.ids().data());
     }
     report(state, visible.size());
 }
-BENCHMARK_CAPTURE(tree_cull_numbered, in_tree_order, cull::Order::tree)->Arg(1000000);
-BENCHMARK_CAPTURE(tree_cull_numbered, ascending, cull::Order::ascending)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_numbered, in_tree_order, cull::ResultOrder::tree)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_numbered, ascending, cull::ResultOrder::ascending)->Arg(1000000);
 
 // 300 cameras on a way through the crowd, each seeing about 1 % of it.
-void flight(benchmark::State& state, cull::Mode mode) {
+void flight(benchmark::State& state, cull::CullMode mode) {
     const boxtree::BoxTree& tree = tree_of(state.range(0));
     const double side = std::cbrt(static_cast<double>(state.range(0)));
     std::vector<cull::View> views;
@@ -65,13 +65,13 @@ void flight(benchmark::State& state, cull::Mode mode) {
     cull::VisibleSet visible;
     std::size_t frame = 0, seen = 0;
     for (auto _ : state) {
-        cull::find_visible(tree, views[frame++ % views.size()], visible, {mode, cull::Order::tree});
+        cull::find_visible(tree, views[frame++ % views.size()], visible, {mode, cull::ResultOrder::tree});
         seen += visible.size();
     }
     report(state, frame ? seen / frame : 0);
 }
-BENCHMARK_CAPTURE(flight, conservative, cull::Mode::conservative)->Arg(1000000);
-BENCHMARK_CAPTURE(flight, exact, cull::Mode::exact)->Arg(1000000);
+BENCHMARK_CAPTURE(flight, conservative, cull::CullMode::conservative)->Arg(1000000);
+BENCHMARK_CAPTURE(flight, exact, cull::CullMode::exact)->Arg(1000000);
 
 void tree_build(benchmark::State& state) {
     const auto& boxes = boxes_of(state.range(0));

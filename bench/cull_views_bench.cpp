@@ -74,7 +74,7 @@ void tree_views(benchmark::State& state, bool one_pass) {
             cull::find_visible(tree, views, many);
         else
             for (std::size_t v = 0; v < views.size(); ++v)
-                cull::find_visible(tree, views[v], single[v], {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(tree, views[v], single[v], {cull::CullMode::exact, cull::ResultOrder::tree});
     };
     ask();
     for (auto _ : state) ask();

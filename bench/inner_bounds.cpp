@@ -136,7 +136,7 @@ Work walk(const boxtree::BoxTree& tree, const Bounds& bounds, const std::vector<
             const boxtree::Node& node = tree.nodes()[n];
             work.nodes += node.count;
             for (unsigned lane = 0; lane < node.count; ++lane) {
-                if (cull::classify(view.frustum, bounds[n][lane], cull::Mode::conservative) !=
+                if (cull::classify(view.frustum, bounds[n][lane], cull::CullMode::conservative) !=
                     cull::Verdict::straddling)
                     continue;
                 const std::uint32_t child = node.child[lane];

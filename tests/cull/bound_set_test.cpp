@@ -66,7 +66,7 @@ TEST_SUITE("cull/bound_set") {
                     // Some barely touch.
                     for (std::uint32_t i = 0; i < count; i += 15) crowd.boxes[i] = random.box(view.frustum, 1e-9, 1e-3);
                     set.update(moved, crowd.boxes);
-                    const cull::Mode mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
+                    const cull::CullMode mode = trial % 2 ? cull::CullMode::exact : cull::CullMode::conservative;
                     cull::find_visible(set, crowd.boxes, view, bits, mode);
                     std::size_t visible = 0;
                     for (std::size_t i = 0; i < count; ++i) {
@@ -128,7 +128,7 @@ TEST_SUITE("cull/bound_set") {
                     }
                     box_set.update(moved, boxes);
                     sphere_set.update(moved, spheres);
-                    const cull::Mode mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
+                    const cull::CullMode mode = trial % 2 ? cull::CullMode::exact : cull::CullMode::conservative;
                     cull::find_visible(box_set, boxes, view, bits, mode);
                     for (std::size_t i = 0; i < count; ++i)
                         REQUIRE(bits.verdict(i) == cull::classify(view.frustum, boxes[i], mode));
@@ -160,7 +160,7 @@ TEST_SUITE("cull/bound_set") {
             if (trial % 4 == 1) view.frustum.origin *= 1e29;
             if (trial % 4 == 2) view.frustum.planes[trial % 6].offset = trial % 8 == 2 ? 1e49 : -1e49;
             if (trial % 4 == 3) view.frustum.planes[trial % 6].offset = trial % 8 == 3 ? 1e31 : -1e31;
-            for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
+            for (const cull::CullMode mode : {cull::CullMode::conservative, cull::CullMode::exact}) {
                 cull::find_visible(set, crowd.boxes, view, bits, mode);
                 for (std::size_t i = 0; i < crowd.boxes.size(); ++i)
                     REQUIRE(bits.verdict(i) == cull::classify(view.frustum, crowd.boxes[i], mode));
@@ -293,8 +293,9 @@ TEST_SUITE("cull/bound_set") {
             cull::find_visible(set, crowd.boxes, view, bits);
             std::size_t expected = 0, straddling = 0;
             for (std::size_t i = 0; i < crowd.boxes.size(); ++i) {
-                expected += bits.verdict(i) == Verdict::outside &&
-                            cull::classify(view.frustum, crowd.boxes[i], cull::Mode::conservative) != Verdict::outside;
+                expected +=
+                    bits.verdict(i) == Verdict::outside &&
+                    cull::classify(view.frustum, crowd.boxes[i], cull::CullMode::conservative) != Verdict::outside;
                 straddling += bits.verdict(i) == Verdict::straddling;
             }
             CHECK(bits.statistics.improper == expected);
@@ -307,7 +308,7 @@ TEST_SUITE("cull/bound_set") {
         std::vector<std::uint32_t> masks(crowd.boxes.size());
         std::vector<cull::Statistics> statistics(2);
         ThreadPool two(2);
-        cull::find_visible(set, crowd.boxes, {}, views, masks, cull::Mode::exact, two, statistics);
+        cull::find_visible(set, crowd.boxes, {}, views, masks, cull::CullMode::exact, two, statistics);
         for (std::size_t v = 0; v < 2; ++v) {
             cull::find_visible(set, crowd.boxes, views[v], bits);
             CHECK(statistics[v].improper == bits.statistics.improper);

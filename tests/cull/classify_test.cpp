@@ -7,7 +7,7 @@
 #include <vector>
 
 using namespace crofton;
-using cull::Mode;
+using cull::CullMode;
 using cull::Verdict;
 
 namespace {
@@ -45,7 +45,7 @@ TEST_SUITE("cull/classify") {
         boxes[5].center.z = 1e31;
         boxes[6].center.z = 5.0;
         std::vector<Verdict> verdicts(boxes.size());
-        for (const Mode mode : {Mode::conservative, Mode::exact}) {
+        for (const CullMode mode : {CullMode::conservative, CullMode::exact}) {
             cull::classify(frustum, boxes, verdicts, mode);
             CHECK(verdicts[0] == Verdict::inside);
             for (std::size_t i = 1; i < 6; ++i) CHECK(verdicts[i] == Verdict::straddling);
@@ -96,10 +96,10 @@ TEST_SUITE("cull/classify") {
         Obb rod = cube_at({1.6, 1.6, 0.0}, 0.5f);
         const float s = std::sqrt(0.5f);
         rod.axes = glm::mat3(s, s, 0.0f, -s, s, 0.0f, 0.0f, 0.0f, 1.0f);
-        CHECK(cull::classify(unit_cube(), rod, Mode::conservative) == Verdict::straddling);
-        CHECK(cull::classify(unit_cube(), rod, Mode::exact) == Verdict::outside);
+        CHECK(cull::classify(unit_cube(), rod, CullMode::conservative) == Verdict::straddling);
+        CHECK(cull::classify(unit_cube(), rod, CullMode::exact) == Verdict::outside);
         rod.center = {1.3, 1.3, 0.0};
-        CHECK(cull::classify(unit_cube(), rod, Mode::exact) == Verdict::straddling);
+        CHECK(cull::classify(unit_cube(), rod, CullMode::exact) == Verdict::straddling);
     }
 
     TEST_CASE("agrees with the exact oracle on boxes that nearly touch") {
@@ -112,7 +112,7 @@ TEST_SUITE("cull/classify") {
                 const Verdict expected = oracle::classify(frustum, box);
                 CHECK(cull::classify(frustum, box) == expected);
                 const bool rejected = oracle::is_rejected_by_a_plane(frustum, box);
-                CHECK((cull::classify(frustum, box, Mode::conservative) == Verdict::outside) == rejected);
+                CHECK((cull::classify(frustum, box, CullMode::conservative) == Verdict::outside) == rejected);
                 outside += expected == Verdict::outside;
                 improper += expected == Verdict::outside && !rejected;
                 inside += expected == Verdict::inside;
@@ -156,7 +156,7 @@ TEST_SUITE("cull/classify") {
 
     TEST_CASE("axis-aligned boxes and balls that are not valid are straddling, and cull nothing") {
         const Frustum frustum = unit_cube();
-        for (const Mode mode : {Mode::conservative, Mode::exact}) {
+        for (const CullMode mode : {CullMode::conservative, CullMode::exact}) {
             CHECK(cull::classify(frustum, Aabb{}, mode) == Verdict::straddling);
             CHECK(cull::classify(frustum, Aabb{{5.0, 0.0, 0.0}, {kInfinity, 1.0, 1.0}}, mode) == Verdict::straddling);
             CHECK(cull::classify(frustum, Aabb{{5.0, 0.0, 0.0}, {6.0, std::nan(""), 1.0}}, mode) ==
@@ -180,7 +180,7 @@ TEST_SUITE("cull/classify") {
         // 3-4-5 beyond an edge, 1-2-2-3 beyond a corner.
         CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, 5.0}) == Verdict::straddling);
         CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, std::nextafter(5.0, 4.0)}) == Verdict::outside);
-        CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, std::nextafter(5.0, 4.0)}, Mode::conservative) ==
+        CHECK(cull::classify(frustum, Sphere{{4.0, 5.0, 0.0}, std::nextafter(5.0, 4.0)}, CullMode::conservative) ==
               Verdict::straddling);
         CHECK(cull::classify(frustum, Sphere{{-2.0, 3.0, -3.0}, 3.0}) == Verdict::straddling);
         CHECK(cull::classify(frustum, Sphere{{-2.0, 3.0, -3.0}, std::nextafter(3.0, 2.0)}) == Verdict::outside);
@@ -205,7 +205,7 @@ TEST_SUITE("cull/classify") {
                     const Verdict expected = oracle::classify(frustum, bound);
                     const bool rejected = oracle::is_rejected_by_a_plane(frustum, bound);
                     CHECK(cull::classify(frustum, bound) == expected);
-                    CHECK((cull::classify(frustum, bound, Mode::conservative) == Verdict::outside) == rejected);
+                    CHECK((cull::classify(frustum, bound, CullMode::conservative) == Verdict::outside) == rejected);
                     outside += expected == Verdict::outside;
                     improper += expected == Verdict::outside && !rejected;
                 };

@@ -1,7 +1,10 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
+#include <cmath>
 #include <crofton/cull/cull.hpp>
+#include <limits>
+#include <oracle/near_misses.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -62,8 +65,8 @@ TEST_SUITE("cull/cull") {
                     Camera camera = random.camera();
                     camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
                     const cull::View view{*frustum_of(camera), trial % 3 ? ~0u : 5u};
-                    cull::Options options;
-                    options.mode = trial % 2 ? cull::Mode::exact : cull::Mode::conservative;
+                    cull::CullOptions options;
+                    options.mode = trial % 2 ? cull::CullMode::exact : cull::CullMode::conservative;
                     std::vector<cull::ItemId> ids;
                     std::vector<Verdict> verdicts;
                     for (std::size_t i = 0; i < count; ++i) {
@@ -78,13 +81,100 @@ TEST_SUITE("cull/cull") {
                         CHECK(std::ranges::equal(visible->ids(), ids));
                         CHECK(std::ranges::equal(visible->verdicts(), verdicts));
                     }
-                    options.order = cull::Order::tree;
+                    options.order = cull::ResultOrder::tree;
                     cull::find_visible(*tree, view, from_tree, options);
                     std::vector<cull::ItemId> sorted(from_tree.ids().begin(), from_tree.ids().end());
                     std::ranges::sort(sorted);
                     CHECK(sorted == ids);
                 }
             }
+    }
+
+    TEST_CASE(
+        "unprepared boxes get classify's verdicts on every instruction set, however near, skewed, large or wrong") {
+        const double nan = std::nan("");
+        for (const double offset : {0.0, 1e7, 3e28, 5e29}) {
+            oracle::NearMisses random(29, offset);
+            for (int trial = 0; trial < 12; ++trial) {
+                const cull::View view{*frustum_of(random.camera()), trial % 3 ? ~0u : 5u};
+                std::vector<Obb> boxes(trial == 0 ? 9000 : 700 + 13 * static_cast<std::size_t>(trial));
+                std::vector<std::uint32_t> layers(boxes.size());
+                for (std::size_t i = 0; i < boxes.size(); ++i) {
+                    Obb& box = boxes[i] = random.box(view.frustum);
+                    layers[i] = 1u << random.index(4);
+                    const int axis = static_cast<int>(random.index(3)), part = static_cast<int>(random.index(3));
+                    switch (random.index(40)) {
+                        case 0:
+                            box.axes[axis][part] *= 1.9f;
+                            break;  // neither orthogonal nor of unit length
+                        case 1:
+                            box.axes[axis][part] = 2.5f;
+                            break;  // beyond what any query takes
+                        case 2:
+                            box.half_extents *= -1.0f;
+                            break;
+                        case 3:
+                            box.half_extents[axis] = 1e19f;
+                            break;
+                        case 4:
+                            box.half_extents *= 1e-38f;
+                            break;
+                        case 5:
+                            box.half_extents[axis] = std::numeric_limits<float>::infinity();
+                            break;
+                        case 6:
+                            box.center[part] = nan;
+                            break;
+                        case 7:
+                            box.axes[axis][part] = std::nanf("");
+                            break;
+                        case 8:
+                            box.half_extents[axis] = std::nanf("");
+                            break;
+                        case 9:
+                            box.center[part] = 1.5e30;
+                            break;
+                        case 10:
+                            box.half_extents[axis] = 2e30f;
+                            box.axes[axis] = glm::vec3(0.0f);
+                            break;
+                        case 11:
+                            box.center = view.frustum.origin;
+                            break;
+                        case 12:
+                            box.half_extents = glm::vec3(1e9f);
+                            break;
+                        default:
+                            break;
+                    }
+                }
+                for (const cull::CullMode mode : {cull::CullMode::exact, cull::CullMode::conservative}) {
+                    std::vector<cull::ItemId> ids, inside, straddling;
+                    std::vector<Verdict> verdicts;
+                    for (std::size_t i = 0; i < boxes.size(); ++i) {
+                        const Verdict verdict = cull::classify(view.frustum, boxes[i], mode);
+                        if (verdict == Verdict::outside || !(layers[i] & view.layer_mask)) continue;
+                        ids.push_back(static_cast<cull::ItemId>(i));
+                        verdicts.push_back(verdict);
+                        (verdict == Verdict::inside ? inside : straddling).push_back(ids.back());
+                    }
+                    inside.insert(inside.end(), straddling.begin(), straddling.end());
+                    for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+                        hwy::SetSupportedTargetsForTest(rest & -rest);
+                        CAPTURE(hwy::TargetName(rest & -rest));
+                        cull::VisibleSet visible;
+                        cull::find_visible(boxes, layers, view, visible, {mode});
+                        CHECK(std::ranges::equal(visible.ids(), ids));
+                        CHECK(std::ranges::equal(visible.verdicts(), verdicts));
+                        CHECK(visible.inside_count() == ids.size() - straddling.size());
+                        cull::find_visible(boxes, layers, view, visible, {mode, cull::ResultOrder::tree});
+                        CHECK(std::ranges::equal(visible.ids(), inside));
+                        CHECK(visible.verdicts().empty());
+                    }
+                    hwy::SetSupportedTargetsForTest(0);
+                }
+            }
+        }
     }
 
     TEST_CASE("ascending ids and their verdicts are the tree's order sorted, however items are numbered") {
@@ -99,7 +189,7 @@ TEST_SUITE("cull/cull") {
                 hwy::SetSupportedTargetsForTest(rest & -rest);
                 cull::VisibleSet sorted, unsorted;
                 cull::find_visible(tree, view, sorted);
-                cull::find_visible(tree, view, unsorted, {cull::Mode::exact, cull::Order::tree});
+                cull::find_visible(tree, view, unsorted, {cull::CullMode::exact, cull::ResultOrder::tree});
                 std::vector<std::pair<cull::ItemId, Verdict>> expected;
                 for (std::size_t i = 0; i < unsorted.size(); ++i)
                     expected.emplace_back(unsorted.ids()[i],
@@ -159,7 +249,7 @@ TEST_SUITE("cull/cull") {
                     ids.push_back(static_cast<cull::ItemId>(i));
             cull::find_visible(tree, view, visible);
             CHECK(std::ranges::equal(visible.ids(), ids));
-            cull::find_visible(tree, view, visible, {cull::Mode::exact, cull::Order::tree});
+            cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
             sorted.assign(visible.ids().begin(), visible.ids().end());
             std::ranges::sort(sorted);
             CHECK(sorted == ids);

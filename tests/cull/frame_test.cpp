@@ -66,7 +66,7 @@ TEST_SUITE("cull/frame") {
             tree.refit();
             const std::size_t at = f % views.size();
             cull::find_visible(tree, views[at], visible,
-                               {cull::Mode::exact, f % 2 ? cull::Order::ascending : cull::Order::tree});
+                               {cull::CullMode::exact, f % 2 ? cull::ResultOrder::ascending : cull::ResultOrder::tree});
             cull::find_visible(tree, std::span(views).subspan(at / 2, 4), many);
             set.update(items, crowd.boxes);
             cull::find_visible(set, crowd.boxes, views[at], bits);
@@ -90,9 +90,9 @@ TEST_SUITE("cull/frame") {
         cull::VisibleSet one, many;
         cull::VerdictBits one_bits, many_bits;
         for (const cull::View& view : flight(20))
-            for (const cull::Order order : {cull::Order::tree, cull::Order::ascending}) {
-                cull::find_visible(tree, view, one, {cull::Mode::exact, order});
-                cull::find_visible(tree, view, many, {cull::Mode::exact, order}, three);
+            for (const cull::ResultOrder order : {cull::ResultOrder::tree, cull::ResultOrder::ascending}) {
+                cull::find_visible(tree, view, one, {cull::CullMode::exact, order});
+                cull::find_visible(tree, view, many, {cull::CullMode::exact, order}, three);
                 CHECK(one.inside_count() == many.inside_count());
                 REQUIRE(one.size() == many.size());
                 CHECK(std::ranges::equal(one.ids(), many.ids()));
@@ -100,7 +100,7 @@ TEST_SUITE("cull/frame") {
                 CHECK(one.statistics().boxes_tested == many.statistics().boxes_tested);
                 CHECK(one.statistics().improper == many.statistics().improper);
                 cull::find_visible(set, crowd.boxes, view, one_bits);
-                cull::find_visible(set, crowd.boxes, view, many_bits, cull::Mode::exact, three);
+                cull::find_visible(set, crowd.boxes, view, many_bits, cull::CullMode::exact, three);
                 CHECK(one_bits.visible == many_bits.visible);
                 CHECK(one_bits.inside == many_bits.inside);
                 CHECK(one_bits.statistics.improper == many_bits.statistics.improper);
@@ -125,7 +125,7 @@ TEST_SUITE("cull/frame") {
         const auto answer = [&] {
             std::vector<Answer> answers;
             for (const cull::View& view : views)
-                for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
+                for (const cull::CullMode mode : {cull::CullMode::conservative, cull::CullMode::exact}) {
                     cull::VisibleSet visible;
                     cull::VerdictBits bits;
                     cull::find_visible(tree, view, visible, {mode});

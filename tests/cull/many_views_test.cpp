@@ -12,7 +12,7 @@ namespace {
 
 // One query per view, put together.
 std::map<cull::ItemId, std::uint32_t> one_by_one(const boxtree::BoxTree& tree, std::span<const cull::View> views,
-                                                 cull::Mode mode) {
+                                                 cull::CullMode mode) {
     std::map<cull::ItemId, std::uint32_t> masks;
     cull::VisibleSet visible;
     for (std::size_t v = 0; v < views.size(); ++v) {
@@ -34,7 +34,7 @@ TEST_SUITE("cull/many_views") {
         std::vector<cull::View> views(3, cull::View{*frustum_of(Camera{}), 3u});
         views[1].frustum.planes[0].offset = std::nan("");
         cull::find_visible(*tree, views, visible);
-        const auto expected = one_by_one(*tree, views, cull::Mode::exact);
+        const auto expected = one_by_one(*tree, views, cull::CullMode::exact);
         CHECK(visible.size() == expected.size());
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
     }
@@ -65,7 +65,7 @@ TEST_SUITE("cull/many_views") {
                     views.push_back(view);
                 }
                 cull::ManyVisible visible;
-                for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact})
+                for (const cull::CullMode mode : {cull::CullMode::conservative, cull::CullMode::exact})
                     for (const std::size_t used : {32u, 12u, 4u}) {
                         const auto some = std::span<const cull::View>(views).first(used);
                         cull::find_visible(*tree, some, visible, mode);

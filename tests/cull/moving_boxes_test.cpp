@@ -44,7 +44,7 @@ struct Crowd {
         boxes.pop_back();
         return item;
     }
-    std::map<ItemId, Verdict> seen(const cull::View& view, cull::Mode mode) const {
+    std::map<ItemId, Verdict> seen(const cull::View& view, cull::CullMode mode) const {
         std::map<ItemId, Verdict> result;
         for (const auto& [item, box] : all)
             if (tree.layer_masks()[item] & view.layer_mask)
@@ -63,24 +63,24 @@ cull::View view_near(oracle::NearMisses& random, unsigned v) {
 void check_answers(const Crowd& crowd, std::span<const cull::View> views, Executor& executor) {
     cull::VisibleSet visible, threaded;
     cull::ManyVisible many;
-    for (const cull::Mode mode : {cull::Mode::conservative, cull::Mode::exact}) {
+    for (const cull::CullMode mode : {cull::CullMode::conservative, cull::CullMode::exact}) {
         std::map<ItemId, std::uint32_t> masks;
         for (std::size_t v = 0; v < views.size(); ++v) {
             const std::map<ItemId, Verdict> expected = crowd.seen(views[v], mode);
             for (const auto& [item, verdict] : expected) masks[item] |= 1u << v;
-            for (const cull::Order order : {cull::Order::ascending, cull::Order::tree}) {
+            for (const cull::ResultOrder order : {cull::ResultOrder::ascending, cull::ResultOrder::tree}) {
                 cull::find_visible(crowd.tree, crowd.moving, views[v], visible, {mode, order});
                 cull::find_visible(crowd.tree, crowd.moving, views[v], threaded, {mode, order}, executor);
                 REQUIRE(std::ranges::equal(visible.ids(), threaded.ids()));
                 REQUIRE(visible.inside_count() == threaded.inside_count());
                 REQUIRE(visible.size() == expected.size());
                 for (std::size_t i = 0; i < visible.size(); ++i) {
-                    const Verdict verdict = order == cull::Order::ascending ? visible.verdicts()[i]
-                                            : i < visible.inside_count()    ? Verdict::inside
-                                                                            : Verdict::straddling;
+                    const Verdict verdict = order == cull::ResultOrder::ascending ? visible.verdicts()[i]
+                                            : i < visible.inside_count()          ? Verdict::inside
+                                                                                  : Verdict::straddling;
                     REQUIRE(expected.at(visible.ids()[i]) == verdict);
                 }
-                if (order == cull::Order::ascending) REQUIRE(std::ranges::is_sorted(visible.ids()));
+                if (order == cull::ResultOrder::ascending) REQUIRE(std::ranges::is_sorted(visible.ids()));
                 if (cull::kCountStatistics)
                     CHECK(visible.statistics().straddling == visible.size() - visible.inside_count());
             }
@@ -266,7 +266,7 @@ TEST_SUITE("cull/moving_boxes") {
             cull::Statistics sum;
             for (unsigned v = 0; v < 6; ++v) {
                 cull::find_visible(crowd.tree, crowd.moving, view_near(random, v), visible,
-                                   {cull::Mode::exact, cull::Order::tree});
+                                   {cull::CullMode::exact, cull::ResultOrder::tree});
                 ids.insert(ids.end(), visible.ids().begin(), visible.ids().end());
                 sum += visible.statistics();
             }

@@ -44,11 +44,11 @@ std::uint64_t verdicts(const Scene& scene, Executor& executor) {
         cull::find_visible(tree, views.back(), visible, {}, executor);
         digest.add(visible.ids()).add(std::uint64_t{visible.inside_count()});
         cull::VerdictBits bits;
-        cull::find_visible(set, scene.boxes, views.back(), bits, cull::Mode::conservative, executor);
+        cull::find_visible(set, scene.boxes, views.back(), bits, cull::CullMode::conservative, executor);
         digest.add(bits.visible).add(bits.inside);
     }
     std::vector<std::uint32_t> masks(scene.boxes.size());
-    cull::find_visible(set, scene.boxes, {}, views, masks, cull::Mode::exact, executor);
+    cull::find_visible(set, scene.boxes, {}, views, masks, cull::CullMode::exact, executor);
     return digest.add(masks).value();
 }
 
@@ -58,7 +58,7 @@ std::uint64_t orders(const Scene& scene, Executor& executor) {
     const auto tree = *boxtree::BoxTree::build(scene.boxes, {}, executor);
     cull::VisibleSet visible;
     for (const Frustum& frustum : scene.frusta) {
-        cull::find_visible(tree, {frustum}, visible, {cull::Mode::exact, cull::Order::tree}, executor);
+        cull::find_visible(tree, {frustum}, visible, {cull::CullMode::exact, cull::ResultOrder::tree}, executor);
         digest.add(visible.ids()).add(std::uint64_t{visible.inside_count()});
     }
     return digest.value();

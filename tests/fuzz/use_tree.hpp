@@ -8,8 +8,8 @@ namespace crofton::fuzz {
 
 inline void query(const boxtree::BoxTree& tree) {
     cull::VisibleSet visible;
-    for (const auto order : {cull::Order::ascending, cull::Order::tree}) {
-        cull::find_visible(tree, {*frustum_of(Camera{})}, visible, {cull::Mode::exact, order});
+    for (const auto order : {cull::ResultOrder::ascending, cull::ResultOrder::tree}) {
+        cull::find_visible(tree, {*frustum_of(Camera{})}, visible, {cull::CullMode::exact, order});
         for (const boxtree::ItemId item : visible.ids())
             if (item >= tree.boxes().size()) std::abort();
     }

@@ -33,10 +33,10 @@ crofton_status check_query(const crofton_view* view, const crofton_cull_options*
     return check_jobs(jobs, function);
 }
 
-cull::Options to_options(const crofton_cull_options* options) {
+cull::CullOptions to_options(const crofton_cull_options* options) {
     if (!options) return {};
-    return {options->conservative ? cull::Mode::conservative : cull::Mode::exact,
-            options->tree_order ? cull::Order::tree : cull::Order::ascending};
+    return {options->conservative ? cull::CullMode::conservative : cull::CullMode::exact,
+            options->tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
 }
 
 const cull::View& set_view(crofton_visible_set& visible, const crofton_view& view) {

@@ -4,6 +4,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>
+#include <crofton/simd/compress-inl.hpp>
 
 #include "block_filter.hpp"
 #include "bound_blocks.hpp"
@@ -11,15 +12,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, kBoxBlock>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
 HWY_INLINE std::uint32_t bits_of(D d, M mask, std::size_t l) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    return (static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8) << l;
+    return simd::mask_bits(d, mask) << l;
 }
 
 // The reach has five roundings of 2^-24, the centre two and the difference one of their sum.
@@ -111,8 +111,7 @@ using DI = hn::RebindToUnsigned<D>;
 HWY_INLINE std::size_t put_lanes(M mask, std::uint32_t base, std::uint32_t* out) {
     const DI d;
     const auto lanes = hn::Add(hn::Iota(d, 0), hn::Set(d, base));
-    hn::StoreU(hn::Compress(lanes, hn::RebindMask(d, mask)), d, out);
-    return hn::CountTrue(D(), mask);
+    return simd::compress_store(d, lanes, hn::RebindMask(d, mask), out);
 }
 
 // A leaf and the boxes gathered to be compared with it.

@@ -1,6 +1,8 @@
 #include "id_bits_kernel.hpp"
 
-// Compressing bytes is worth a target of its own.
+#include <cstring>
+
+// Also compile for AVX-512 VBMI2, which compresses bytes.
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "id_bits_kernel.cpp"
@@ -9,7 +11,7 @@
 // clang-format on
 #include <hwy/highway.h>
 
-#include "block_tests-inl.hpp"
+#include "tree/block_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
@@ -34,7 +36,7 @@ HWY_INLINE void mark(std::uint32_t id, std::uint64_t* bits) {
     bits[id / 64] |= std::uint64_t{1} << (id % 64);
 }
 
-void MarkIds(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
+void mark_ids(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
     std::size_t i = 0;
 #if HWY_TARGET != HWY_SCALAR
     const DU du;
@@ -82,12 +84,11 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
     }
     return count;
 #else
-    const VU lanes = hn::Iota(du, 0);  // from another start it would be stored lane by lane
+    constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
     std::size_t count = 0;
-    for (std::uint32_t l = 0; l < 64; l += static_cast<std::uint32_t>(hn::Lanes(du))) {
-        const auto mask = mask_of(word >> l);
-        hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(du, base + l)), mask), du, ids + count);
-        count += hn::CountTrue(du, mask);
+    for (std::uint32_t l = 0; l < 64; l += kLanes) {
+        const std::uint32_t bits = static_cast<std::uint32_t>(word >> l) & kAll;
+        count += simd::store_positions(du, bits, base + l, ids + count);
     }
     return count;
 #endif
@@ -102,19 +103,24 @@ HWY_INLINE void mark_word(std::uint64_t word, std::uint64_t marks, MarkBytes val
     const auto all = hn::IfThenElse(marked, hn::Set(d8, values.marked), hn::Set(d8, values.others));
     hn::StoreU(hn::Compress(all, mask), d8, bytes);
 #else
-    for (; word; word &= word - 1) *bytes++ = marks & word & (~word + 1) ? values.marked : values.others;
+    // Few are marked. Room for a word's length is kept.
+    std::memset(bytes, values.others, 64);
+    for (std::uint64_t rest = word & marks; rest; rest &= rest - 1) {
+        const std::uint64_t below = (rest & (~rest + 1)) - 1;
+        bytes[hwy::PopCount(word & below)] = values.marked;
+    }
 #endif
 }
 
-std::size_t ListBits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
+std::size_t list_ids(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w)
         if (bits[w] != 0) count += list_word(bits[w], static_cast<std::uint32_t>(64 * w), ids + count);
     return count;
 }
 
-std::size_t ListMarkedBits(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words, MarkBytes values,
-                           std::uint32_t* ids, std::uint8_t* bytes) {
+std::size_t list_marked_ids(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words, MarkBytes values,
+                            std::uint32_t* ids, std::uint8_t* bytes) {
     std::size_t count = 0;
     for (std::size_t w = 0; w < words; ++w) {
         if (bits[w] == 0) continue;
@@ -131,21 +137,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace crofton::cull {
 
-HWY_EXPORT(MarkIds);
-HWY_EXPORT(ListBits);
-HWY_EXPORT(ListMarkedBits);
+HWY_EXPORT(mark_ids);
+HWY_EXPORT(list_ids);
+HWY_EXPORT(list_marked_ids);
 
 void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
-    HWY_DYNAMIC_DISPATCH(MarkIds)(ids, count, bits);
+    HWY_DYNAMIC_DISPATCH(mark_ids)(ids, count, bits);
 }
 
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
-    return HWY_DYNAMIC_DISPATCH(ListBits)(bits, words, ids);
+    return HWY_DYNAMIC_DISPATCH(list_ids)(bits, words, ids);
 }
 
 std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words,
                                     MarkBytes values, std::uint32_t* ids, std::uint8_t* bytes) {
-    return HWY_DYNAMIC_DISPATCH(ListMarkedBits)(bits, marks, words, values, ids, bytes);
+    return HWY_DYNAMIC_DISPATCH(list_marked_ids)(bits, marks, words, values, ids, bytes);
 }
 
 }  // namespace crofton::cull

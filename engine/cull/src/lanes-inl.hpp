@@ -1,8 +1,8 @@
 // Lanes of floats and of pairs of 16-bit integers. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
-#include <bit>
 #include <crofton/boxtree/layout.hpp>
-#include <cstring>
+#include <crofton/simd/compress-inl.hpp>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 #if defined(CROFTON_CULL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_LANES_INL
@@ -31,22 +31,16 @@ HWY_INLINE VF upper_half(VU pairs) {
     return hn::ConvertTo(DF(), hn::ShiftRight<16>(hn::BitCast(DI(), pairs)));
 }
 
-// Bit l for lane l. As one load of what was stored: bytes put together one by one cost more than the tests.
-template <class M>
-HWY_INLINE std::uint32_t bits_of(M mask) {
-    static_assert(std::endian::native == std::endian::little);
-    alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(DF(), mask, bytes);
-    std::uint16_t bits;
-    std::memcpy(&bits, bytes, 2);
-    return bits;
+namespace simd = crofton::simd::HWY_NAMESPACE;
+
+// Bit l for lane l.
+HWY_INLINE std::uint32_t bits_of(MF mask) {
+    return simd::mask_bits(DF(), mask);
 }
 
-// The lowest bits as a mask. Eight bytes are stored and loaded as one: parts would have to wait for each other.
+// The lowest bits as a mask.
 HWY_INLINE hn::Mask<DU> mask_of(std::uint64_t bits) {
-    alignas(8) std::uint8_t bytes[8];
-    std::memcpy(bytes, &bits, 8);
-    return hn::LoadMaskBits(DU(), bytes);
+    return simd::mask_from_bits(DU(), bits);
 }
 
 // sum + Σ of the products of the signed halves of a and b, in each lane. Exact: the planes see to the range.

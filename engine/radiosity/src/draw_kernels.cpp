@@ -6,11 +6,13 @@
 #define HWY_TARGET_INCLUDE "draw_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <crofton/simd/compress-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::radiosity::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 using D = hn::CappedTag<float, kDrawLanes>;
 using V = hn::Vec<D>;
 using DI = hn::RebindToSigned<D>;
@@ -83,9 +85,9 @@ std::size_t covered(const Projected& chunk, const std::uint32_t* triangles, cons
         // Counter-clockwise in a right-handed grid: the normal runs with the line, which so comes from the back.
         const auto front = hn::IfThenElseZero(hn::RebindMask(du, hn::Lt(area, zero)), hn::Set(du, kFront));
         const auto which = hn::RebindMask(du, inside);
-        hn::CompressStore(hn::BitCast(du, cell), which, du, out_cell + used);
-        hn::CompressStore(hn::Or(hn::BitCast(du, triangle), front), which, du, out_triangle + used);
-        used += hn::CompressStore(t, inside, d, out_t + used);
+        simd::compress_store(du, hn::BitCast(du, cell), which, out_cell + used);
+        simd::compress_store(du, hn::Or(hn::BitCast(du, triangle), front), which, out_triangle + used);
+        used += simd::compress_store(d, t, inside, out_t + used);
     }
     return used;
 }

@@ -93,17 +93,18 @@ struct Pipeline::State {
     void list_visible(const Frustum& frustum) {
         const cull::View view{frustum};
         if (options.cull == CullMode::tree)
-            cull::find_visible(*tree, view, visible, {.mode = options.mode, .order = cull::Order::ascending}, executor);
+            cull::find_visible(*tree, view, visible, {.mode = options.mode, .order = cull::ResultOrder::ascending},
+                               executor);
         else
             cull::find_visible(bounds.boxes(), scene.layer_masks(), view, visible,
-                               {.mode = options.mode, .order = cull::Order::ascending}, executor);
+                               {.mode = options.mode, .order = cull::ResultOrder::ascending}, executor);
         visible_ids.clear();
         for (std::size_t k = 0; k < visible.size(); ++k) {
             const scene::InstanceId instance = visible.ids()[k];
             // Spheres by planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
-            const auto verdict = bounds.spheres().empty()
-                                     ? visible.verdicts()[k]
-                                     : cull::classify(frustum, bounds.spheres()[instance], cull::Mode::conservative);
+            const auto verdict = bounds.spheres().empty() ? visible.verdicts()[k]
+                                                          : cull::classify(frustum, bounds.spheres()[instance],
+                                                                           cull::CullMode::conservative);
             verdicts[instance] = verdict;
             if (verdict != cull::Verdict::outside) visible_ids.push_back(instance);
         }

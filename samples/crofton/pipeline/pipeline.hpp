@@ -24,7 +24,7 @@ struct PipelineOptions {
     BoundsKind bounds = BoundsKind::obb_perimeter;
     CullMode cull = CullMode::tree;
     bool count_triangles = true;  // triangles_passed and improper, which cost more than the culling itself
-    cull::Mode mode = cull::Mode::exact;
+    cull::CullMode mode = cull::CullMode::exact;
     bool collide = true;
 };
 

@@ -46,7 +46,7 @@ void run_batch(Straddlers& straddlers, std::size_t count, Counts& counts) {
     set.assign(bounds);
     cull::VerdictBits exact, conservative;
     cull::find_visible(set, bounds, view, exact);
-    cull::find_visible(set, bounds, view, conservative, cull::Mode::conservative);
+    cull::find_visible(set, bounds, view, conservative, cull::CullMode::conservative);
     std::vector<std::uint32_t> masks(count);
     const std::array<cull::View, 2> views{cull::View{*frustum_of(straddlers.camera())}, view};
     cull::find_visible(set, bounds, {}, views, masks);
@@ -55,7 +55,7 @@ void run_batch(Straddlers& straddlers, std::size_t count, Counts& counts) {
         const cull::Verdict verdict = cull::classify(*frustum, bounds[i]);
         if (verdict != exact.verdict(i) || (!of_tree.empty() && verdict != of_tree[i]) ||
             (verdict != cull::Verdict::outside) != (masks[i] >> 1 & 1) ||
-            cull::classify(*frustum, bounds[i], cull::Mode::conservative) != conservative.verdict(i))
+            cull::classify(*frustum, bounds[i], cull::CullMode::conservative) != conservative.verdict(i))
             ++counts.disagreements;
         switch (prove(*frustum, bounds[i])) {
             case Proof::meets:

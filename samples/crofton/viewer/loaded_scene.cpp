@@ -37,7 +37,7 @@ pipeline::PipelineOptions options_of(const Method& method, const Settings& setti
     pipeline::PipelineOptions options;
     options.bounds = method.bounds;
     options.cull = method.cull;
-    options.mode = settings.exact ? cull::Mode::exact : cull::Mode::conservative;
+    options.mode = settings.exact ? cull::CullMode::exact : cull::CullMode::conservative;
     options.collide = settings.collisions;
     return options;
 }

@@ -4,11 +4,13 @@
 #define HWY_TARGET_INCLUDE "exact/cell_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <crofton/simd/compress-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::fit::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 using Tag = hn::CappedTag<double, kBatch>;
 using V = hn::Vec<Tag>;
 
@@ -314,9 +316,9 @@ std::size_t filter_list(const SideLists& lists, std::size_t side, const CellBatc
         const V highest = hn::Add(hn::Mul(sign, along), hn::Mul(two, most));
         auto keep = hn::Ge(highest, splat(-1e-15));
         keep = hn::And(keep, hn::FirstN(tag, count - i));
-        hn::CompressStore(p.x, keep, tag, out.x + kept);
-        hn::CompressStore(p.y, keep, tag, out.y + kept);
-        kept += hn::CompressStore(p.z, keep, tag, out.z + kept);
+        simd::compress_store(tag, p.x, keep, out.x + kept);
+        simd::compress_store(tag, p.y, keep, out.y + kept);
+        kept += simd::compress_store(tag, p.z, keep, out.z + kept);
     }
     return kept;
 }

@@ -73,7 +73,7 @@ using SphereSet = BoundSet<Sphere>;
 // The view's layers are not looked at. Allocates nothing once `verdicts` has been used for a set of this size.
 template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
-                  VerdictBits& verdicts, Mode mode = Mode::exact, Executor& executor = serial_executor());
+                  VerdictBits& verdicts, CullMode mode = CullMode::exact, Executor& executor = serial_executor());
 
 // Up to 32 views in one pass: bit v of view_masks[i] says that views[v] sees bound i. Without layer masks everything is
 // in all layers; layers are looked at last, so that `statistics`, one per view or none, count all bounds. Requires one
@@ -81,8 +81,8 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
 template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
                   std::span<const std::uint32_t> layer_masks, std::span<const View> views,
-                  std::span<std::uint32_t> view_masks, Mode mode = Mode::exact, Executor& executor = serial_executor(),
-                  std::span<Statistics> statistics = {});
+                  std::span<std::uint32_t> view_masks, CullMode mode = CullMode::exact,
+                  Executor& executor = serial_executor(), std::span<Statistics> statistics = {});
 
 // The indices of the bits that are set, ascending, into `ids`, which needs room for 16 more than there are; returns how
 // many.

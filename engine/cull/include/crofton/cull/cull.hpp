@@ -23,22 +23,22 @@ inline constexpr std::size_t kMaxViews = 32;  // in one pass
 
 // Tree order costs nothing and is the same on every run; items that a renderer lays out in the tree's order
 // (BoxTree::slot_items) come out in long ascending runs.
-enum class Order : std::uint8_t { ascending, tree };
+enum class ResultOrder : std::uint8_t { ascending, tree };
 
-struct Options {
-    Mode mode = Mode::exact;
-    Order order = Order::ascending;
+struct CullOptions {
+    CullMode mode = CullMode::exact;
+    ResultOrder order = ResultOrder::ascending;
 };
 
 // Finds the items that `view` sees and whose box is not outside; `visible` is overwritten, and once it has grown to the
 // largest answer nothing is allocated. Same answer, bit for bit, from tree and list, with any executor and instruction
 // set.
-void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& visible, const Options& options = {},
+void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& visible, const CullOptions& options = {},
                   Executor& executor = serial_executor());
 
 // Item i is boxes[i] with layer mask layer_masks[i], or all layers if that span is empty. Boxes that are not finite are
 // straddling: reported, never lost.
 void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view,
-                  VisibleSet& visible, const Options& options = {}, Executor& executor = serial_executor());
+                  VisibleSet& visible, const CullOptions& options = {}, Executor& executor = serial_executor());
 
 }  // namespace crofton::cull

@@ -36,6 +36,6 @@ class ManyVisible {
 // For each view the items that find_visible() finds for it alone. Requires at most 32 views. Allocates nothing once
 // `visible` has been used for as many views of a tree of this size.
 void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
-                  Mode mode = Mode::exact);
+                  CullMode mode = CullMode::exact);
 
 }  // namespace crofton::cull

@@ -34,14 +34,14 @@ class MovingBoxes {
     unsigned now_ = 0;
 };
 
-// As find_visible() with the tree alone, in every respect: what rests and what moves in one answer. In Order::tree the
-// items that move follow those that rest, inside and straddling apart. Requires the tree that `moving` was updated
-// with.
+// As find_visible() with the tree alone, in every respect: what rests and what moves in one answer. In
+// ResultOrder::tree the items that move follow those that rest, inside and straddling apart. Requires the tree that
+// `moving` was updated with.
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
-                  const Options& options = {}, Executor& executor = serial_executor());
+                  const CullOptions& options = {}, Executor& executor = serial_executor());
 
 // Up to 32 views in one pass; the items that move come last.
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                  ManyVisible& visible, Mode mode = Mode::exact);
+                  ManyVisible& visible, CullMode mode = CullMode::exact);
 
 }  // namespace crofton::cull

@@ -12,13 +12,13 @@ namespace crofton::cull {
 
 class VisibleSet {
   public:
-    // The items seen, each once: in Order::ascending by id; in Order::tree in an order that depends on tree and view
-    // alone: those inside first, then those straddling, each part by and large along the tree.
+    // The items seen, each once: in ResultOrder::ascending by id; in ResultOrder::tree in an order that depends on tree
+    // and view alone: those inside first, then those straddling, each part by and large along the tree.
     [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_; }
-    // In Order::ascending: verdicts()[i], straddling or inside, is that of ids()[i]. In Order::tree inside_count() says
-    // it.
+    // In ResultOrder::ascending the verdict of ids()[i] is verdicts()[i]. In ResultOrder::tree there are none: the first
+    // inside_count() ids are inside, the others straddle.
     [[nodiscard]] std::span<const Verdict> verdicts() const {
         return std::span(verdicts_).first(verdicts_.empty() ? 0 : size_);
     }

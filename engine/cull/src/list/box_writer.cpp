@@ -1,0 +1,286 @@
+#include "list/box_writer.hpp"
+
+#include <hwy/cache_control.h>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "list/box_writer.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t kSixteen = boxtree::kWidth;
+using DD = hn::CappedTag<double, kSixteen>;
+
+// As Obb has it: a centre, three axes, three half extents.
+constexpr std::size_t kBoxBytes = sizeof(Obb), kShapeBytes = 24;
+
+// Centres beyond this are left to others, and so are chunks whose origin is: then all centres here are below 1e30.
+constexpr double kFarthest = 4e29;
+
+// Sixteen boxes side by side, and the frames that they are to be written in.
+struct Boxes {
+    alignas(64) double center[3][kSixteen];
+    alignas(64) float shape[3][kSixteen][4];  // nine axes' components, three half extents: loaded interleaved
+    alignas(64) double origin[3][kSixteen];
+    alignas(64) float per_quantum[kSixteen];
+
+    HWY_INLINE void put(std::size_t lane, const unsigned char* box) {
+        for (std::size_t j = 0; j < 3; ++j) std::memcpy(&center[j][lane], box + 8 * j, 8);
+        for (std::size_t q = 0; q < 3; ++q) std::memcpy(shape[q][lane], box + kShapeBytes + 16 * q, 16);
+    }
+    HWY_INLINE void put_frame(std::size_t lane, const ListChunk& chunk) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            const bool far = !(std::abs(chunk.origin[j]) <= kFarthest);
+            origin[j][lane] = far ? std::numeric_limits<double>::quiet_NaN() : chunk.origin[j];
+        }
+        per_quantum[lane] = static_cast<float>(1.0 / chunk.quantum);  // exact, a power of two
+    }
+};
+
+// What becomes of them. Coordinates and radius are in quanta, and those of a row that says nothing are 0 and
+// kUnboundedRadius.
+struct Written {
+    alignas(64) float offset[3][kSixteen];
+    alignas(64) std::int32_t at[3][kSixteen];
+    alignas(64) std::uint32_t xy[kSixteen];
+    alignas(64) std::uint32_t zr[kSixteen];
+    alignas(64) std::uint32_t radius[kSixteen];
+    alignas(64) float reach[kSixteen];
+    alignas(64) std::uint32_t record[2][kSixteen][4];
+    std::uint32_t usable = 0, bounded = 0;  // a bit a lane
+
+    HWY_INLINE void copy_record(std::size_t lane, BoxRecord& to) const {
+        for (std::size_t q = 0; q < 2; ++q)
+            std::memcpy(reinterpret_cast<unsigned char*>(&to) + 16 * q, record[q][lane], 16);
+    }
+};
+
+HWY_INLINE void write_offsets(const Boxes& boxes, Written& to) {
+    const DD d;
+    const hn::Rebind<float, DD> df;
+    for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(d))
+        for (std::size_t j = 0; j < 3; ++j) {
+            const auto offset = hn::Sub(hn::Load(d, boxes.center[j] + l), hn::Load(d, boxes.origin[j] + l));
+            hn::Store(hn::DemoteTo(df, offset), df, to.offset[j] + l);
+        }
+}
+
+HWY_INLINE VU pairs_of(VI lower, VI upper) {
+    const VI low = hn::And(lower, hn::Set(DI(), 0xffff));
+    return hn::BitCast(DU(), hn::Or(low, hn::ShiftLeft<16>(upper)));
+}
+
+// How far the axes are from orthonormal, Σ |axes[i] · axes[k] − δik|, within 30 · 2^-24; NaN if a component is.
+HWY_INLINE VF deviation(const VF (&axes)[9]) {
+    const DF d;
+    VF sum = hn::Zero(d);
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = i; k < 3; ++k) {
+            VF dot = hn::Mul(axes[3 * i], axes[3 * k]);
+            for (std::size_t j = 1; j < 3; ++j) dot = hn::Add(dot, hn::Mul(axes[3 * i + j], axes[3 * k + j]));
+            sum = hn::Add(sum, hn::Abs(i == k ? hn::Sub(dot, hn::Set(d, 1.0f)) : dot));
+        }
+    return sum;
+}
+
+// A box is taken if it certainly passes validate(Obb): its axes are orthonormal to 1e-4 even summed, no half extent is
+// negative, none beyond 1e18, the centre below 1e30. With half extents h the farthest corner is within
+// Σ h² · 1.0001 + 2 · 1e-4 · Σ h_i h_k ≤ 1.0003 · Σ h², squared: 1.0002 · √Σ h² covers that and the roundings; what
+// underflows is far below 1e-15. So no edge has more than 32766 units, each within 3 · 2^-24 · 32767 + 1/2.
+HWY_INLINE void write(const Boxes& boxes, Written& to) {
+    const DF d;
+    const DI di;
+    const DU du;
+    write_offsets(boxes, to);
+    to.usable = to.bounded = 0;
+    for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(d)) {
+        VF axes[9], half[3];
+        hn::LoadInterleaved4(d, boxes.shape[0][l], axes[0], axes[1], axes[2], axes[3]);
+        hn::LoadInterleaved4(d, boxes.shape[1][l], axes[4], axes[5], axes[6], axes[7]);
+        hn::LoadInterleaved4(d, boxes.shape[2][l], axes[8], half[0], half[1], half[2]);
+        const VF square =
+            hn::Add(hn::Add(hn::Mul(half[0], half[0]), hn::Mul(half[1], half[1])), hn::Mul(half[2], half[2]));
+        const VF radius = hn::Add(hn::Mul(hn::Sqrt(square), hn::Set(d, 1.0002f)), hn::Set(d, 1e-15f));
+        const VF offset[3] = {hn::Load(d, to.offset[0] + l), hn::Load(d, to.offset[1] + l),
+                              hn::Load(d, to.offset[2] + l)};
+        const VF sum = hn::Add(hn::Add(hn::Abs(offset[0]), hn::Abs(offset[1])), hn::Abs(offset[2]));
+        const VF reach = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f));
+        const auto usable =
+            hn::And(hn::And(hn::Le(deviation(axes), hn::Set(d, 0.99e-4f)), hn::Le(square, hn::Set(d, 1e36f))),
+                    hn::And(hn::Ge(hn::Min(hn::Min(half[0], half[1]), half[2]), hn::Zero(d)),
+                            hn::Le(reach, hn::Set(d, static_cast<float>(kFarthest)))));
+
+        const VF per_quantum = hn::Load(d, boxes.per_quantum + l);
+        const VF at[3] = {hn::Mul(offset[0], per_quantum), hn::Mul(offset[1], per_quantum),
+                          hn::Mul(offset[2], per_quantum)};
+        const VF farthest = hn::Max(hn::Max(hn::Abs(at[0]), hn::Abs(at[1])), hn::Abs(at[2]));
+        const VF size = hn::Mul(radius, hn::Mul(per_quantum, hn::Set(d, 1.0f + 0x1p-9f + 0x1p-18f)));
+        const auto bounded =
+            hn::And(usable, hn::And(hn::Le(farthest, hn::Set(d, static_cast<float>(kMaxRowCoordinate))),
+                                    hn::Le(size, hn::Set(d, 65530.0f))));
+        VI whole[3];
+        for (std::size_t j = 0; j < 3; ++j) {
+            whole[j] = hn::NearestInt(hn::IfThenElseZero(bounded, at[j]));
+            hn::Store(whole[j], di, to.at[j] + l);
+        }
+        const VI shown = hn::IfThenElse(hn::RebindMask(di, bounded),
+                                        hn::Add(hn::ConvertTo(di, hn::IfThenElseZero(bounded, size)), hn::Set(di, 2)),
+                                        hn::Set(di, std::int32_t{kUnboundedRadius}));
+        hn::Store(pairs_of(whole[0], whole[1]), du, to.xy + l);
+        hn::Store(pairs_of(whole[2], shown), du, to.zr + l);
+        hn::Store(hn::BitCast(du, shown), du, to.radius + l);
+        hn::Store(hn::IfThenElseZero(usable, reach), d, to.reach + l);
+
+        const VU upper = hn::And(hn::Add(hn::BitCast(du, radius), hn::Set(du, 0xffffu)), hn::Set(du, 0xffff0000u));
+        const VF per_unit = hn::Div(hn::Set(d, 0x1p15f), hn::BitCast(d, upper));
+        VI units[9];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VF scale = hn::Mul(half[k], per_unit);
+            for (std::size_t j = 0; j < 3; ++j) units[3 * k + j] = hn::NearestInt(hn::Mul(axes[3 * k + j], scale));
+        }
+        const VU first = hn::Or(hn::ShiftRight<16>(upper), hn::ShiftLeft<16>(hn::BitCast(du, units[0])));
+        hn::StoreInterleaved4(hn::BitCast(du, offset[0]), hn::BitCast(du, offset[1]), hn::BitCast(du, offset[2]), first,
+                              du, to.record[0][l]);
+        hn::StoreInterleaved4(pairs_of(units[1], units[2]), pairs_of(units[3], units[4]), pairs_of(units[5], units[6]),
+                              pairs_of(units[7], units[8]), du, to.record[1][l]);
+        to.usable |= bits_of(usable) << l;
+        to.bounded |= bits_of(bounded) << l;
+    }
+}
+
+// The largest of a chunk's rows and records, lane by lane.
+struct Extremes {
+    alignas(64) std::int32_t at[3][kSixteen] = {};
+    alignas(64) std::uint32_t radius[kSixteen] = {};
+    alignas(64) float reach[kSixteen] = {};
+
+    HWY_INLINE void include(const Written& written) {
+        for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(DF())) {
+            for (std::size_t j = 0; j < 3; ++j)
+                hn::Store(hn::Max(hn::Load(DI(), at[j] + l), hn::Abs(hn::Load(DI(), written.at[j] + l))), DI(),
+                          at[j] + l);
+            hn::Store(hn::Max(hn::Load(DU(), radius + l), hn::Load(DU(), written.radius + l)), DU(), radius + l);
+            hn::Store(hn::Max(hn::Load(DF(), reach + l), hn::Load(DF(), written.reach + l)), DF(), reach + l);
+        }
+    }
+};
+
+std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListChunk& chunk, RowBlock* rows,
+                        BoxRecord* records, std::uint32_t* rejected) {
+    Boxes boxes[2];  // in turn: a wide load right after narrow stores to the same bytes stalls
+    const auto put = [&](Boxes& to, std::size_t first) HWY_ATTR {
+        for (std::size_t lane = 0; lane < kSixteen; ++lane)
+            to.put(lane, all_boxes + kBoxBytes * std::min(first + lane, count - 1));
+    };
+    for (Boxes& to : boxes)
+        for (std::size_t lane = 0; lane < kSixteen; ++lane) to.put_frame(lane, chunk);
+    Extremes extremes;
+    Written written;
+    std::size_t rejected_count = 0, bounded = 0;
+    if (count > 0) put(boxes[0], 0);
+    for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
+        if (first + kSixteen < count) put(boxes[turn ^ 1], first + kSixteen);
+        write(boxes[turn], written);
+        extremes.include(written);
+        RowBlock& block = rows[first / kSixteen];
+        std::memcpy(block.xy, written.xy, sizeof block.xy);
+        std::memcpy(block.zr, written.zr, sizeof block.zr);
+        const std::size_t used = std::min(kSixteen, count - first);
+        for (std::size_t lane = 0; lane < used; ++lane) written.copy_record(lane, records[first + lane]);
+        const std::uint32_t valid = (1u << used) - 1;
+        bounded += hwy::PopCount(std::uint64_t{written.bounded & valid});
+        for (std::uint32_t rest = ~written.usable & valid; rest; rest &= rest - 1)
+            rejected[rejected_count++] = static_cast<std::uint32_t>(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
+    }
+    for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = *std::max_element(extremes.at[j], extremes.at[j] + kSixteen);
+    chunk.largest_radius = *std::max_element(extremes.radius, extremes.radius + kSixteen);
+    chunk.reach = *std::max_element(extremes.reach, extremes.reach + kSixteen);
+    chunk.strays = static_cast<std::uint32_t>(count - bounded);
+    return rejected_count;
+}
+
+std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* items, std::size_t count,
+                        ListChunk* chunks, RowBlock* rows, BoxRecord* records, std::uint32_t* rejected) {
+    Boxes boxes[2];
+    const auto put = [&](Boxes& to, std::size_t first) HWY_ATTR {
+        for (std::size_t lane = 0; lane < kSixteen; ++lane) {
+            const std::uint32_t item = items[std::min(first + lane, count - 1)];
+            to.put(lane, all_boxes + kBoxBytes * item);
+            to.put_frame(lane, chunks[item / kChunk]);
+        }
+    };
+    // Scattered items wait for memory: it is asked for this many ahead.
+    constexpr std::size_t kAhead = 48;
+    const auto ask = [&](std::size_t i) {
+        const std::uint32_t item = items[i];
+        hwy::Prefetch(all_boxes + kBoxBytes * item);
+        hwy::Prefetch(all_boxes + kBoxBytes * item + kBoxBytes - 4);
+        hwy::Prefetch(&rows[item / kSixteen].xy);
+        hwy::Prefetch(&rows[item / kSixteen].zr);
+        hwy::Prefetch(&records[item]);
+    };
+    for (std::size_t i = 0; i < std::min(kAhead, count); ++i) ask(i);
+    Written written;
+    std::size_t rejected_count = 0;
+    if (count > 0) put(boxes[0], 0);
+    for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
+        for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSixteen, count); ++i) ask(i);
+        if (first + kSixteen < count) put(boxes[turn ^ 1], first + kSixteen);
+        write(boxes[turn], written);
+        for (std::size_t lane = 0; lane < std::min(kSixteen, count - first); ++lane) {
+            const std::uint32_t item = items[first + lane];
+            if (!(written.usable >> lane & 1)) {
+                rejected[rejected_count++] = item;
+                continue;
+            }
+            ListChunk& chunk = chunks[item / kChunk];
+            RowBlock& block = rows[item / kSixteen];
+            const std::uint32_t was_stray = block.zr[item % kSixteen] >> 16 == kUnboundedRadius;
+            chunk.strays = chunk.strays - was_stray + (~written.bounded >> lane & 1);
+            block.xy[item % kSixteen] = written.xy[lane];
+            block.zr[item % kSixteen] = written.zr[lane];
+            written.copy_record(lane, records[item]);
+            for (std::size_t j = 0; j < 3; ++j)
+                chunk.extent[j] = std::max(chunk.extent[j], std::abs(written.at[j][lane]));
+            chunk.largest_radius = std::max(chunk.largest_radius, written.radius[lane]);
+            chunk.reach = std::max(chunk.reach, written.reach[lane]);
+        }
+    }
+    return rejected_count;
+}
+
+}  // namespace
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::cull {
+
+HWY_EXPORT(write_chunk);
+HWY_EXPORT(write_items);
+
+std::size_t write_boxes(const Obb* boxes, std::size_t count, ListChunk& chunk, RowBlock* rows, BoxRecord* records,
+                        std::uint32_t* rejected) {
+    return HWY_DYNAMIC_DISPATCH(write_chunk)(reinterpret_cast<const unsigned char*>(boxes), count, chunk, rows, records,
+                                             rejected);
+}
+
+std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_t count, ListChunk* chunks,
+                        RowBlock* rows, BoxRecord* records, std::uint32_t* rejected) {
+    return HWY_DYNAMIC_DISPATCH(write_items)(reinterpret_cast<const unsigned char*>(boxes), items, count, chunks, rows,
+                                             records, rejected);
+}
+
+}  // namespace crofton::cull
+#endif

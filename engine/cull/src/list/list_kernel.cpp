@@ -1,0 +1,108 @@
+#include "list/list_kernel.hpp"
+
+#include <algorithm>
+#include <crofton/cull/statistics.hpp>
+
+// Also compile for AVX-512 VNNI (`vpdpwssd`).
+#define HWY_WANT_AVX3_DL 1
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "list/list_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "list/open_records-inl.hpp"
+#include "list/row_tests-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+namespace {
+
+template <class Record>
+class ChunkQuery {
+  public:
+    ChunkQuery(const ListKernelInput<Record>& input, ListKernelOutput& output)
+        : in_(input), out_(output), words_((input.count + 63) / 64) {
+        set_row_planes(*input.view, *input.chunk, rows_);
+    }
+
+    void run() {
+        out_.undecided_count = out_.settled_count = 0;
+        out_.improper = out_.open = 0;
+        const std::uint64_t last = ~std::uint64_t{0} >> (64 * words_ - in_.count);
+        if (rows_.outside || rows_.planes == 0) {
+            std::fill_n(out_.visible, words_, rows_.outside ? 0 : ~std::uint64_t{0});
+            std::fill_n(out_.inside, words_, rows_.outside ? 0 : ~std::uint64_t{0});
+            out_.visible[words_ - 1] &= last;
+            out_.inside[words_ - 1] &= last;
+            return;
+        }
+        std::uint64_t open[kChunk / 64];
+        for (std::size_t w = 0; w < words_; ++w) {
+            std::uint64_t outside = 0, inside = 0;
+            for (std::size_t l = 0; l < 16 && !rows_.useless; l += hn::Lanes(DI())) {
+                const RowTest test(RowLanes(in_.rows + 4 * w, l), rows_);
+                outside |= bits_of_blocks(test.outside, l);
+                inside |= bits_of_blocks(test.inside, l);
+            }
+            const std::uint64_t valid = w + 1 == words_ ? last : ~std::uint64_t{0};
+            out_.visible[w] = ~outside & valid;
+            out_.inside[w] = inside & valid;
+            open[w] = ~(outside | inside) & valid;
+        }
+        std::uint32_t indices[kChunk + 16], unsettled[kChunk + 16];
+        const std::size_t count = list_sparse_bits(open, words_, indices);
+        OpenRecords<Record, ChunkQuery> records(*in_.view, *in_.chunk, in_.records, rows_.planes, in_.exact, *this);
+        const OpenCounts counts = records.test(indices, count, unsettled);
+        out_.settled_count = counts.settled;
+        out_.improper = counts.improper;
+        out_.open = counts.straddling + counts.undecided;
+    }
+
+    HWY_INLINE void outside(std::uint32_t i) { out_.visible[i / 64] &= ~bit(i); }
+    HWY_INLINE void inside(std::uint32_t i) { out_.inside[i / 64] |= bit(i); }
+    HWY_INLINE void undecided(std::uint32_t i) { out_.undecided[out_.undecided_count++] = i; }
+
+  private:
+    static HWY_INLINE std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << (i % 64); }
+
+    const ListKernelInput<Record>& in_;
+    ListKernelOutput& out_;
+    std::size_t words_;
+    RowPlanes rows_;
+};
+
+void run_boxes(const ListKernelInput<BoxRecord>& input, ListKernelOutput& output) {
+    ChunkQuery<BoxRecord>(input, output).run();
+}
+void run_aabbs(const ListKernelInput<AabbRecord>& input, ListKernelOutput& output) {
+    ChunkQuery<AabbRecord>(input, output).run();
+}
+void run_spheres(const ListKernelInput<SphereRecord>& input, ListKernelOutput& output) {
+    ChunkQuery<SphereRecord>(input, output).run();
+}
+
+}  // namespace
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::cull {
+
+HWY_EXPORT(run_boxes);
+HWY_EXPORT(run_aabbs);
+HWY_EXPORT(run_spheres);
+
+void run_list_kernel(const ListKernelInput<BoxRecord>& input, ListKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(run_boxes)(input, output);
+}
+void run_list_kernel(const ListKernelInput<AabbRecord>& input, ListKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(run_aabbs)(input, output);
+}
+void run_list_kernel(const ListKernelInput<SphereRecord>& input, ListKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(run_spheres)(input, output);
+}
+
+}  // namespace crofton::cull
+#endif

@@ -1,0 +1,61 @@
+#include <hwy/cache_control.h>
+#include <algorithm>
+#include <crofton/cull/moving_boxes.hpp>
+
+#include "tree/query.hpp"
+
+namespace crofton::cull {
+
+Result<void> MovingBoxes::update(const boxtree::BoxTree& tree, std::span<const ItemId> items,
+                                 std::span<const Obb> boxes, Executor& executor) {
+    if (items.size() != boxes.size())
+        return fail(ErrorCode::invalid_argument, kNoItem, "moving boxes: as many boxes as items are needed");
+    for (const ItemId item : items)
+        if (!tree.is_lifted(item))
+            return fail(ErrorCode::out_of_range, item, "moving boxes: the item has not been lifted from the tree");
+    const std::size_t valid = sets_[1 - now_].update(boxes, executor);
+    if (valid < boxes.size()) return validate(boxes[valid], items[valid]);
+    now_ = 1 - now_;
+    items_ = items;
+    boxes_ = boxes;
+    return {};
+}
+
+void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, const View& view, VisibleSet& visible,
+                  const CullOptions& options, Executor& executor) {
+    Query(view, visible, options, &moving).run(resting, executor);
+}
+
+// Straddling ones go to `straddling`.
+void Query::add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor) {
+    VerdictBits& bits = visible_.moving_bits_;
+    find_visible(moving_->set(), moving_->boxes(), view_, bits, options_.mode, executor);
+    if (kCountStatistics) visible_.statistics_ += bits.statistics;
+    if (visible_.listed_.size() < moving_->size() + boxtree::kWidth)
+        visible_.listed_.resize(moving_->size() + boxtree::kWidth);
+    for (std::size_t w = 0; w < bits.visible.size(); ++w) bits.visible[w] &= ~bits.inside[w];
+    append_moving(tree, bits.inside, visible_.ids_.data(), inside);
+    append_moving(tree, bits.visible, visible_.straddling_.data(), straddling);
+}
+
+// The items of the bits that are set, if they are in one of the view's layers.
+void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
+                          std::size_t& count) {
+    std::uint32_t* listed = visible_.listed_.data();
+    const std::size_t found = list_bits(bits, visible_.listed_);
+    for (std::size_t i = 0; i < found; ++i) listed[i] = moving_->items()[listed[i]];
+    if (tree.lifted_layers() & view_.layer_mask) {
+        std::copy_n(listed, found, to + count);
+        count += found;
+        return;
+    }
+    // Layers lie anywhere: they are asked for ahead. What is in none is overwritten by the next.
+    constexpr std::size_t kAhead = 24;
+    for (std::size_t i = 0; i < found; ++i) {
+        hwy::Prefetch(&tree.layer_masks()[listed[std::min(i + kAhead, found - 1)]]);
+        to[count] = listed[i];
+        count += (tree.layer_masks()[listed[i]] & view_.layer_mask) != 0;
+    }
+}
+
+}  // namespace crofton::cull

@@ -1,0 +1,28 @@
+// A view's planes in the integers of a chunk's rows.
+#pragma once
+#include <crofton/cull/list_layout.hpp>
+
+#include "kernel_view.hpp"
+
+namespace crofton::cull {
+
+inline constexpr int kRowNormalBits = 14;
+
+// s(x) = normal · x + offset for a row's integer centre x is within `slack` of 2^14 / quantum times the plane's exact
+// value at the bound's centre. So with the row's radius r, whose 2^-9 beyond the bound's radius covers normals that are
+// up to 1.0005 long, a bound is outside if s + 2^14 r < −slack, and inside of this plane if s − 2^14 r ≥ slack.
+struct RowPlanes {
+    std::uint32_t normal_xy[KernelView::kMaxPlanes];  // as RowBlock::xy
+    std::uint32_t normal_z[KernelView::kMaxPlanes];   // upper half 0
+    std::int32_t offset[KernelView::kMaxPlanes];
+    std::uint32_t count;
+    std::int32_t slack;    // the largest of the planes
+    std::uint32_t planes;  // those above as bits of the view's: all but those that the whole chunk is inside of
+    bool outside;          // the whole chunk, of one plane
+    bool useless;          // the integers are too coarse here to say anything
+};
+
+// Writes to the caller's struct, which is too large to be copied.
+void set_row_planes(const KernelView& view, const ListChunk& chunk, RowPlanes& planes);
+
+}  // namespace crofton::cull

@@ -1,0 +1,59 @@
+// A view's planes in the integers of a tree's nodes and leaves.
+#pragma once
+#include <algorithm>
+#include <crofton/boxtree/layout.hpp>
+
+#include "kernel_view.hpp"
+
+namespace crofton::cull {
+
+// In units of 2^-14 of the block's unit: a plane's value at integers x of the block is offset + pair_plane · x, and
+// `slack` bounds what that, and a box's reach added or taken away, may be off by (boxtree::rounding_of).
+struct BlockPlane {
+    std::int32_t offset, slack;
+};
+
+// For the blocks of a tree. The offset's seven roundings of 2^-53 of Σ|origin − view| + |plane offset| each, as in
+// local_plane, for any block whose origin lies in the root's bounds, or farther out by less than the block's reach: the
+// share of that in `rounding` has room for it.
+inline void bring_before(const boxtree::Node& root, KernelView& view) {
+    const LocalOrigin at = local_origin(view, root.origin, root.reach);
+    for (std::uint32_t i = 0; i < view.plane_count; ++i)
+        view.far[i] = 0x1p-49 * (at.size + at.reach + std::fabs(view.planes[i].offset));
+}
+
+inline constexpr double kMostOffset = 1.2e9;
+
+inline double value_at(const KernelView& view, std::size_t i, const double* origin) {
+    const KernelPlane& plane = view.planes[i];
+    return plane.normal[0] * (origin[0] - view.origin[0]) + plane.normal[1] * (origin[1] - view.origin[1]) +
+           plane.normal[2] * (origin[2] - view.origin[2]) + plane.offset;
+}
+
+// In the block's units, not yet integers.
+struct ScaledPlane {
+    double offset, slack;
+};
+template <class Block>
+ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& block) {
+    const double per_quantum = static_cast<double>(block.per_quantum);
+    return {value_at(view, i, block.origin) * per_quantum,
+            (static_cast<double>(block.rounding) + view.far[i]) * per_quantum};
+}
+
+// Offsets are clamped where the sums, |offset| + 2^14 · 1.0005 · √3 · 32767, would leave 32 bits. A clamped offset is
+// nearer to 0 than the true one: a block that it finds certainly inside or outside is so.
+inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Node& node) {
+    const ScaledPlane plane = scaled_plane(view, i, node);
+    return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, plane.offset))),
+            static_cast<std::int32_t>(std::min(plane.slack, 0x7fffffff * 1.0))};
+}
+
+// Where the offset would have to be cut off the plane says nothing: a box that it cuts must be so for certain.
+inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Leaf& leaf) {
+    const ScaledPlane plane = scaled_plane(view, i, leaf);
+    if (!(std::fabs(plane.offset) <= kMostOffset && plane.slack <= kMostOffset)) return {0, 0x7fffffff};
+    return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.slack)};
+}
+
+}  // namespace crofton::cull

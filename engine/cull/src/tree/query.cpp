@@ -1,0 +1,350 @@
+#include "tree/query.hpp"
+
+#include <hwy/cache_control.h>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "exact/box_constraints.hpp"
+#include "id_bits_kernel.hpp"
+#include "list/direct_kernel.hpp"
+#include "tree/block_planes.hpp"
+
+namespace crofton::cull {
+namespace {
+
+// Vector stores run past the end of what they mean to write.
+constexpr std::size_t kPadding = boxtree::kWidth, kListPadding = 64;
+// Below this a query is over before another thread has woken.
+constexpr std::size_t kParallelItems = 65536;
+// Beside an item's id, which is below 2^30.
+constexpr std::uint32_t kInside = 0x80000000u;
+
+template <class T>
+void grow(Vector<T>& buffer, std::size_t size) {
+    if (buffer.size() < size) buffer.resize(size);
+}
+
+}  // namespace
+
+KernelView kernel_view_of(const View& view) {
+    KernelView result;  // planes beyond the last are not read
+    for (int j = 0; j < 3; ++j) result.origin[j] = view.frustum.origin[j];
+    result.plane_count = view.frustum.plane_count;
+    result.layer_mask = view.layer_mask;
+    for (std::uint32_t i = 0; i < view.frustum.plane_count; ++i) {
+        const Plane& plane = view.frustum.planes[i];
+        for (int j = 0; j < 3; ++j) {
+            result.planes[i].normal[j] = plane.normal[j];
+            result.planes[i].normal_f[j] = static_cast<float>(plane.normal[j]);
+        }
+        result.planes[i].offset = plane.offset;
+        // To the nearest, without the C library's function: a view is set up anew for every query.
+        int n[3];
+        for (int j = 0; j < 3; ++j) {
+            const double scaled = plane.normal[j] * 0x1p14;
+            n[j] = std::fabs(scaled) < 0x1p16 ? static_cast<int>(scaled + std::copysign(0.5, scaled)) : 0;
+        }
+        result.pair_planes[i] = {boxtree::pair_of(n[0], n[1]), boxtree::pair_of(n[2], 0),
+                                 boxtree::pair_of(std::abs(n[0]), std::abs(n[1])), boxtree::pair_of(0, std::abs(n[2]))};
+        result.planes[i].length_f = static_cast<float>(glm::length(plane.normal));
+    }
+    return result;
+}
+
+bool takes_vectors(const Frustum& frustum) {
+    for (const Plane& plane : frustum.view())
+        if (!(std::fabs(plane.offset) <= 1e32)) return false;
+    return frustum.plane_count > 0 && is_usable(frustum) && has_unit_normals(frustum);
+}
+
+void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
+    output.settled_count = output.improper = 0;
+    output.open = output.undecided_count = count;
+    for (std::size_t i = 0; i < count; ++i) output.undecided[i] = static_cast<std::uint32_t>(i);
+    std::fill_n(output.visible, (count + 63) / 64, 0);
+    std::fill_n(output.inside, (count + 63) / 64, 0);
+}
+
+// A large tree is asked for subtree by subtree, two levels down, whether they are shared among threads or not: so the
+// answer comes in the same order.
+Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
+    const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
+    std::uint64_t level[boxtree::kWidth];
+    entries[0] = root;
+    count = 1;
+    if (!many) return;
+    count = 0;
+    const std::size_t first_count = expand_tree_kernel(input, root, level);
+    for (std::size_t i = 0; i < first_count; ++i) count += expand_tree_kernel(input, level[i], entries + count);
+}
+
+void Query::start(std::size_t items) {
+    visible_.size_ = visible_.inside_ = 0;
+    visible_.statistics_ = {};
+    grow(visible_.ids_, items + kPadding);
+    grow(visible_.straddling_, items + kPadding);
+}
+
+void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks) {
+    visible_.statistics_ = {};
+    const std::size_t words = (boxes.size() + 63) / 64;
+    grow(visible_.bits_, 2 * words);
+    std::uint64_t *const seen = visible_.bits_.data(), *const marked = seen + words;
+    const glm::dvec3 origin = glm::abs(view_.frustum.origin);
+    const bool vectors = takes_vectors(view_.frustum) && std::max({origin.x, origin.y, origin.z}) <= kFarthestOrigin;
+    const KernelView view = kernel_view_of(view_);
+    ListKernelOutput output;
+    for (std::size_t first = 0; first < boxes.size(); first += kChunk) {
+        const std::size_t count = std::min(kChunk, boxes.size() - first), chunk_words = (count + 63) / 64;
+        if (vectors)
+            run_direct_kernel(
+                {reinterpret_cast<const unsigned char*>(&boxes[first]), count, &view, options_.mode == CullMode::exact},
+                output);
+        else
+            leave_all_undecided(count, output);
+        decide(boxes.subspan(first, count), output);
+        for (std::size_t w = 0; w < chunk_words; ++w) {
+            std::uint64_t visible = output.visible[w];
+            if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
+            seen[first / 64 + w] = visible;
+            marked[first / 64 + w] = visible & ~output.inside[w];
+        }
+    }
+    finish(seen, marked, words, boxes.size());
+}
+
+// Which of the first 64 layer masks share a layer with the view.
+std::uint64_t Query::layer_bits(std::span<const std::uint32_t> layer_masks) const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(64, layer_masks.size()); ++i)
+        bits |= std::uint64_t{(layer_masks[i] & view_.layer_mask) != 0} << i;
+    return bits;
+}
+
+// What the kernel left of these boxes, and their statistics.
+void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
+    std::size_t rejected = 0;
+    for (std::size_t n = 0; n < output.undecided_count; ++n) {
+        const std::uint32_t i = output.undecided[n];
+        const Verdict verdict = classify(view_.frustum, boxes[i], options_.mode);
+        const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+        output.visible[i / 64] &= ~bit;
+        output.inside[i / 64] &= ~bit;
+        if (verdict != Verdict::outside) output.visible[i / 64] |= bit;
+        if (verdict == Verdict::inside) output.inside[i / 64] |= bit;
+        rejected += kCountStatistics && options_.mode == CullMode::exact && verdict == Verdict::outside &&
+                    classify(view_.frustum, boxes[i], CullMode::conservative) != Verdict::outside;
+    }
+    if (!kCountStatistics) return;
+    visible_.statistics_.boxes_tested += boxes.size();
+    visible_.statistics_.exact_tests += output.settled_count + output.undecided_count;
+    visible_.statistics_.improper += output.improper + rejected;
+}
+
+// The ids of the bits in `seen`; those in `marked` straddle.
+void Query::finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items) {
+    grow(visible_.ids_, items + kListPadding);
+    std::size_t size = 0, straddling = 0;
+    for (std::size_t w = 0; w < words; ++w) straddling += static_cast<std::size_t>(std::popcount(marked[w]));
+    if (options_.order == ResultOrder::ascending) {
+        grow(visible_.verdicts_, items + 64);
+        size = list_marked(seen, marked, words);
+    } else {
+        grow(visible_.straddling_, items + kListPadding);
+        // All that are seen, then those that straddle taken out: what is left is inside, in ascending order.
+        Vector<std::uint64_t>& bits = visible_.bits_;
+        for (std::size_t w = 0; w < words; ++w) bits[w] &= ~marked[w];
+        size = list_bits_kernel(bits.data(), words, visible_.ids_.data());
+        size += list_bits_kernel(marked, words, visible_.ids_.data() + size);
+        visible_.verdicts_.clear();
+    }
+    visible_.size_ = size;
+    visible_.inside_ = size - straddling;
+    if (kCountStatistics) visible_.statistics_.straddling = straddling;
+}
+
+std::size_t Query::list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words) {
+    constexpr MarkBytes kBytes{static_cast<std::uint8_t>(Verdict::straddling),
+                               static_cast<std::uint8_t>(Verdict::inside)};
+    static_assert(sizeof(Verdict) == 1);
+    return list_marked_bits_kernel(seen, marked, words, kBytes, visible_.ids_.data(),
+                                   reinterpret_cast<std::uint8_t*>(visible_.verdicts_.data()));
+}
+
+void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
+    start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
+    if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
+    grow(visible_.undecided_, tree.boxes().size() + kPadding);
+    KernelView view = kernel_view_of(view_);
+    bring_before(tree.nodes()[0], view);
+    const TreeKernelInput input{tree.nodes().data(),
+                                tree.leaves().data(),
+                                tree.leaf_ranges().data(),
+                                tree.leaf_counts().data(),
+                                tree.slot_items().data(),
+                                &view,
+                                options_.mode == CullMode::exact};
+    const Tasks tasks(input, tree.item_count() >= kParallelItems);
+    if (executor.concurrency() > 1 && tasks.count > 1) return run_parallel(tree, input, tasks, executor);
+    TreeKernelOutput output{};
+    output.inside = visible_.ids_.data();
+    output.straddling = visible_.straddling_.data();
+    output.undecided = visible_.undecided_.data();
+    output.work_size = tree.nodes().size() + tree.leaves().size() + kPadding;
+    grow(visible_.work_, kWorkLists * output.work_size);
+    output.work = visible_.work_.data();
+    run_tree_kernel(input, tasks.entries, tasks.count, output);
+    std::size_t inside = output.inside_count, straddling = output.straddling_count;
+    append_decided(output, decide(tree, output), inside, straddling);
+    finish(tree, inside, straddling, executor);
+}
+
+// The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers; the parts are
+// then put together in order, so that the answer does not depend on who did what.
+void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
+                         Executor& executor) {
+    constexpr std::size_t kGrain = kTreeGroup, kParts = Tasks::kMost / kGrain;
+    // What each part can hold at most; 16 more for what vectors write past the end.
+    const auto most = [&](std::uint64_t entry) {
+        const auto child = static_cast<std::uint32_t>(entry >> 32);
+        if (child & boxtree::kLeafBit) return std::size_t{boxtree::kWidth};
+        const std::size_t leaves = tree.leaf_ranges()[child].count;
+        return boxtree::kWidth * (leaves > 0 ? leaves : std::max(tree.leaves().size(), tree.nodes().size()));
+    };
+    std::size_t starts[kParts + 1] = {};
+    const std::size_t parts = (tasks.count + kGrain - 1) / kGrain;
+    for (std::size_t p = 0; p < parts; ++p) {
+        starts[p + 1] = starts[p] + kPadding;
+        for (std::size_t i = p * kGrain; i < std::min(tasks.count, (p + 1) * kGrain); ++i)
+            starts[p + 1] += most(tasks.entries[i]);
+    }
+    grow(visible_.part_inside_, starts[parts]);
+    grow(visible_.part_straddling_, starts[parts]);
+    grow(visible_.undecided_, starts[parts]);
+    // Below an entry there are no more nodes than leaves, if the builder made it; otherwise room for all of them is
+    // kept.
+    const auto work_size = [&](std::size_t p) { return (starts[p + 1] - starts[p]) / boxtree::kWidth * 2 + kPadding; };
+    grow(visible_.work_, kWorkLists * (starts[parts] / boxtree::kWidth * 2 + kPadding * parts));
+    static_assert(sizeof(SlotRun) == sizeof(visible_.runs_[0]));
+    grow(visible_.runs_, starts[parts] / boxtree::kWidth + parts);
+    TreeKernelOutput outputs[kParts] = {};
+    std::size_t kept[kParts] = {};
+    executor.parallel_for(tasks.count, kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
+        const std::size_t p = begin / kGrain;
+        TreeKernelOutput& output = outputs[p];
+        output.inside = visible_.part_inside_.data() + starts[p];
+        output.straddling = visible_.part_straddling_.data() + starts[p];
+        output.undecided = visible_.undecided_.data() + starts[p];
+        output.work = visible_.work_.data() + kWorkLists * (starts[p] / boxtree::kWidth * 2 + kPadding * p);
+        output.work_size = work_size(p);
+        output.runs = reinterpret_cast<SlotRun*>(visible_.runs_.data()) + starts[p] / boxtree::kWidth + p;
+        run_tree_kernel(input, tasks.entries + begin, end - begin, output);
+        kept[p] = decide(tree, output);
+    });
+    std::size_t whole = 0, inside = 0, straddling = 0, whole_at[kParts], inside_at[kParts], straddling_at[kParts];
+    for (std::size_t p = 0; p < parts; ++p) {
+        whole_at[p] = whole;
+        straddling_at[p] = straddling;
+        whole += outputs[p].whole_count;
+        straddling += outputs[p].straddling_count;
+    }
+    inside = whole;
+    for (std::size_t p = 0; p < parts; ++p) {
+        inside_at[p] = inside;
+        inside += outputs[p].inside_count;
+    }
+    executor.parallel_for(parts, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t p = begin; p < end; ++p) {
+            const TreeKernelOutput& part = outputs[p];
+            boxtree::ItemId* to = visible_.ids_.data() + whole_at[p];
+            for (std::size_t i = 0; i < part.run_count; ++i)
+                to = std::copy_n(tree.slot_items().data() + part.runs[i].first, part.runs[i].count, to);
+            std::copy_n(part.inside, part.inside_count, visible_.ids_.data() + inside_at[p]);
+            std::copy_n(part.straddling, part.straddling_count, visible_.straddling_.data() + straddling_at[p]);
+        }
+    });
+    for (std::size_t p = 0; p < parts; ++p) append_decided(outputs[p], kept[p], inside, straddling);
+    finish(tree, inside, straddling, executor);
+}
+
+// A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
+void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
+    std::size_t inside = 0, straddling = 0;
+    for (boxtree::LeafId l = 0; l < tree.leaves().size(); ++l)
+        for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane) {
+            if (!(tree.leaves()[l].layers[lane] & view_.layer_mask)) continue;
+            const ItemId item = tree.slot_items()[l * boxtree::kWidth + lane];
+            const Verdict verdict = classify(view_.frustum, tree.boxes()[item], options_.mode);
+            if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
+            if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
+        }
+    finish(tree, inside, straddling, executor);
+}
+
+// Replaces the undecided slots by the items that are visible after all, with kInside where that is so; the others are
+// improper.
+std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < output.undecided_count; ++i) {
+        // The boxes lie in the order of their ids, far from each other: ask for them ahead.
+        constexpr std::size_t kAhead = 8;
+        if (i + kAhead < output.undecided_count)
+            hwy::Prefetch(&tree.boxes()[tree.slot_items()[output.undecided[i + kAhead]]]);
+        const ItemId item = tree.slot_items()[output.undecided[i]];
+        const Verdict verdict = classify_usable(view_.frustum, tree.boxes()[item], options_.mode);
+        if (verdict != Verdict::outside) output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;
+    }
+    return kept;
+}
+
+// Behind the items that the kernel decided, so that the order is the same however the work was shared.
+void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside,
+                           std::size_t& straddling) {
+    for (std::size_t i = 0; i < kept; ++i) {
+        const std::uint32_t item = output.undecided[i];
+        if (item & kInside)
+            visible_.ids_[inside++] = item & ~kInside;
+        else
+            visible_.straddling_[straddling++] = item;
+    }
+    if (!kCountStatistics) return;
+    Statistics& statistics = visible_.statistics_;
+    statistics.nodes_tested += output.nodes_tested;
+    statistics.boxes_tested += output.boxes_tested;
+    statistics.accepted_whole += output.accepted_whole;
+    statistics.exact_tests += output.undecided_count;
+    statistics.improper += output.improper + output.undecided_count - kept;
+}
+
+void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
+    if (moving_) add_moving(tree, inside, straddling, executor);
+    finish(inside, straddling, tree.boxes().size());
+}
+
+void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items) {
+    if (kCountStatistics) visible_.statistics_.straddling = straddling;
+    visible_.size_ = inside + straddling;
+    visible_.inside_ = inside;
+    if (options_.order == ResultOrder::ascending) return sort(inside, straddling, items);
+    std::copy_n(visible_.straddling_.begin(), straddling, visible_.ids_.begin() + static_cast<std::ptrdiff_t>(inside));
+    visible_.verdicts_.clear();
+}
+
+// By a bit an item and another for those that straddle: the ids are distinct and below the number of items.
+void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
+    const std::size_t words = items / 64 + 2;  // one more for the kernel
+    grow(visible_.bits_, 2 * words);
+    grow(visible_.verdicts_, items + 64);
+    std::uint64_t* seen = visible_.bits_.data();
+    std::uint64_t* marked = seen + words;
+    std::fill_n(seen, 2 * words, 0);
+    mark_ids_kernel(visible_.straddling_.data(), straddling, marked);
+    std::copy_n(marked, words, seen);
+    mark_ids_kernel(visible_.ids_.data(), inside, seen);
+    list_marked(seen, marked, words);
+}
+
+}  // namespace crofton::cull

@@ -1,0 +1,60 @@
+// One query at work in a VisibleSet's buffers.
+#pragma once
+#include <crofton/cull/cull.hpp>
+#include <crofton/cull/moving_boxes.hpp>
+
+#include "list/list_kernel.hpp"
+#include "tree/tree_kernel.hpp"
+
+namespace crofton::cull {
+
+[[nodiscard]] KernelView kernel_view_of(const View& view);
+
+// Whether the kernels can take this frustum. Without planes nothing would tell invalid bounds from others; beyond 1e32
+// the offsets' error bounds would not.
+[[nodiscard]] bool takes_vectors(const Frustum& frustum);
+
+// What a kernel would answer that decides nothing.
+void leave_all_undecided(std::size_t count, ListKernelOutput& output);
+
+class Query {
+  public:
+    // What moves, if there is any, is asked beside a BoxTree.
+    Query(const View& view, VisibleSet& visible, const CullOptions& options, const MovingBoxes* moving = nullptr)
+        : view_(view), visible_(visible), options_(options), moving_(moving) {}
+
+    void run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks);
+    void run(const boxtree::BoxTree& tree, Executor& executor);
+
+  private:
+    void start(std::size_t items);
+    void run_all(const boxtree::BoxTree& tree, Executor& executor);
+    struct Tasks {
+        static constexpr std::size_t kMost = std::size_t{boxtree::kWidth} * boxtree::kWidth;
+        std::uint64_t entries[kMost];
+        std::size_t count = 0;
+
+        Tasks(const TreeKernelInput& input, bool many);
+    };
+    void run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
+                      Executor& executor);
+    [[nodiscard]] std::size_t decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) const;
+    void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
+    void add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
+    void append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
+                       std::size_t& count);
+    void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
+    void finish(std::size_t inside, std::size_t straddling, std::size_t items);
+    [[nodiscard]] std::uint64_t layer_bits(std::span<const std::uint32_t> layer_masks) const;
+    void decide(std::span<const Obb> boxes, ListKernelOutput& output);
+    void finish(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words, std::size_t items);
+    std::size_t list_marked(const std::uint64_t* seen, const std::uint64_t* marked, std::size_t words);
+    void sort(std::size_t inside, std::size_t straddling, std::size_t items);
+
+    const View& view_;
+    VisibleSet& visible_;
+    const CullOptions& options_;
+    const MovingBoxes* moving_;
+};
+
+}  // namespace crofton::cull

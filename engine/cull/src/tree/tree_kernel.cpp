@@ -1,0 +1,329 @@
+#include "tree/tree_kernel.hpp"
+
+#include <hwy/cache_control.h>
+#include <algorithm>
+#include <crofton/cull/statistics.hpp>
+#include <cstddef>
+
+// Also compile for AVX-512 VNNI (`vpdpwssd`).
+#define HWY_WANT_AVX3_DL 1
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tree/tree_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "tree/leaf_tests-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::cull::HWY_NAMESPACE {
+namespace {
+
+// In an entry's planes: everything below is inside, and in a layer that the view sees.
+constexpr std::uint32_t kWhole = 1u << 31;
+
+class Walk {
+  public:
+    HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output) : in_(input), out_(output) {}
+
+    // A copy of the output travels with the walk, so that the compiler keeps it in registers.
+    [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
+
+    // Group after group of entries through the nodes; what lies inside as a whole is noted, and so are the leaves that
+    // stay open. These follow when all nodes are done. The groups settle the order of the answer.
+    HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
+        constexpr std::size_t kMaxGroups = boxtree::kWidth * boxtree::kWidth / kTreeGroup;
+        std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
+        for (std::size_t first = 0; first < entry_count; first += kTreeGroup, ++groups) {
+            descend(entries + first, std::min(kTreeGroup, entry_count - first));
+            list_whole();
+            crossing_ends[groups + 1] = crossing_.count;
+            cornered_ends[groups + 1] = cornered_.count;
+        }
+        crossing_.pad();
+        cornered_.pad();
+        for (std::size_t i = 0; i < kLeavesAhead; ++i) prefetch_leaf(crossing_.children[i]);
+        if (out_.runs == nullptr) copy_runs();
+        for (std::size_t g = 0; g < groups; ++g) {
+            visit_crossing(crossing_ends[g], crossing_ends[g + 1]);
+            visit_cornered(cornered_ends[g], cornered_ends[g + 1]);
+        }
+    }
+
+  private:
+    static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = 8;
+
+    // Children and the planes that they straddle.
+    struct List {
+        std::uint32_t* children;
+        std::uint32_t* planes;
+        std::size_t count = 0;
+
+        HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
+            const DU du;
+            simd::compress_store(du, which, mask, children + count);
+            count += simd::compress_store(du, their_planes, mask, planes + count);
+        }
+        HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
+            children[count] = child;
+            planes[count++] = child_planes;
+        }
+        // Pads the list with its last entry, so that prefetching past the end stays in range.
+        HWY_INLINE void pad() {
+            const std::uint32_t last = count > 0 ? children[count - 1] : 0;
+            for (std::size_t i = 0; i < kLeavesAhead; ++i) children[count + i] = last;
+        }
+    };
+
+    // Level by level; memory is asked for ahead, and lists grow without a branch on what is found.
+    HWY_INLINE void descend(const std::uint64_t* entries, std::size_t count) {
+        nodes_.count = whole_count_ = 0;
+        for (std::size_t i = 0; i < count; ++i) start(entries[i]);
+        for (std::size_t head = 0; head < nodes_.count; ++head) {
+            if (head + kNodesAhead < nodes_.count) prefetch_node(nodes_.children[head + kNodesAhead]);
+            const std::uint32_t planes = nodes_.planes[head];
+            const boxtree::Node& node = in_.nodes[nodes_.children[head]];
+            if (kCountStatistics) out_.nodes_tested += node.count;
+            if (is_one(planes))
+                visit_crossed_once(node, planes);
+            else
+                visit_crossed(node, planes);
+        }
+    }
+
+    static HWY_INLINE bool is_one(std::uint32_t planes) { return planes != 0 && (planes & (planes - 1)) == 0; }
+
+    HWY_INLINE void start(std::uint64_t entry) {
+        const auto child = static_cast<std::uint32_t>(entry >> 32);
+        const auto planes = static_cast<std::uint32_t>(entry);
+        if (planes & kWhole)
+            whole_[whole_count_++] = child;
+        else if (child & boxtree::kLeafBit)
+            (is_one(planes) ? crossing_ : cornered_).append(child & ~boxtree::kLeafBit, planes);
+        else
+            nodes_.append(child, planes);
+    }
+
+    // Below the first levels most nodes that cross a frustum cross one plane.
+    HWY_INLINE void visit_crossed_once(const boxtree::Node& node, std::uint32_t planes) {
+        const DU du;
+        const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
+        const BlockPlane plane = block_plane(*in_.view, i, node);
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
+            const NodeSide side(NodeRows(node, l), in_.view->pair_planes[i], plane);
+            const MF alive =
+                hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
+            note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)));
+        }
+    }
+
+    HWY_INLINE void visit_crossed(const boxtree::Node& node, std::uint32_t planes) {
+        const DU du;
+        const NodeTest test = test_node(*in_.view, node, planes);
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
+            note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
+    }
+
+    // Where they go, children l on of a node that are not certainly outside; kOnce: none straddles several planes.
+    template <bool kOnce>
+    HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled) {
+        const DU du;
+        const VU zero = hn::Zero(du), children = hn::Load(du, node.child + l);
+        const auto lanes = hn::RebindMask(du, alive), straddles = hn::Ne(straddled, zero);
+        auto whole = hn::AndNot(straddles, lanes);
+        if (HWY_UNLIKELY(!(node.layers_every & in_.view->layer_mask))) {
+            const VU seen = hn::And(hn::Load(du, node.layers_all + l), hn::Set(du, in_.view->layer_mask));
+            whole = hn::And(whole, hn::Ne(seen, zero));
+        }
+        whole_count_ += simd::compress_store(du, children, whole, whole_ + whole_count_);
+        const auto open = hn::AndNot(whole, lanes);
+        const VU leaves = hn::AndNot(hn::Set(du, boxtree::kLeafBit), children);
+        auto of_leaves = open;
+        if (!node.only_leaves) {
+            const auto is_node = hn::Eq(leaves, children);
+            nodes_.append(children, straddled, hn::And(open, is_node));
+            of_leaves = hn::AndNot(is_node, open);
+        }
+        // Where every child is in a layer that the view sees, a leaf is open only because it straddles a plane.
+        if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
+            return crossing_.append(leaves, straddled, of_leaves);
+        const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
+        const auto once = hn::And(few, straddles);
+        crossing_.append(leaves, straddled, hn::And(of_leaves, once));
+        cornered_.append(leaves, straddled, hn::AndNot(once, of_leaves));
+    }
+
+    HWY_INLINE void prefetch_leaf(boxtree::LeafId leaf) const {
+        for (std::size_t at = 0; at < offsetof(boxtree::Leaf, layers); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + leaf) + at);
+        hwy::Prefetch(in_.slot_items + std::size_t{leaf} * boxtree::kWidth);
+    }
+
+    HWY_INLINE void prefetch_node(boxtree::NodeId node) const {
+        for (std::size_t at = 0; at < offsetof(boxtree::Node, layers_any); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
+    }
+
+    // What lies inside as a whole, as runs of slots. A node whose leaves are not consecutive leaves it to its children,
+    // at the list's end.
+    HWY_INLINE void list_whole() {
+        const std::size_t before = out_.whole_count;
+        for (std::size_t i = 0; i < whole_count_; ++i) {
+            const std::uint32_t child = whole_[i];
+            if (child & boxtree::kLeafBit) {
+                note_leaf(child & ~boxtree::kLeafBit);
+                continue;
+            }
+            const boxtree::LeafRange range = in_.ranges[child];
+            const boxtree::Node& node = in_.nodes[child];
+            if (range.count == 0)
+                for (std::uint32_t lane = 0; lane < node.count; ++lane) whole_[whole_count_++] = node.child[lane];
+            else if (range.items > 0)
+                note_run(range.first * boxtree::kWidth, range.items);
+            else
+                for (std::uint32_t leaf = range.first; leaf < range.first + range.count; ++leaf) note_leaf(leaf);
+        }
+        if (kCountStatistics) out_.accepted_whole += out_.whole_count - before;
+    }
+
+    HWY_INLINE void note_leaf(boxtree::LeafId leaf) { note_run(leaf * boxtree::kWidth, in_.leaf_counts[leaf]); }
+
+    // Joined with the run before it if it follows that.
+    HWY_INLINE void note_run(std::uint32_t first, std::uint32_t items) {
+        const bool follows = out_.run_count > 0 && run_end_ == first;
+        out_.run_count += !follows;
+        SlotRun& run = runs_[out_.run_count - 1];
+        run.first = follows ? run.first : first;
+        run_end_ = first + items;
+        run.count = run_end_ - run.first;
+        out_.whole_count += items;
+    }
+
+    HWY_INLINE void copy_runs() {
+        const DU du;
+        for (std::size_t r = 0; r < out_.run_count; ++r) {
+            if (r + kRunsAhead < out_.run_count) hwy::Prefetch(in_.slot_items + runs_[r + kRunsAhead].first);
+            const boxtree::ItemId* from = in_.slot_items + runs_[r].first;
+            boxtree::ItemId* to = out_.inside + out_.inside_count;
+            for (std::size_t i = 0; i < runs_[r].count; i += hn::Lanes(du))
+                hn::StoreU(hn::Load(du, from + i), du, to + i);
+            out_.inside_count += runs_[r].count;
+        }
+    }
+
+    template <class V>
+    static HWY_INLINE void append(const V& values, MF mask, std::uint32_t* list, std::size_t& count) {
+        const DU du;
+        count += simd::compress_store(du, values, hn::RebindMask(du, mask), list + count);
+    }
+
+    HWY_INLINE void emit(boxtree::LeafId id, std::size_t l, const BoxTest& test) {
+        const DU du;
+        const VU items = hn::Load(du, in_.slot_items + id * boxtree::kWidth + l);
+        append(items, test.inside, out_.inside, out_.inside_count);
+        append(items, test.straddling, out_.straddling, out_.straddling_count);
+        if (kCountStatistics) out_.improper += hn::CountTrue(DF(), test.improper);
+        if (HWY_UNLIKELY(!hn::AllFalse(DF(), test.undecided)))
+            append(hn::Iota(du, static_cast<std::uint32_t>(id * boxtree::kWidth + l)), test.undecided, out_.undecided,
+                   out_.undecided_count);
+    }
+
+    HWY_INLINE void visit_crossing(std::size_t begin, std::size_t end) {
+        const KernelView& view = *in_.view;
+        for (std::size_t at = begin; at < end; ++at) {
+            prefetch_leaf(crossing_.children[at + kLeavesAhead]);
+            const boxtree::LeafId id = crossing_.children[at];
+            const boxtree::Leaf& leaf = in_.leaves[id];
+            if (kCountStatistics) out_.boxes_tested += leaf.count;
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(crossing_.planes[at]);
+            const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
+            for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
+                const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+                emit(id, l, test_leaf(LeafRows(leaf, l), lanes, plane));
+            }
+        }
+    }
+
+    HWY_INLINE void visit_cornered(std::size_t begin, std::size_t end) {
+        const KernelView& view = *in_.view;
+        for (std::size_t at = begin; at < end; ++at) {
+            prefetch_leaf(cornered_.children[at + kLeavesAhead]);
+            const boxtree::LeafId id = cornered_.children[at];
+            const boxtree::Leaf& leaf = in_.leaves[id];
+            if (kCountStatistics) out_.boxes_tested += leaf.count;
+            LeafPlane planes[KernelView::kMaxPlanes];
+            unsigned count = 0;
+            for (std::uint32_t rest = cornered_.planes[at]; rest; rest &= rest - 1) {
+                const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+                planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+            }
+            // Nearly all have two: then there is no loop.
+            for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
+                const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+                emit(id, l,
+                     HWY_LIKELY(count == 2) ? test_leaf(leaf, l, lanes, planes, 2, in_.exact)
+                                            : test_leaf(leaf, l, lanes, planes, count, in_.exact));
+            }
+        }
+    }
+
+    [[nodiscard]] HWY_INLINE std::uint32_t* work(std::size_t list) const { return out_.work + list * out_.work_size; }
+
+    const TreeKernelInput& in_;
+    TreeKernelOutput out_;
+    List nodes_{work(0), work(1)};     // open, from the first on
+    List crossing_{work(2), work(3)};  // leaves that cross one plane
+    List cornered_{work(4), work(5)};  // leaves that cross several, fewer and dearer
+    std::uint32_t* whole_ = work(6);   // children that lie inside as a whole
+    std::size_t whole_count_ = 0;
+    SlotRun* runs_ = out_.runs != nullptr ? out_.runs : reinterpret_cast<SlotRun*>(work(7));
+    std::uint32_t run_end_ = 0;
+};
+
+void run_tree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
+    Walk walk(input, output);
+    walk.run(entries, count);
+    output = walk.result();
+}
+
+// One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
+std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
+    const auto child = static_cast<std::uint32_t>(entry >> 32);
+    const auto planes = static_cast<std::uint32_t>(entry);
+    if (child & boxtree::kLeafBit || planes & kWhole) {
+        entries[0] = entry;
+        return 1;
+    }
+    const boxtree::Node& node = input.nodes[child];
+    const NodeTest test = test_node(*input.view, node, planes);
+    std::size_t count = 0;
+    const std::uint32_t whole = seen(*input.view, node, test.alive & test.settled);
+    for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
+        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
+        entries[count++] = tree_entry(node.child[lane], whole >> lane & 1 ? kWhole : test.planes[lane]);
+    }
+    return count;
+}
+
+}  // namespace
+}  // namespace crofton::cull::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::cull {
+
+HWY_EXPORT(run_tree);
+HWY_EXPORT(expand_tree);
+
+std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
+    return HWY_DYNAMIC_DISPATCH(expand_tree)(input, entry, entries);
+}
+
+void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
+                     TreeKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(run_tree)(input, entries, count, output);
+}
+
+}  // namespace crofton::cull
+#endif

@@ -1,0 +1,58 @@
+// One view against a box tree, in vectors: what a filter can decide, and the list of what it cannot.
+#pragma once
+#include <crofton/boxtree/layout.hpp>
+
+#include "kernel_view.hpp"
+
+namespace crofton::cull {
+
+struct TreeKernelInput {
+    const boxtree::Node* nodes;
+    const boxtree::Leaf* leaves;
+    const boxtree::LeafRange* ranges;
+    const std::uint8_t* leaf_counts;
+    const boxtree::ItemId* slot_items;
+    const KernelView* view;
+    bool exact;  // boxes that straddle two planes or more may yet be outside: undecided
+};
+
+// Slots [first, first + count), all of whose items are inside.
+struct SlotRun {
+    std::uint32_t first, count;
+};
+
+// Capacities: each list has room for all items and 16 more, `runs` for all leaves. `work` has room for kWorkLists lists
+// of `work_size`: the number of nodes and leaves that the entries name, and of those below them, and 16 more. The
+// `whole_count` items that a node above them accepted come first in `inside`; where `runs` is given they are named
+// there instead, as runs of the tree's slots.
+struct TreeKernelOutput {
+    boxtree::ItemId* inside;
+    boxtree::ItemId* straddling;
+    std::uint32_t* undecided;  // slots
+    std::uint32_t* work;
+    std::size_t work_size;
+    SlotRun* runs;
+    std::size_t run_count;
+    std::size_t inside_count, straddling_count, undecided_count, whole_count;
+    std::uint64_t nodes_tested, boxes_tested, accepted_whole;
+    std::uint64_t improper;  // outside, found by a separating axis
+};
+
+inline constexpr std::size_t kWorkLists = 9;
+// So many entries are handled together; the answer's order depends on which.
+inline constexpr std::size_t kTreeGroup = 8;
+
+// An entry names a child and the planes that are still to be tested for what is below: child << 32 | planes.
+[[nodiscard]] constexpr std::uint64_t tree_entry(std::uint32_t child, std::uint32_t planes) {
+    return std::uint64_t{child} << 32 | planes;
+}
+
+// The children of `entry` that are not certainly outside, in the order of their lanes, as entries; returns how many (≤
+// 16).
+std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries);
+
+// Handles the children that `count` ≤ 256 entries name, and all below them.
+void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
+                     TreeKernelOutput& output);
+
+}  // namespace crofton::cull

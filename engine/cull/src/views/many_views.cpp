@@ -1,0 +1,138 @@
+#include <bit>
+#include <crofton/core/assert.hpp>
+#include <crofton/cull/many_views.hpp>
+#include <crofton/cull/moving_boxes.hpp>
+#include <cstring>
+
+#include "exact/box_constraints.hpp"
+#include "tree/block_planes.hpp"
+#include "tree/query.hpp"
+#include "views/many_views_kernel.hpp"
+
+namespace crofton::cull {
+
+class ManyViewsQuery {
+  public:
+    ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode)
+        : tree_(tree), views_(views), mode_(mode) {}
+
+    void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
+        find_resting(visible, moving ? moving->size() : 0);
+        if (moving) add_moving(*moving, visible);
+    }
+
+  private:
+    // Leaves room for `more` items.
+    void find_resting(ManyVisible& visible, std::size_t more) {
+        const std::size_t leaves = tree_.leaves().size() + boxtree::kWidth;
+        grow(visible.ids_, tree_.boxes().size() + more + boxtree::kWidth);
+        visible.mask_bytes_ = views_.size() > 16 ? 4 : views_.size() > 8 ? 2 : 1;
+        grow(visible.masks_, visible.ids_.size() * visible.mask_bytes_);
+        grow(visible.whole_, leaves);
+        grow(visible.open_, leaves);
+        grow(visible.listed_, leaves);
+        grow(visible.touched_, leaves / 1024 + 1);
+        grow(visible.planes_, leaves * views_.size());
+        grow(visible.stack_, std::size_t{tree_.height() + 1} * boxtree::kWidth);
+        visible.size_ = 0;
+        if (views_.empty()) return;
+        bool vectors = true;
+        KernelView kernel_views[kMaxViews];
+        for (std::size_t v = 0; v < views_.size(); ++v) {
+            vectors = vectors && is_usable(views_[v].frustum) && has_unit_normals(views_[v].frustum);
+            kernel_views[v] = kernel_view_of(views_[v]);
+            bring_before(tree_.nodes()[0], kernel_views[v]);
+        }
+        if (!vectors) return run_one_by_one(visible);
+        const auto decide = [](const void* context, std::uint32_t slot, std::uint32_t view) {
+            const auto& query = *static_cast<const ManyViewsQuery*>(context);
+            const Obb& box = query.tree_.boxes()[query.tree_.slot_items()[slot]];
+            return classify_usable(query.views_[view].frustum, box, query.mode_) != Verdict::outside;
+        };
+        const ManyViewsInput input{tree_.nodes().data(),
+                                   tree_.leaves().data(),
+                                   tree_.leaf_ranges().data(),
+                                   tree_.leaf_counts().data(),
+                                   tree_.slot_items().data(),
+                                   static_cast<std::uint32_t>(tree_.leaves().size()),
+                                   kernel_views,
+                                   static_cast<std::uint32_t>(views_.size()),
+                                   mode_ == CullMode::exact,
+                                   decide,
+                                   this};
+        ManyViewsOutput output{};
+        output.ids = visible.ids_.data();
+        output.masks = visible.masks_.data();
+        output.mask_bytes = visible.mask_bytes_;
+        output.whole = visible.whole_.data();
+        output.open = visible.open_.data();
+        output.listed = visible.listed_.data();
+        output.touched = visible.touched_.data();
+        output.planes = visible.planes_.data();
+        output.stack = visible.stack_.data();
+        run_many_views_kernel(input, output);
+        visible.size_ = output.count;
+    }
+
+    void add_moving(const MovingBoxes& moving, ManyVisible& visible) const {
+        grow(visible.moving_masks_, moving.size());
+        const std::span<std::uint32_t> masks = std::span(visible.moving_masks_).first(moving.size());
+        find_visible(moving.set(), moving.boxes(), {}, views_, masks, mode_);
+        for (std::size_t k = 0; k < masks.size(); ++k) {
+            if (masks[k] == 0) continue;
+            const ItemId item = moving.items()[k];
+            append(visible, item, masks[k] & views_with(tree_.layer_masks()[item]));
+        }
+    }
+
+    [[nodiscard]] std::uint32_t views_with(std::uint32_t layers) const {
+        std::uint32_t with = 0;
+        for (std::size_t v = 0; v < views_.size(); ++v)
+            with |= std::uint32_t{(layers & views_[v].layer_mask) != 0} << v;
+        return with;
+    }
+
+    static void append(ManyVisible& visible, ItemId item, std::uint32_t mask) {
+        if (mask == 0) return;
+        visible.ids_[visible.size_] = item;
+        std::memcpy(visible.masks_.data() + visible.size_++ * visible.mask_bytes_, &mask, visible.mask_bytes_);
+    }
+
+    template <class T>
+    static void grow(Vector<T>& buffer, std::size_t size) {
+        if (buffer.size() < size) buffer.resize(size);
+    }
+
+    // A mask's lower bytes come first.
+    static_assert(std::endian::native == std::endian::little);
+
+    // A view that the kernel cannot take is among them.
+    void run_one_by_one(ManyVisible& visible) const {
+        for (const ItemId item : tree_.slot_items()) {
+            if (item == boxtree::kNone) continue;
+            std::uint32_t mask = 0;
+            for (std::size_t v = 0; v < views_.size(); ++v)
+                if (tree_.layer_masks()[item] & views_[v].layer_mask &&
+                    classify(views_[v].frustum, tree_.boxes()[item], mode_) != Verdict::outside)
+                    mask |= 1u << v;
+            append(visible, item, mask);
+        }
+    }
+
+    const boxtree::BoxTree& tree_;
+    std::span<const View> views_;
+    CullMode mode_;
+};
+
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, CullMode mode) {
+    CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
+    ManyViewsQuery(tree, views, mode).run(visible);
+}
+
+void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
+                  ManyVisible& visible, CullMode mode) {
+    CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
+    ManyViewsQuery(resting, views, mode).run(visible, &moving);
+}
+
+}  // namespace crofton::cull
