@@ -76,7 +76,7 @@ struct Crowd {
 };
 
 // Views of boxes of which some move; nothing collides.
-Times views(std::size_t count, std::size_t moving_count, int frames, cull::Order order) {
+Times views(std::size_t count, std::size_t moving_count, int frames, cull::ResultOrder order) {
     Crowd crowd(count, moving_count);
     const cull::View view = bench::view_of_share(crowd.boxes, 0.2);
     auto tree = boxtree::BoxTree::build(crowd.boxes, {.lifted = crowd.items});
@@ -195,11 +195,11 @@ Times meshes(std::size_t count, std::size_t moving_count, int frames) {
             must(scene.set_local(std::span(nodes).first(moving_count), moved).has_value(), "by hand");
             scene.update();
             must(moving.update(*tree, items, scene.world_boxes().first(moving_count)).has_value(), "by hand");
-            cull::find_visible(*tree, moving, view, seen_by_hand, {.order = cull::Order::tree});
+            cull::find_visible(*tree, moving, view, seen_by_hand, {.order = cull::ResultOrder::tree});
         },
         [&](int) {
             must(world.set_transforms(movers, moved).has_value() && world.update().has_value(), "in a world");
-            world.view(view, seen, {.order = cull::Order::tree});
+            world.view(view, seen, {.order = cull::ResultOrder::tree});
             must(seen.size() == seen_by_hand.size(), "the views differ");
         });
 }
@@ -279,8 +279,8 @@ void churn(std::size_t live_count, std::size_t spawns) {
         must(fresh.update().has_value(), "loading");
         fresh_bytes = bytes_in_use - before;
         return compare(
-            200, [&](int) { fresh.view(view, seen_fresh, {.order = cull::Order::tree}); },
-            [&](int) { world.view(view, seen, {.order = cull::Order::tree}); });
+            200, [&](int) { fresh.view(view, seen_fresh, {.order = cull::ResultOrder::tree}); },
+            [&](int) { world.view(view, seen, {.order = cull::ResultOrder::tree}); });
     };
     std::size_t fresh_bytes = 0;
     const Times at_once = against_fresh(fresh_bytes);
@@ -305,9 +305,9 @@ int main(int argc, char** argv) {
     const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
     const int frames = quick ? 30 : 200;
     std::printf("%-58s %10s %10s %8s\n", "microseconds a frame", "by hand", "World", "ratio");
-    print("100,000 boxes rest, a view, ids ascending", views(100000, 0, frames, cull::Order::ascending));
-    print("100,000 boxes rest, a view, tree order", views(100000, 0, frames, cull::Order::tree));
-    print("100,000 boxes, 5,000 move, a view, tree order", views(100000, 5000, frames, cull::Order::tree));
+    print("100,000 boxes rest, a view, ids ascending", views(100000, 0, frames, cull::ResultOrder::ascending));
+    print("100,000 boxes rest, a view, tree order", views(100000, 0, frames, cull::ResultOrder::tree));
+    print("100,000 boxes, 5,000 move, a view, tree order", views(100000, 5000, frames, cull::ResultOrder::tree));
     print("100,000 meshes, 5,000 nodes move, a view, tree order", meshes(100000, 5000, frames));
     print("10,000 boxes all move, pairs and manifolds", contacts(10000, frames));
     print("100,000 boxes rest, 1,000 rays, nearest box", rays(100000, frames));

@@ -55,8 +55,8 @@ TEST_SUITE("engines/documentation") {
         };
         std::vector<Page> pages = {{"docs/integrate.md", 8}, {"README.md", 1}};
         std::vector<Lines> sources = {lines_of("tests/engines/integrate_test.cpp"),
-                                      lines_of("samples/hello_cull/main.cpp"),
-                                      lines_of("samples/hello_frame/main.cpp"), lines_of("samples/c_hello/main.c"),
+                                      lines_of("samples/hello_cull/main.cpp"), lines_of("samples/hello_frame/main.cpp"),
+                                      lines_of("samples/c_hello/main.c"),
                                       lines_of("samples/executors/tbb_executor.hpp")};
         // The guide docs/<module>.md takes its examples from tests/<module>/guide_test.cpp.
         for (const auto& folder : std::filesystem::directory_iterator(CROFTON_SOURCE_DIR "/tests")) {

@@ -138,7 +138,8 @@ TEST_SUITE("engines/integrate") {
         std::vector<scene::NodeId> nodes;
         for (int i = 0; i < 400; ++i) {
             const auto place =
-                scene::from_trs({2.0 * (i % 20), 0.0, -2.0 * (i / 20)}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
+                scene::from_trs({2.0 * (i % 20), 0.0, -2.0 * (i / 20)}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0))
+                    .value();
             nodes.push_back(scene.add_node(scene::kNone, place).value());
             scene.add_instance(nodes.back(), crate).value();
         }
@@ -152,7 +153,8 @@ TEST_SUITE("engines/integrate") {
         camera.position = {19.0, 1.5, 10.0};
         for (int frame = 0; frame < 3; ++frame) {
             // 1. What moved: the scene says which boxes changed, the tree follows them, all at once.
-            const auto place = scene::from_trs({0.6 * frame, 0.0, 0.0}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
+            const auto place =
+                scene::from_trs({0.6 * frame, 0.0, 0.0}, glm::dquat(1, 0, 0, 0), glm::dvec3(1.0)).value();
             if (!scene.set_local(nodes[0], place)) std::abort();
             scene.update();
             moved_boxes.clear();

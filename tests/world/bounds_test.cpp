@@ -68,7 +68,7 @@ void check_answers(const World& world, const Model& model, NearMisses& random) {
         const auto expected = model.visible(view);
         world.view(view, visible);
         CHECK(std::vector(visible.ids().begin(), visible.ids().end()) == expected);
-        world.view(view, visible, {.order = cull::Order::tree});
+        world.view(view, visible, {.order = cull::ResultOrder::tree});
         std::vector<std::uint32_t> seen(visible.ids().begin(), visible.ids().end());
         std::sort(seen.begin(), seen.end());
         CHECK(seen == expected);

@@ -143,7 +143,8 @@ void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const Filte
     for (BroadphaseWorker& worker : workers)
         list.count(slots_of(worker, worker.first), slots_of(worker, worker.second), order.items(), filters);
     list.place(pairs);
-    for (BroadphaseWorker& worker : workers) list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), pairs);
+    for (BroadphaseWorker& worker : workers)
+        list.add(slots_of(worker, worker.first), slots_of(worker, worker.second), pairs);
     list.finish(pairs);
 }
 

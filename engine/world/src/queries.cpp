@@ -58,7 +58,7 @@ double gap_between(const Aabb& a, const Obb& box) {
 
 }  // namespace
 
-Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cull::Options& options,
+Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options,
                          Executor& executor) const {
     const auto frustum = frustum_of(camera);
     if (!frustum) return tl::unexpected(frustum.error());
@@ -66,13 +66,13 @@ Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cu
     return {};
 }
 
-void World::view(const cull::View& view, VisibleObjects& visible, const cull::Options& options,
+void World::view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options,
                  Executor& executor) const {
     visible.names_ = &state_->table.names;
     cull::find_visible(state_->index.tree(), state_->index.moving(), view, visible.set_, options, executor);
 }
 
-void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::Mode mode) const {
+void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::CullMode mode) const {
     visible.names_ = &state_->table.names;
     cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);
 }

@@ -157,9 +157,9 @@ Result<SceneSource> make_town(const LoadOptions& options) {
             if (driver.trailer != scene::kNone) (void)scene.set_local(driver.trailer, trailer_pose(driver, seconds));
         }
         for (const Crane& crane : cranes)
-            (void)scene.set_local(crane.node,
-                                  crane.start * *scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
-                                                                glm::dvec3(1.0)));
+            (void)scene.set_local(
+                crane.node, crane.start * *scene::from_trs({}, glm::angleAxis(0.12 * seconds, glm::dvec3(0, 1, 0)),
+                                                           glm::dvec3(1.0)));
     };
     source.one_sided.assign(source.scene.mesh_count(), 1);  // where both sides show, both are built
     return source;

@@ -132,7 +132,7 @@ void Builder::add_countryside(const Grid& grid) {
             const double y = hill(x - cx, z - cz, outside) - 1.0;
             place(Parts{any(library_.chance(0.5) ? conifers_ : trees_)},
                   *scene::from_trs({x, y, z}, glm::angleAxis(random.uniform(0.0, 6.28), glm::dvec3(0, 1, 0)),
-                                  glm::dvec3(random.uniform(1.0, 1.6))));
+                                   glm::dvec3(random.uniform(1.0, 1.6))));
         }
     }
 }

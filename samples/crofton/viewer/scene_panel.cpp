@@ -31,8 +31,8 @@ void show_node(const PanelInput& input, PanelWish& wish, scene::NodeId node, int
     if (open) {
         for (const scene::InstanceId instance : instances) {
             ImGui::PushID(static_cast<int>(instance));
-            const std::string label =
-                "mesh " + std::string(scene.mesh_name(scene.mesh_of(instance))) + " (instance " + std::to_string(instance) + ")";
+            const std::string label = "mesh " + std::string(scene.mesh_name(scene.mesh_of(instance))) + " (instance " +
+                                      std::to_string(instance) + ")";
             if (ImGui::Selectable(label.c_str(), instance == input.selected)) wish.select = instance;
             ImGui::PopID();
         }

@@ -12,8 +12,8 @@ namespace crofton::study {
 struct BoundGivenAncestors {
     Obb bound;
     std::uint32_t ancestor_hits = 0;  // sampled queries that hit all ancestors
-    std::uint32_t hits = 0;        // of those, how many hit `bound` too
-    std::uint32_t plain_hits = 0;  // of those, how many hit the box that the criterion alone chooses
+    std::uint32_t hits = 0;           // of those, how many hit `bound` too
+    std::uint32_t plain_hits = 0;     // of those, how many hit the box that the criterion alone chooses
 };
 
 // Searches orientations from several starts (boxes fitted by the criterion, by area and by edge sum, the ancestors'

@@ -91,12 +91,12 @@ class World {
     [[nodiscard]] const WorldStatistics& statistics() const;
 
     // What a view sees, by the objects' boxes, exactly as the mode says.
-    Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::Options& options = {},
+    Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
                       Executor& executor = serial_executor()) const;  // errors: as validate(Camera)
-    void view(const cull::View& view, VisibleObjects& visible, const cull::Options& options = {},
+    void view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options = {},
               Executor& executor = serial_executor()) const;
     void view(std::span<const cull::View> views, VisibleInViews& visible,  // at most cull::kMaxViews
-              cull::Mode mode = cull::Mode::exact) const;
+              cull::CullMode mode = cull::CullMode::exact) const;
 
     // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
     // of the answers.
