@@ -17,8 +17,8 @@ class VisibleSet {
     [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_; }
-    // In ResultOrder::ascending the verdict of ids()[i] is verdicts()[i]. In ResultOrder::tree there are none: the first
-    // inside_count() ids are inside, the others straddle.
+    // In ResultOrder::ascending the verdict of ids()[i] is verdicts()[i]. In ResultOrder::tree there are none: the
+    // first inside_count() ids are inside, the others straddle.
     [[nodiscard]] std::span<const Verdict> verdicts() const {
         return std::span(verdicts_).first(verdicts_.empty() ? 0 : size_);
     }
