@@ -201,7 +201,7 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         4.0 * pi * reach, planes);
     row("lines that hit two boxes and a ball", "theory.md (5)",
         *measure_of_lines_hitting_all(bodies, {.tolerance = 1e-2, .max_cells = 40000}),
-        measure::measure_of_lines(4.0 * pi * reach * reach), lines);
+        sampling::measure_of_lines(4.0 * pi * reach * reach), lines);
 }
 
 // Formula (6) on an L of two triangulations, lighter and heavier.
