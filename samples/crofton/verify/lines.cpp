@@ -121,9 +121,9 @@ void uniformity_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows)
                                  kErrorOfChiSquare));
     };
     wrong("lines through two uniform points of a box",
-          [](Random& r) { return measure::wrong::line_through_two_box_points(kBox, r.point<6>()); });
+          [](Random& r) { return study::wrong::line_through_two_box_points(kBox, r.point<6>()); });
     wrong("lines from a sphere point in uniform directions",
-          [](Random& r) { return measure::wrong::line_from_sphere_uniform_direction(kUnitBall, r.point<4>()); });
+          [](Random& r) { return study::wrong::line_from_sphere_uniform_direction(kUnitBall, r.point<4>()); });
 }
 
 // In the plane: distances from the centre are uniform on [0, R].
@@ -144,7 +144,7 @@ void plane_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const double mean = cells - 1.0, error = std::sqrt(2.0 * mean);
     rows.push_back(wrong_row("in the plane, lines through two points of a circle are uniform", "theory.md section 6",
                              mean, chi([](Random& r) {
-                                 const auto line = measure::wrong::line_through_two_circle_points(1.0, r.point<2>());
+                                 const auto line = study::wrong::line_through_two_circle_points(1.0, r.point<2>());
                                  return std::abs(line.point.x * line.direction.y - line.point.y * line.direction.x);
                              }),
                              error));
