@@ -21,7 +21,7 @@ std::vector<Obb> random_boxes(std::mt19937_64& random, int count, double place) 
     return boxes;
 }
 
-std::vector<IdPair> brute_force(std::span<const Obb> boxes, std::span<const Filter> filters = {}) {
+std::vector<IdPair> brute_force(std::span<const Obb> boxes, std::span<const CollisionFilter> filters = {}) {
     std::vector<IdPair> pairs;
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
         for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
@@ -91,7 +91,7 @@ TEST_SUITE("collide/broadphase") {
         boxes.resize(10);
         REQUIRE(broadphase.update(boxes).has_value());
         CHECK(broadphase.pairs().size() == 45);
-        CHECK(broadphase.update(boxes, std::vector<Filter>(3)).error().code == ErrorCode::invalid_argument);
+        CHECK(broadphase.update(boxes, std::vector<CollisionFilter>(3)).error().code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("identical boxes, geometric series of sizes and places, and boxes at 1e30 lose no pair") {
@@ -117,7 +117,7 @@ TEST_SUITE("collide/broadphase") {
     TEST_CASE("filters keep pairs apart, both ways") {
         std::mt19937_64 random(3);
         const auto boxes = random_boxes(random, 400, 4.0);
-        std::vector<Filter> filters;
+        std::vector<CollisionFilter> filters;
         for (std::size_t i = 0; i < boxes.size(); ++i)
             filters.push_back({1u << (i % 3), static_cast<std::uint32_t>(random() % 8)});
         Broadphase broadphase;
@@ -193,7 +193,7 @@ TEST_SUITE("collide/broadphase") {
         std::mt19937_64 random(8);
         for (const bool exact : {true, false}) {
             auto boxes = random_boxes(random, 700, 6.0);
-            std::vector<Filter> filters(boxes.size());
+            std::vector<CollisionFilter> filters(boxes.size());
             Broadphase all({.exact_boxes = exact}), few({.exact_boxes = exact});
             std::size_t looked_at = 0, began = 0, ended = 0;
             for (int frame = 0; frame < 60; ++frame) {

@@ -36,10 +36,10 @@ Obb parted(Obb b, const glm::dvec3& motion) {
 
 TEST_SUITE("collide/convex_query") {
     TEST_CASE("points on top of each other, bodies without extent and coincident boxes have answers") {
-        const Convex point = convex(Sphere{{1.0, 2.0, 3.0}, 0.0});
+        const ConvexShape point = to_convex_shape(Sphere{{1.0, 2.0, 3.0}, 0.0});
         CHECK(distance(point, point).distance == 0.0);
         CHECK(penetration(point, point).depth == 0.0);
-        const Convex ball = convex(Sphere{{1.0, 2.0, 3.0}, 0.5});
+        const ConvexShape ball = to_convex_shape(Sphere{{1.0, 2.0, 3.0}, 0.5});
         CHECK(penetration(ball, ball).depth == doctest::Approx(1.0));
         CHECK(contact_manifold(ball, ball).count == 1);
         const Obb box = cube({});
@@ -48,18 +48,19 @@ TEST_SUITE("collide/convex_query") {
         CHECK(contact_manifold(box, box).count >= 1);
         Obb flat = cube({}, 0.0f);
         CHECK(contact_manifold(flat, flat).count == 1);
-        CHECK_FALSE(time_of_impact(point, {}, convex(cube({9.0, 0.0, 0.0})), {}, 1.0, 1e-6).has_value());
+        CHECK_FALSE(time_of_impact(point, {}, to_convex_shape(cube({9.0, 0.0, 0.0})), {}, 1.0, 1e-6).has_value());
     }
 
     TEST_CASE("distances known by hand: faces, edges and corners") {
         CHECK(distance(cube({}), cube({5.0, 0.5, 0.0})).distance == doctest::Approx(3.0));
         CHECK(distance(cube({}), cube({5.0, 6.0, 0.0})).distance == doctest::Approx(5.0));
         CHECK(distance(cube({}), cube({4.0, 4.0, 4.0})).distance == doctest::Approx(2.0 * std::sqrt(3.0)));
-        const Distance d = distance(convex(cube({})), convex(Sphere{{4.0, 0.0, 0.0}, 1.0}));
+        const Distance d = distance(to_convex_shape(cube({})), to_convex_shape(Sphere{{4.0, 0.0, 0.0}, 1.0}));
         CHECK(d.distance == doctest::Approx(2.0));
         CHECK(d.on_a.x == doctest::Approx(1.0));
         CHECK(d.on_b.x == doctest::Approx(3.0));
-        CHECK(distance(convex(Capsule{{0, 0, 0}, {0, 0, 9}, 1.0}), convex(Capsule{{5, -1, 4}, {5, 1, 4}, 1.5}))
+        CHECK(distance(to_convex_shape(Capsule{{0, 0, 0}, {0, 0, 9}, 1.0}),
+                       to_convex_shape(Capsule{{5, -1, 4}, {5, 1, 4}, 1.5}))
                   .distance == doctest::Approx(2.5));
     }
 
@@ -336,12 +337,12 @@ TEST_SUITE("collide/convex_query") {
         CHECK(m.depth == doctest::Approx(0.25));
         CHECK(m.normal.z == doctest::Approx(1.0));
         CHECK(contact_manifold(ground, cube({0.0, 0.0, 1.5})).count == 0);
-        CHECK(penetration(ground, convex(Sphere{{0.0, 0.0, 0.5}, 2.0})).depth == doctest::Approx(1.5));
+        CHECK(penetration(ground, to_convex_shape(Sphere{{0.0, 0.0, 0.5}, 2.0})).depth == doctest::Approx(1.5));
     }
 
     TEST_CASE("swept bodies hit when and where they should") {
-        const Convex a = convex(cube({})), b = convex(cube({10.0, 0.0, 0.0}));
-        const Motion toward{{-2.0, 0.0, 0.0}, {}, {}};
+        const ConvexShape a = to_convex_shape(cube({})), b = to_convex_shape(cube({10.0, 0.0, 0.0}));
+        const ConstantMotion toward{{-2.0, 0.0, 0.0}, {}, {}};
         const auto impact = time_of_impact(a, {}, b, toward, 10.0, 1e-6);
         REQUIRE(impact.has_value());
         CHECK(impact->time == doctest::Approx(4.0).epsilon(1e-6));
@@ -351,8 +352,9 @@ TEST_SUITE("collide/convex_query") {
         // A blade of length 2 turning about its end sweeps past a ball's side: it arrives at angle acos-free 90° −
         // asin(r/d).
         const Obb blade{{1.0, 0.0, 0.0}, glm::mat3(1.0f), glm::vec3(1.0f, 0.0f, 0.0f)};
-        const Motion turning{{}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
-        const auto touch = time_of_impact(convex(blade), turning, convex(Sphere{{0.0, 1.5, 0.0}, 0.5}), {}, 3.0, 1e-7);
+        const ConstantMotion turning{{}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
+        const auto touch = time_of_impact(to_convex_shape(blade), turning,
+                                          to_convex_shape(Sphere{{0.0, 1.5, 0.0}, 0.5}), {}, 3.0, 1e-7);
         REQUIRE(touch.has_value());
         CHECK(touch->time == doctest::Approx(std::numbers::pi / 2.0 - std::asin(0.5 / 1.5)).epsilon(1e-5));
     }
@@ -362,9 +364,9 @@ TEST_SUITE("collide/convex_query") {
         int impacts = 0;
         for (int trial = 0; trial < 300; ++trial) {
             const Obb box_a = random_box(random), box_b = random_box(random, 5.0);
-            const Convex a = convex(box_a), b = convex(box_b);
-            const Motion motion_a{random_vector(random), 2.0 * random_vector(random), box_a.center};
-            const Motion motion_b{-0.5 * box_b.center, random_vector(random), box_b.center};
+            const ConvexShape a = to_convex_shape(box_a), b = to_convex_shape(box_b);
+            const ConstantMotion motion_a{random_vector(random), 2.0 * random_vector(random), box_a.center};
+            const ConstantMotion motion_b{-0.5 * box_b.center, random_vector(random), box_b.center};
             const double tolerance = 1e-4;
             const auto impact = time_of_impact(a, motion_a, b, motion_b, 4.0, tolerance);
             const double end = impact ? impact->time : 4.0;

@@ -113,7 +113,8 @@ TEST_SUITE("collide/shapes") {
             if (trial % 3 == 0) box.half_extents[trial % 9 / 3] = 0.0f;
             if (trial % 5 == 0) box.axes[1] *= 1.0f + 3e-5f;  // nearly as far from orthonormal as validate lets pass
             Sphere ball{box.center + 3.0 * random_vector(random), 0.0};
-            const double away = contains(box, ball.center) ? 0.0 : distance(convex(box), convex(ball)).distance;
+            const double away =
+                contains(box, ball.center) ? 0.0 : distance(to_convex_shape(box), to_convex_shape(ball)).distance;
             const double gap = std::pow(10.0, -12.0 * unit(random)) * (1.0 + away);
             if (gap < 1e-9 * glm::length(box.center)) continue;
             ball.radius = away + gap;

@@ -91,8 +91,8 @@ struct Model {
     }
     [[nodiscard]] double distance_to(const Bound& shape, std::uint32_t layers) const {
         const auto convex = [](const Bound& bound) {
-            return bound.kind == BoundKind::ball ? collide::convex(Sphere{bound.box.center, bound.radius})
-                                                 : collide::convex(bound.box);
+            return bound.kind == BoundKind::ball ? collide::to_convex_shape(Sphere{bound.box.center, bound.radius})
+                                                 : collide::to_convex_shape(bound.box);
         };
         double least = std::numeric_limits<double>::infinity();
         for (const auto& [id, object] : objects)

@@ -17,7 +17,7 @@ struct crofton_broadphase {
     collide::Broadphase broadphase{};
 };
 
-static_assert(sizeof(crofton_pair) == sizeof(IdPair) && sizeof(crofton_filter) == sizeof(collide::Filter));
+static_assert(sizeof(crofton_pair) == sizeof(IdPair) && sizeof(crofton_filter) == sizeof(collide::CollisionFilter));
 
 namespace {
 
@@ -74,7 +74,7 @@ crofton_status crofton_broadphase_update(crofton_broadphase* broadphase, const c
     CROFTON_CHECK(check_array(boxes, count, __func__));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
-    const std::span all_filters(reinterpret_cast<const collide::Filter*>(filters), filters ? count : 0);
+    const std::span all_filters(reinterpret_cast<const collide::CollisionFilter*>(filters), filters ? count : 0);
     return status_of(broadphase->broadphase.update(to_boxes(boxes, count), all_filters, executor), __func__);
 }
 

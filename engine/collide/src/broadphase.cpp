@@ -135,7 +135,7 @@ bool Broadphase::State::collect(Executor& executor) {
     return !too_many && total <= options.max_pairs;
 }
 
-void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const Filter> filters) {
+void Broadphase::State::sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters) {
     const auto slots_of = [](BroadphaseWorker& worker, Vector<std::uint32_t>& slots) {
         return std::span<std::uint32_t>(slots).first(worker.pairs.count);
     };
@@ -176,7 +176,7 @@ Result<void> Broadphase::State::too_many_pairs() const {
                 "broadphase: the bounds of more than " + std::to_string(options.max_pairs) + " pairs meet");
 }
 
-Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<const Filter> filters) {
+Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters) {
     if (!filters.empty() && filters.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, filters.size(), "broadphase: filters and boxes differ in number");
     if (boxes.size() >= 0xffffffffu)
@@ -184,7 +184,7 @@ Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<cons
     return {};
 }
 
-Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span<const Filter> filters,
+Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                            Executor& executor) {
     statistics = {};
     rejected.clear();
@@ -219,13 +219,14 @@ Result<void> Broadphase::State::update_all(std::span<const Obb> boxes, std::span
     return {};
 }
 
-Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const Filter> filters, Executor& executor) {
+Result<void> Broadphase::update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
+                                Executor& executor) {
     if (auto checked = state_->check(boxes, filters); !checked) return checked;
     return state_->update_all(boxes, filters, executor);
 }
 
 Result<void> Broadphase::update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
-                                      std::span<const Filter> filters, Executor& executor) {
+                                      std::span<const CollisionFilter> filters, Executor& executor) {
     State& s = *state_;
     if (auto checked = s.check(boxes, filters); !checked) return checked;
     const bool few = moved.size() <= boxes.size() / kFewMovers && s.leaf_extent <= kWornOut * s.leaf_extent_when_sorted;

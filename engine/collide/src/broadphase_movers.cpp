@@ -58,7 +58,7 @@ void Broadphase::State::move_bounds(std::span<const Obb> boxes) {
 }
 
 // All pairs of an item that moved whose bounds meet and whose filters pass, sorted; false when there are too many.
-bool Broadphase::State::find_candidates(std::span<const Filter> filters) {
+bool Broadphase::State::find_candidates(std::span<const CollisionFilter> filters) {
     BroadphaseWorker& worker = workers.front();
     worker.pairs = {worker.first.data(), worker.second.data(), 0, worker.first.size(), 0};
     bool too_many = false;
@@ -91,7 +91,7 @@ void Broadphase::State::replace_pairs() {
     std::merge(kept.begin(), kept.end(), still.begin(), still.end(), stayed.begin());
 }
 
-Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span<const Filter> filters,
+Result<void> Broadphase::State::update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                            Executor& executor) {
     const bool nothing_to_do = movers.empty() && began.empty() && ended.empty();
     statistics = {};

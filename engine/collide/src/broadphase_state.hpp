@@ -59,21 +59,21 @@ struct Broadphase::State {
     Vector<IdPair> kept, lost, found, still;
 
     [[nodiscard]] Result<void> too_many_pairs() const;
-    [[nodiscard]] static Result<void> check(std::span<const Obb> boxes, std::span<const Filter> filters);
-    [[nodiscard]] Result<void> update_all(std::span<const Obb> boxes, std::span<const Filter> filters,
+    [[nodiscard]] static Result<void> check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters);
+    [[nodiscard]] Result<void> update_all(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                           Executor& executor);
-    [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const Filter> filters,
+    [[nodiscard]] Result<void> update_few(std::span<const Obb> boxes, std::span<const CollisionFilter> filters,
                                           Executor& executor);
     [[nodiscard]] bool gather_movers(std::size_t item_count, std::span<const std::uint32_t> moved);
     void move_bounds(std::span<const Obb> boxes);
-    [[nodiscard]] bool find_candidates(std::span<const Filter> filters);
+    [[nodiscard]] bool find_candidates(std::span<const CollisionFilter> filters);
     void replace_pairs();
     [[nodiscard]] bool grow(SlotPairs& slots, BroadphaseWorker& worker) const;
     void refit(std::span<const Obb> boxes, Executor& executor);
     void bound_leaf(std::span<const Obb> boxes, std::size_t leaf, BroadphaseWorker& worker);
     void build_levels();
     [[nodiscard]] bool collect(Executor& executor);
-    void sort_pairs(std::size_t item_count, std::span<const Filter> filters);
+    void sort_pairs(std::size_t item_count, std::span<const CollisionFilter> filters);
     void keep_pairs_that_meet(std::span<const Obb> boxes, Vector<IdPair>& candidates, Executor& executor);
 };
 

@@ -12,7 +12,7 @@ struct Vertex {
     glm::dvec3 on_a, on_b, difference;  // on_a − on_b
 };
 
-const glm::dvec3& farthest(const Convex& body, const glm::dvec3& direction) {
+const glm::dvec3& farthest(const ConvexShape& body, const glm::dvec3& direction) {
     int best = 0;
     double most = glm::dot(body.points[0], direction);
     for (int i = 1; i < body.point_count; ++i) {
@@ -22,7 +22,7 @@ const glm::dvec3& farthest(const Convex& body, const glm::dvec3& direction) {
     return body.points[best];
 }
 
-Vertex support(const Convex& a, const Convex& b, const glm::dvec3& direction) {
+Vertex support(const ConvexShape& a, const ConvexShape& b, const glm::dvec3& direction) {
     const glm::dvec3 &p = farthest(a, direction), &q = farthest(b, -direction);
     return {p, q, p - q};
 }
@@ -103,7 +103,7 @@ void reduce(Simplex& s, const Nearest& best) {
 
 }  // namespace
 
-Distance distance(const Convex& a, const Convex& b) {
+Distance distance(const ConvexShape& a, const ConvexShape& b) {
     Simplex simplex;
     simplex.vertex[simplex.count++] = support(a, b, b.points[0] - a.points[0]);
     double scale = 0.0;

@@ -7,17 +7,17 @@
 #include "manifold_points.hpp"
 
 namespace crofton::collide {
-Manifold contact_manifold(const Convex& a, const Convex& b) {
+Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b) {
     Manifold manifold;
     const Penetration deepest = penetration(a, b);
     if (deepest.depth < 0.0) return manifold;
     manifold.normal = deepest.axis;
     manifold.depth = deepest.depth;
     // Parted along the axis they touch in one place: the nearest points then, moved back by half the depth.
-    Convex parted = b;
+    ConvexShape parted = b;
     const double gap = deepest.depth + a.radius + b.radius + 1.0;
     for (int i = 0; i < parted.point_count; ++i) parted.points[i] += gap * deepest.axis;
-    Convex core_a = a;
+    ConvexShape core_a = a;
     core_a.radius = parted.radius = 0.0;
     const Distance apart = distance(core_a, parted);
     const glm::dvec3 on_a = apart.on_a + a.radius * deepest.axis;
@@ -27,7 +27,7 @@ Manifold contact_manifold(const Convex& a, const Convex& b) {
 
 Manifold contact_manifold(const Plane& half_space, const Obb& box, ManifoldPoints points) {
     Manifold manifold;
-    const Convex body = convex(box);
+    const ConvexShape body = to_convex_shape(box);
     const Penetration deepest = penetration(half_space, body);
     if (!intersects(box, half_space)) return manifold;
     manifold.normal = deepest.axis;

@@ -10,7 +10,7 @@ void PairList::begin(std::size_t item_count) {
 }
 
 void PairList::count(std::span<std::uint32_t> first, std::span<std::uint32_t> second,
-                     std::span<const std::uint32_t> items, std::span<const Filter> filters) {
+                     std::span<const std::uint32_t> items, std::span<const CollisionFilter> filters) {
     for (std::size_t i = 0; i < first.size(); ++i) {
         const std::uint32_t a = items[first[i]], b = items[second[i]];
         const bool refused = !filters.empty() && !passes(filters[a], filters[b]);

@@ -13,7 +13,7 @@ class PairList {
     void begin(std::size_t item_count);
     // Rewrites pairs of slots as pairs of items in order; a pair that the filters refuse becomes {0, 0}.
     void count(std::span<std::uint32_t> first, std::span<std::uint32_t> second, std::span<const std::uint32_t> items,
-               std::span<const Filter> filters);
+               std::span<const CollisionFilter> filters);
     void place(Vector<IdPair>& sorted);
     void add(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second, Vector<IdPair>& sorted);
     void finish(Vector<IdPair>& sorted) const;

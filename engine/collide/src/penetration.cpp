@@ -11,7 +11,7 @@ struct Span {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 };
 
-Span span_along(const Convex& body, const glm::dvec3& axis) {
+Span span_along(const ConvexShape& body, const glm::dvec3& axis) {
     Span span;
     for (int i = 0; i < body.point_count; ++i) {
         const double along = glm::dot(body.points[i], axis);
@@ -21,7 +21,7 @@ Span span_along(const Convex& body, const glm::dvec3& axis) {
     return span;
 }
 
-void try_axis(const Convex& a, const Convex& b, const glm::dvec3& axis, Penetration& best) {
+void try_axis(const ConvexShape& a, const ConvexShape& b, const glm::dvec3& axis, Penetration& best) {
     const Span in_a = span_along(a, axis), in_b = span_along(b, axis);
     const double radii = a.radius + b.radius;
     const double forward = in_a.high - in_b.low + radii, backward = in_b.high - in_a.low + radii;
@@ -31,7 +31,7 @@ void try_axis(const Convex& a, const Convex& b, const glm::dvec3& axis, Penetrat
 
 }  // namespace
 
-Penetration penetration(const Convex& a, const Convex& b) {
+Penetration penetration(const ConvexShape& a, const ConvexShape& b) {
     Penetration best{std::numeric_limits<double>::infinity(), {}};
     for (int i = 0; i < a.normal_count; ++i)
         if (a.normals[i] != glm::dvec3(0.0)) try_axis(a, b, a.normals[i], best);
@@ -48,7 +48,7 @@ Penetration penetration(const Convex& a, const Convex& b) {
     // Round bodies, and those without an interior, also part along the line between their nearest points.
     const bool is_thin = a.normal_count < 3 || b.normal_count < 3 || a.radius + b.radius > 0.0;
     if (is_thin) {
-        Convex core_a = a, core_b = b;
+        ConvexShape core_a = a, core_b = b;
         core_a.radius = core_b.radius = 0.0;
         const Distance core = distance(core_a, core_b);
         if (core.distance > 0.0) {
@@ -60,7 +60,7 @@ Penetration penetration(const Convex& a, const Convex& b) {
     return best;
 }
 
-Penetration penetration(const Plane& half_space, const Convex& body) {
+Penetration penetration(const Plane& half_space, const ConvexShape& body) {
     const double length = glm::length(half_space.normal);
     if (!(length > 0.0)) return {-std::numeric_limits<double>::infinity(), {}};
     const glm::dvec3 inward = half_space.normal / length;

@@ -42,8 +42,8 @@ Verdict ball_meets(const Obb& box, const Sphere& ball) {
 
 }  // namespace
 
-Convex convex(const Obb& box) {
-    Convex body;
+ConvexShape to_convex_shape(const Obb& box) {
+    ConvexShape body;
     for (const glm::dvec3& corner : corners(box)) body.points[body.point_count++] = corner;
     for (int k = 0; k < 3; ++k) {
         body.edges[body.edge_count++] = glm::dvec3(box.axes[k]);
@@ -53,15 +53,15 @@ Convex convex(const Obb& box) {
     return body;
 }
 
-Convex convex(const Sphere& sphere) {
-    Convex body;
+ConvexShape to_convex_shape(const Sphere& sphere) {
+    ConvexShape body;
     body.points[body.point_count++] = sphere.center;
     body.radius = sphere.radius;
     return body;
 }
 
-Convex convex(const Capsule& capsule) {
-    Convex body;
+ConvexShape to_convex_shape(const Capsule& capsule) {
+    ConvexShape body;
     body.points[body.point_count++] = capsule.begin;
     body.points[body.point_count++] = capsule.end;
     body.edges[body.edge_count++] = unit_or_zero(capsule.end - capsule.begin);
@@ -69,8 +69,8 @@ Convex convex(const Capsule& capsule) {
     return body;
 }
 
-Convex convex(const Triangle& triangle) {
-    Convex body;
+ConvexShape to_convex_shape(const Triangle& triangle) {
+    ConvexShape body;
     for (std::size_t k = 0; k < 3; ++k) {
         body.points[body.point_count++] = triangle[k];
         body.edges[body.edge_count++] = unit_or_zero(triangle[(k + 1) % 3] - triangle[k]);
@@ -82,7 +82,7 @@ Convex convex(const Triangle& triangle) {
 bool intersects(const Obb& box, const Sphere& sphere) {
     if (!is_finite(sphere.center) || !(sphere.radius >= 0.0) || !validate(box)) return false;
     if (const Verdict verdict = ball_meets(box, sphere); verdict != Verdict::open) return verdict == Verdict::meets;
-    return contains(box, sphere.center) || distance(convex(box), convex(sphere)).distance <= 0.0;
+    return contains(box, sphere.center) || distance(to_convex_shape(box), to_convex_shape(sphere)).distance <= 0.0;
 }
 
 bool intersects(const Obb& box, const Capsule& capsule) {
@@ -90,7 +90,7 @@ bool intersects(const Obb& box, const Capsule& capsule) {
         return false;
     // A segment is a triangle without area: its core is decided exactly.
     if (intersects(box, Triangle{capsule.begin, capsule.end, capsule.end})) return true;
-    return distance(convex(box), convex(capsule)).distance <= 0.0;
+    return distance(to_convex_shape(box), to_convex_shape(capsule)).distance <= 0.0;
 }
 
 }  // namespace crofton::collide

@@ -7,7 +7,7 @@ namespace crofton::collide {
 namespace {
 
 // The largest speed that rotation gives any point of the body.
-double spin_speed(const Convex& body, const Motion& motion) {
+double spin_speed(const ConvexShape& body, const ConstantMotion& motion) {
     double reach = 0.0;
     for (int i = 0; i < body.point_count; ++i) reach = std::max(reach, glm::length(body.points[i] - motion.pivot));
     return glm::length(motion.spin) * (reach + body.radius);
@@ -15,8 +15,8 @@ double spin_speed(const Convex& body, const Motion& motion) {
 
 }  // namespace
 
-Convex moved(const Convex& body, const Motion& motion, double time) {
-    Convex result = body;
+ConvexShape moved(const ConvexShape& body, const ConstantMotion& motion, double time) {
+    ConvexShape result = body;
     const double rate = glm::length(motion.spin);
     const glm::dmat3 turn =
         rate > 0.0 ? glm::mat3_cast(glm::angleAxis(rate * time, motion.spin / rate)) : glm::dmat3(1.0);
@@ -27,8 +27,8 @@ Convex moved(const Convex& body, const Motion& motion, double time) {
     return result;
 }
 
-std::optional<Impact> time_of_impact(const Convex& a, const Motion& motion_a, const Convex& b, const Motion& motion_b,
-                                     double duration, double tolerance) {
+std::optional<Impact> time_of_impact(const ConvexShape& a, const ConstantMotion& motion_a, const ConvexShape& b,
+                                     const ConstantMotion& motion_b, double duration, double tolerance) {
     const double spins = spin_speed(a, motion_a) + spin_speed(b, motion_b);
     const glm::dvec3 approach = motion_a.velocity - motion_b.velocity;
     double time = 0.0;

@@ -54,7 +54,7 @@ class ContactFinder {
     collide::Broadphase broadphase_;
     Vector<std::uint32_t> colliders_;  // ascending
     Vector<Obb> boxes_;                // of them
-    Vector<collide::Filter> filters_;
+    Vector<collide::CollisionFilter> filters_;
     Vector<ObjectPair> pairs_;
     Vector<Worker> workers_;
     Vector<Touch> touches_;      // by pair

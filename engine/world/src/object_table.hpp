@@ -61,8 +61,8 @@ struct ObjectTable {
 }
 
 // An object's bound: its ball or its box.
-[[nodiscard]] inline collide::Convex convex_of(const Object& object, const Obb& box) {
-    return object.kind == BoundKind::ball ? collide::convex(ball_of(object, box)) : collide::convex(box);
+[[nodiscard]] inline collide::ConvexShape convex_of(const Object& object, const Obb& box) {
+    return object.kind == BoundKind::ball ? collide::to_convex_shape(ball_of(object, box)) : collide::to_convex_shape(box);
 }
 
 }  // namespace crofton::world

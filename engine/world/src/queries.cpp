@@ -46,7 +46,7 @@ bool meets_ball(const Sphere& shape, const Sphere& ball) {
     return glm::length(shape.center - ball.center) <= shape.radius + ball.radius;
 }
 bool meets_ball(const collide::Capsule& shape, const Sphere& ball) {
-    return collide::distance(collide::convex(shape), collide::convex(ball)).distance <= 0.0;
+    return collide::distance(collide::to_convex_shape(shape), collide::to_convex_shape(ball)).distance <= 0.0;
 }
 
 // No further than rounding tells: boxes apart by less are near.
@@ -193,7 +193,7 @@ std::optional<ClosestObject> World::State::closest(const Shape& shape, double ma
     std::optional<ClosestObject> nearest;
     if (!is_valid(shape) || !(max_distance >= 0.0)) return nearest;
     max_distance = std::min(max_distance, kMaxCoordinate);
-    const collide::Convex body = collide::convex(shape);
+    const collide::ConvexShape body = collide::to_convex_shape(shape);
     const Aabb bounds = bounds_of(shape);
     for (double limit = max_distance * 0x1p-12;; limit = std::min(8.0 * limit, max_distance)) {
         double rest = limit;

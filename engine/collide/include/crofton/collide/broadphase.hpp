@@ -13,11 +13,11 @@
 namespace crofton::collide {
 
 // Two items are tested iff each one's layers meet what the other collides with.
-struct Filter {
+struct CollisionFilter {
     std::uint32_t layers = 1;
     std::uint32_t collides_with = ~0u;
 };
-[[nodiscard]] constexpr bool passes(const Filter& a, const Filter& b) {
+[[nodiscard]] constexpr bool passes(const CollisionFilter& a, const CollisionFilter& b) {
     return (a.layers & b.collides_with) != 0 && (b.layers & a.collides_with) != 0;
 }
 
@@ -52,14 +52,14 @@ class Broadphase {
     // all pass, or has one entry a box. A box that validate(Obb) refuses meets nothing and is listed in rejected().
     // Allocates only where more boxes or pairs than ever before need it. Errors: filters of another size; 2^32 − 1
     // boxes or more; max_pairs exceeded (no pairs are kept then).
-    Result<void> update(std::span<const Obb> boxes, std::span<const Filter> filters = {},
+    Result<void> update(std::span<const Obb> boxes, std::span<const CollisionFilter> filters = {},
                         Executor& executor = serial_executor());
 
     // As update(), where only the boxes and filters of the items in `moved` differ from those of the update before. Any
     // order; repeated items count once. With many items moved, another number of boxes, or after an error, it looks at
     // all boxes, as update() does. Errors: those of update(); an item that is no index of `boxes`.
     Result<void> update_moved(std::span<const Obb> boxes, std::span<const std::uint32_t> moved,
-                              std::span<const Filter> filters = {}, Executor& executor = serial_executor());
+                              std::span<const CollisionFilter> filters = {}, Executor& executor = serial_executor());
 
     [[nodiscard]] std::span<const IdPair> pairs() const;  // all, in order
     [[nodiscard]] std::span<const IdPair> began() const;  // in pairs() now, not after the update before

@@ -11,7 +11,7 @@ struct Distance {
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of boxes that meet, one point within 1e-6 of the size of both
 };
 // Gilbert, Johnson, Keerthi 1988, in double: within 1e-7 of the bodies' size.
-[[nodiscard]] Distance distance(const Convex& a, const Convex& b);
+[[nodiscard]] Distance distance(const ConvexShape& a, const ConvexShape& b);
 // Whether it is 0 is exact: iff intersects(a, b). Else within 1e-12 of the size, which is the sum of the half extents
 // and of the offset of the centres.
 [[nodiscard]] Distance distance(const Obb& a, const Obb& b);
@@ -23,10 +23,10 @@ struct Penetration {
     double depth = 0.0;
     glm::dvec3 axis{0.0};
 };
-[[nodiscard]] Penetration penetration(const Convex& a, const Convex& b);
+[[nodiscard]] Penetration penetration(const ConvexShape& a, const ConvexShape& b);
 [[nodiscard]] Penetration penetration(const Obb& a, const Obb& b);
 // The half-space's surface pushes the box out along its normal.
-[[nodiscard]] Penetration penetration(const Plane& half_space, const Convex& body);
+[[nodiscard]] Penetration penetration(const Plane& half_space, const ConvexShape& body);
 
 struct ContactPoint {
     glm::dvec3 position{0.0};  // midway between the surfaces, in the frame of the bodies asked about
@@ -47,17 +47,17 @@ enum class ManifoldPoints : std::uint8_t {
 // meet exactly, but by less than rounding tells, give one point at least. Points are off by rounding of the boxes' size
 // and distance, not of their coordinates.
 [[nodiscard]] Manifold contact_manifold(const Obb& a, const Obb& b, ManifoldPoints points = ManifoldPoints::reduced);
-[[nodiscard]] Manifold contact_manifold(const Convex& a, const Convex& b);  // one point, at the deepest place
+[[nodiscard]] Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b);  // one point, at the deepest place
 [[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box,
                                         ManifoldPoints points = ManifoldPoints::reduced);
 
 // Constant linear and angular velocity (rad per unit time) about `pivot`, which moves along.
-struct Motion {
+struct ConstantMotion {
     glm::dvec3 velocity{0.0};
     glm::dvec3 spin{0.0};
     glm::dvec3 pivot{0.0};
 };
-[[nodiscard]] Convex moved(const Convex& body, const Motion& motion, double time);
+[[nodiscard]] ConvexShape moved(const ConvexShape& body, const ConstantMotion& motion, double time);
 
 struct Impact {
     double time = 0.0;
@@ -66,7 +66,8 @@ struct Impact {
 // The first time in [0, duration] at which the bodies are closer than `tolerance` > 0, by conservative advancement
 // (Mirtich 1996): at the time returned they are, and at no earlier time do they meet. Nothing when that does not
 // happen.
-[[nodiscard]] std::optional<Impact> time_of_impact(const Convex& a, const Motion& motion_a, const Convex& b,
-                                                   const Motion& motion_b, double duration, double tolerance);
+[[nodiscard]] std::optional<Impact> time_of_impact(const ConvexShape& a, const ConstantMotion& motion_a,
+                                                   const ConvexShape& b, const ConstantMotion& motion_b,
+                                                   double duration, double tolerance);
 
 }  // namespace crofton::collide

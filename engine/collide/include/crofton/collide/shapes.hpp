@@ -24,7 +24,7 @@ struct Capsule {
 
 // A convex body as the distance and contact queries see it: the hull of at most eight points, grown by a radius; with
 // the directions of its edges and the normals of its faces.
-struct Convex {
+struct ConvexShape {
     glm::dvec3 points[8];
     int point_count = 0;
     glm::dvec3 edges[3];
@@ -33,9 +33,9 @@ struct Convex {
     int normal_count = 0;
     double radius = 0.0;
 };
-[[nodiscard]] Convex convex(const Obb& box);
-[[nodiscard]] Convex convex(const Sphere& sphere);
-[[nodiscard]] Convex convex(const Capsule& capsule);
-[[nodiscard]] Convex convex(const Triangle& triangle);
+[[nodiscard]] ConvexShape to_convex_shape(const Obb& box);
+[[nodiscard]] ConvexShape to_convex_shape(const Sphere& sphere);
+[[nodiscard]] ConvexShape to_convex_shape(const Capsule& capsule);
+[[nodiscard]] ConvexShape to_convex_shape(const Triangle& triangle);
 
 }  // namespace crofton::collide
