@@ -11,7 +11,8 @@
 
 namespace crofton::mesh {
 
-// How the boxes of the nodes are turned: the less perimeter they have, the fewer are met (docs/collide.md, "Meshes").
+// How the boxes of the nodes are turned: the less perimeter they have, the fewer are met (docs/notes/collide.md,
+// "Meshes").
 enum class MeshBoxes : std::uint8_t {
     principal_axes,   // of their vertices; the quickest to build
     small_perimeter,  // turned from there about each axis to about the best angle: within a few per cent of the least
