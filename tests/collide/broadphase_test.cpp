@@ -228,7 +228,7 @@ TEST_SUITE("collide/broadphase") {
         }
     }
 
-    TEST_CASE("where nothing moves nothing is looked at; moves that name no box are an error") {
+    TEST_CASE("where nothing moves nothing is looked at, and moves that name no box are an error") {
         std::mt19937_64 random(9);
         const auto boxes = random_boxes(random, 300, 4.0);
         Broadphase broadphase;
