@@ -62,7 +62,8 @@ struct ObjectTable {
 
 // An object's bound: its ball or its box.
 [[nodiscard]] inline collide::ConvexShape convex_of(const Object& object, const Obb& box) {
-    return object.kind == BoundKind::ball ? collide::to_convex_shape(ball_of(object, box)) : collide::to_convex_shape(box);
+    return object.kind == BoundKind::ball ? collide::to_convex_shape(ball_of(object, box))
+                                          : collide::to_convex_shape(box);
 }
 
 }  // namespace crofton::world
