@@ -17,7 +17,6 @@ namespace {
 
 using measure::PlanarMeasures;
 using std::numbers::pi;
-using study::Disc;
 using study::PlanarSupport;
 
 // Uniform lines: a normal direction and a distance in [−reach, reach]; the measure of all of them is 2π·reach.

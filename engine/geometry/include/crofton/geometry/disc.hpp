@@ -1,5 +1,6 @@
 // Disc: a solid circle of the plane.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <glm/vec2.hpp>
 
 namespace crofton {

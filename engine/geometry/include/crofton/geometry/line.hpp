@@ -1,5 +1,6 @@
 // Line: unbounded on both sides.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton {

@@ -1,5 +1,6 @@
 // Rectangle: the oriented box of the plane.
 #pragma once
+#include <crofton/core/requirements.hpp>
 #include <glm/vec2.hpp>
 
 namespace crofton {
