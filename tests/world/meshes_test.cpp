@@ -242,7 +242,7 @@ TEST_SUITE("world/meshes") {
         CHECK(by_box->t <= 99.5);
     }
 
-    TEST_CASE("a flat scale gives a flat object that is seen and hit; out of range it is hidden until it returns") {
+    TEST_CASE("a flat scale gives a flat object that is seen and hit, and out of range it is hidden until it returns") {
         World world;
         const auto mesh = world.add_mesh(described(cube())).value();
         const auto node = world.add_node().value();
