@@ -1,4 +1,5 @@
-/* Crofton from plain C: a scene of a hundred tetrahedra, what a camera sees of it, and which of them touch. */
+/* Crofton from plain C: a scene of a hundred tetrahedra, what a camera sees of it, and which of them
+ * touch; then the same frame of a World, which does all of it in one place. */
 #include <crofton/capi/crofton.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,6 +58,38 @@ static size_t count_pairs(const crofton_box* boxes, size_t count) {
     return pair_count;
 }
 
+/* A frame of World: ten balls in a row, each of which touches the next, and one behind the camera. */
+static int show_world(void) {
+    crofton_world* world;
+    crofton_visible_objects* visible;
+    crofton_object object;
+    crofton_camera camera = {.size = sizeof camera};
+    crofton_object_hit hit;
+    const crofton_ray ray = {{-3.2, 0.0, 0.0}, {0.0, 0.0, -1.0}, 100.0};
+    const uint32_t* ids;
+    size_t seen, contacts;
+    check(crofton_world_create(NULL, &world));
+    for (int i = 0; i < 11; ++i) {
+        const crofton_bound bound = {
+            .kind = CROFTON_BOUND_BALL, .center = {0.8 * i - 4.0, 0.0, i < 10 ? -10.0 : 50.0}, .radius = 0.5};
+        const crofton_object_description description = {
+            .size = sizeof description, .user = 100 + (uint64_t)i, .bound = &bound};
+        check(crofton_world_add(world, &description, &object));
+    }
+    check(crofton_world_update(world, NULL)); /* once a frame; then ask */
+    check(crofton_camera_default(&camera));
+    check(crofton_visible_objects_create(&visible));
+    check(crofton_world_view_camera(world, &camera, NULL, NULL, visible));
+    check(crofton_visible_objects_ids(visible, &ids, &seen, NULL, NULL));
+    check(crofton_world_contact_count(world, &contacts));
+    check(crofton_world_raycast(world, &ray, 1, ~0u, &hit));
+    printf("world: %zu of 11 objects in view, %zu contacts, the ray hits object %llu\n", seen, contacts,
+           (unsigned long long)hit.user);
+    check(crofton_visible_objects_destroy(visible));
+    check(crofton_world_destroy(world));
+    return seen == 10 && contacts == 9 && hit.user == 101;
+}
+
 int main(void) {
     crofton_scene* scene;
     const crofton_box* boxes;
@@ -71,5 +104,5 @@ int main(void) {
     printf("crofton %s: %zu of %zu instances in view, %zu pairs of boxes touch\n", crofton_version_string(), seen,
            count, pairs);
     check(crofton_scene_destroy(scene));
-    return seen > 0 && seen < count && pairs > 0 ? 0 : 1;
+    return seen > 0 && seen < count && pairs > 0 && show_world() ? 0 : 1;
 }

@@ -21,6 +21,10 @@ using VisibleSet = Owned<crofton_visible_set, crofton_visible_set_destroy>;
 using Broadphase = Owned<crofton_broadphase, crofton_broadphase_destroy>;
 using Collider = Owned<crofton_collider, crofton_collider_destroy>;
 using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
+using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
+using VisibleObjectsHandle = Owned<crofton_visible_objects, crofton_visible_objects_destroy>;
+using VisibleInViewsHandle = Owned<crofton_visible_in_views, crofton_visible_in_views_destroy>;
+using Found = Owned<crofton_found, crofton_found_destroy>;
 
 template <class OwnedHandle, class... Arguments>
 OwnedHandle make(crofton_status (*create)(Arguments..., typename OwnedHandle::pointer*), Arguments... arguments) {
@@ -39,6 +43,20 @@ inline Broadphase make_broadphase() {
 }
 inline Triangulator make_triangulator() {
     return make<Triangulator>(crofton_triangulator_create);
+}
+inline WorldHandle make_world(const crofton_world_options* options = nullptr) {
+    crofton_world* world = nullptr;
+    REQUIRE(crofton_world_create(options, &world) == CROFTON_OK);
+    return WorldHandle(world);
+}
+inline VisibleObjectsHandle make_visible_objects() {
+    return make<VisibleObjectsHandle>(crofton_visible_objects_create);
+}
+inline VisibleInViewsHandle make_visible_in_views() {
+    return make<VisibleInViewsHandle>(crofton_visible_in_views_create);
+}
+inline Found make_found() {
+    return make<Found>(crofton_found_create);
 }
 
 template <class Struct>
@@ -83,6 +101,22 @@ inline Collider make_collider(float size = 1.0f) {
 
 inline crofton_transform translation(double x, double y, double z) {
     return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}};
+}
+
+inline crofton_bound box_bound(const crofton_box& box) {
+    crofton_bound bound{};
+    bound.kind = CROFTON_BOUND_BOX;
+    bound.box = box;
+    return bound;
+}
+inline crofton_bound ball_bound(double x, double y, double z, double radius) {
+    crofton_bound bound{};
+    bound.kind = CROFTON_BOUND_BALL;
+    bound.center[0] = x;
+    bound.center[1] = y;
+    bound.center[2] = z;
+    bound.radius = radius;
+    return bound;
 }
 
 inline bool mentions(const char* text, const char* part) {

@@ -46,6 +46,8 @@ inline void copy_frustum(const crofton_frustum& frustum, Frustum& result) {
     std::memcpy(static_cast<void*>(result.planes.data()), frustum.planes, frustum.plane_count * sizeof(Plane));
 }
 void copy_frustum(const Frustum& frustum, crofton_frustum& result);
+// The camera is there, of the right size and of a known projection.
+[[nodiscard]] crofton_status check_camera(const crofton_camera* camera, const char* function);
 [[nodiscard]] Camera to_camera(const crofton_camera& camera);
 
 // The host's job system as an Executor; without one, the calling thread.

@@ -2,8 +2,7 @@
 
 #include <crofton/cull/cull.hpp>
 
-#include "call.hpp"
-#include "convert.hpp"
+#include "queries.hpp"
 #include "tree.hpp"
 
 using namespace crofton;
@@ -18,30 +17,8 @@ struct crofton_visible_set {
 
 namespace {
 
-crofton_status check_frustum(const crofton_frustum* frustum, const char* function) {
-    CROFTON_CHECK(check_struct(frustum, function));
-    if (frustum->plane_count > CROFTON_MAX_PLANES)
-        return report(CROFTON_OUT_OF_RANGE, function, "a frustum has more planes than CROFTON_MAX_PLANES");
-    return CROFTON_OK;
-}
-
-crofton_status check_query(const crofton_view* view, const crofton_cull_options* options, const crofton_jobs* jobs,
-                           const char* function) {
-    CROFTON_CHECK(check_struct(view, function));
-    CROFTON_CHECK(check_frustum(&view->frustum, function));
-    CROFTON_CHECK(check_optional(options, function));
-    return check_jobs(jobs, function);
-}
-
-cull::CullOptions to_options(const crofton_cull_options* options) {
-    if (!options) return {};
-    return {options->conservative ? cull::CullMode::conservative : cull::CullMode::exact,
-            options->tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
-}
-
 const cull::View& set_view(crofton_visible_set& visible, const crofton_view& view) {
-    copy_frustum(view.frustum, visible.view.frustum);
-    visible.view.layer_mask = view.layer_mask;
+    copy_view(view, visible.view);
     return visible.view;
 }
 

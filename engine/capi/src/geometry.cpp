@@ -25,6 +25,13 @@ Camera to_camera(const crofton_camera& camera) {
             .far_distance = camera.far_distance};
 }
 
+crofton_status check_camera(const crofton_camera* camera, const char* function) {
+    CROFTON_CHECK(check_struct(camera, function));
+    if (camera->projection > CROFTON_ORTHOGRAPHIC)
+        return report(CROFTON_INVALID_ARGUMENT, function, "unknown projection");
+    return CROFTON_OK;
+}
+
 }  // namespace crofton::capi
 
 using namespace crofton;
@@ -52,10 +59,8 @@ crofton_status crofton_camera_default(crofton_camera* camera) {
 }
 
 crofton_status crofton_frustum_from_camera(const crofton_camera* camera, crofton_frustum* frustum) {
-    CROFTON_CHECK(check_struct(camera, __func__));
+    CROFTON_CHECK(check_camera(camera, __func__));
     CROFTON_CHECK(check_struct(frustum, __func__));
-    if (camera->projection > CROFTON_ORTHOGRAPHIC)
-        return report(CROFTON_INVALID_ARGUMENT, __func__, "unknown projection");
     const auto result = frustum_of(to_camera(*camera));
     if (!result) return report(result.error(), __func__);
     copy_frustum(*result, *frustum);

@@ -1,12 +1,11 @@
 #include <crofton/capi/rays.h>
 
 #include <algorithm>
-#include <cmath>
 #include <crofton/collide/tree_query.hpp>
 #include <limits>
 
 #include "collider.hpp"
-#include "convert.hpp"
+#include "queries.hpp"
 #include "tree.hpp"
 
 using namespace crofton;
@@ -16,11 +15,6 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr crofton_ray_hit kMiss{kNever, CROFTON_NONE};
-
-crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item, Ray& result) {
-    result = {to_vector(ray.origin), to_vector(ray.direction), ray.max_t};
-    return status_of(validate(result, item), function);
-}
 
 template <class Cast>
 crofton_status cast_all(const crofton_ray* rays, size_t count, crofton_ray_hit* hits, const char* function, Cast cast) {
@@ -102,9 +96,7 @@ crofton_status crofton_tree_within_ball(const crofton_tree* tree, const double c
                                         uint32_t layer_mask, uint32_t* items, size_t capacity, size_t* found) {
     const SharedUse use(tree, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(center, __func__));
-    if (!std::isfinite(center[0] + center[1] + center[2]) || !std::isfinite(radius))
-        return report(CROFTON_NON_FINITE, __func__, "the ball's centre or radius is not finite");
-    if (radius < 0.0) return report(CROFTON_INVALID_ARGUMENT, __func__, "the ball's radius is negative");
-    return items_within(*tree, Sphere{to_vector(center), radius}, layer_mask, items, capacity, found, __func__);
+    Sphere ball;
+    CROFTON_CHECK(to_ball(center, radius, __func__, ball));
+    return items_within(*tree, ball, layer_mask, items, capacity, found, __func__);
 }

@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 /* Counts breaking changes of these headers. Equal numbers: the binaries fit together. */
-#define CROFTON_API_VERSION 1u
+#define CROFTON_API_VERSION 2u
 #define CROFTON_NO_ITEM UINT64_MAX
 #define CROFTON_NONE UINT32_MAX /* no parent, no id */
 

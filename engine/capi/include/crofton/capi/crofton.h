@@ -2,7 +2,8 @@
  *
  * Every function returns a status; nothing throws, and nothing but a failed allocation ends the program. Results go to
  * the last parameters and are untouched on failure. Structs that may grow begin with `size`: set it to sizeof(the
- * struct), so that library and caller agree on what it holds. Optional pointers are marked "or NULL".
+ * struct), so that library and caller agree on what it holds; those of World may be older and smaller. Optional
+ * pointers are marked "or NULL".
  *
  * Threads: calls on different handles are independent. On one handle, calls that take a pointer to const may run at the
  * same time; any other call needs the handle to itself. crofton_set_thread_checks makes a breach a status.
@@ -20,4 +21,6 @@
 #include <crofton/capi/rays.h>
 #include <crofton/capi/scene.h>
 #include <crofton/capi/triangulate.h>
+#include <crofton/capi/world.h>
+#include <crofton/capi/world_queries.h>
 #endif

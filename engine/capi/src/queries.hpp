@@ -1,0 +1,62 @@
+// What queries are asked with, checked: views, rays and bodies.
+#pragma once
+#include <crofton/capi/cull.h>
+#include <crofton/capi/rays.h>
+
+#include <cmath>
+#include <crofton/cull/cull.hpp>
+#include <crofton/geometry/ray.hpp>
+#include <crofton/geometry/sphere.hpp>
+
+#include "call.hpp"
+#include "convert.hpp"
+
+namespace crofton::capi {
+
+[[nodiscard]] inline crofton_status check_frustum(const crofton_frustum* frustum, const char* function) {
+    CROFTON_CHECK(check_struct(frustum, function));
+    if (frustum->plane_count > CROFTON_MAX_PLANES)
+        return report(CROFTON_OUT_OF_RANGE, function, "a frustum has more planes than CROFTON_MAX_PLANES");
+    return CROFTON_OK;
+}
+
+[[nodiscard]] inline crofton_status check_view(const crofton_view* view, const char* function) {
+    CROFTON_CHECK(check_struct(view, function));
+    return check_frustum(&view->frustum, function);
+}
+
+[[nodiscard]] inline crofton_status check_query(const crofton_view* view, const crofton_cull_options* options,
+                                                const crofton_jobs* jobs, const char* function) {
+    CROFTON_CHECK(check_view(view, function));
+    CROFTON_CHECK(check_optional(options, function));
+    return check_jobs(jobs, function);
+}
+
+[[nodiscard]] inline cull::CullOptions to_options(const crofton_cull_options* options) {
+    if (!options) return {};
+    return {options->conservative ? cull::CullMode::conservative : cull::CullMode::exact,
+            options->tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
+}
+
+// Requires a view that has been checked.
+inline void copy_view(const crofton_view& view, cull::View& result) {
+    copy_frustum(view.frustum, result.frustum);
+    result.layer_mask = view.layer_mask;
+}
+
+[[nodiscard]] inline crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item,
+                                           Ray& result) {
+    result = {to_vector(ray.origin), to_vector(ray.direction), ray.max_t};
+    return status_of(validate(result, item), function);
+}
+
+[[nodiscard]] inline crofton_status to_ball(const double* center, double radius, const char* function, Sphere& result) {
+    CROFTON_CHECK(check_pointer(center, function));
+    if (!std::isfinite(center[0] + center[1] + center[2]) || !std::isfinite(radius))
+        return report(CROFTON_NON_FINITE, function, "a ball's centre or radius is not finite");
+    if (radius < 0.0) return report(CROFTON_INVALID_ARGUMENT, function, "a ball's radius is negative");
+    result = {to_vector(center), radius};
+    return CROFTON_OK;
+}
+
+}  // namespace crofton::capi

@@ -1,0 +1,178 @@
+#include <crofton/capi/world_queries.h>
+
+#include <algorithm>
+#include <array>
+
+#include "queries.hpp"
+#include "world.hpp"
+
+using namespace crofton;
+using namespace crofton::capi;
+
+// Results look their objects up in the world: `serial` says in which.
+struct crofton_visible_objects {
+    static constexpr std::uint32_t kKind = 0x43724f09;
+    Header header;
+    VisibleObjects visible{};
+    std::uint64_t serial = 0;
+    cull::View view{};  // here, so that a query need not clear planes that it does not use
+};
+struct crofton_visible_in_views {
+    static constexpr std::uint32_t kKind = 0x43724f0b;
+    Header header;
+    VisibleInViews visible{};
+    std::uint64_t serial = 0;
+    std::array<cull::View, cull::kMaxViews> views{};
+};
+
+namespace {
+
+// How many objects to write: those from place `first` on, of the world that was viewed.
+template <class Visible>
+crofton_status count_listed(const Visible& visible, const crofton_world& world, std::size_t first,
+                            const crofton_object_ref* objects, std::size_t capacity, const char* function,
+                            std::size_t& count) {
+    CROFTON_CHECK(check_room(objects, capacity, function));
+    if (visible.serial != world.serial)
+        return report(CROFTON_INVALID_ARGUMENT, function, "the result is not of a view of this world");
+    if (first > visible.visible.size())
+        return report(CROFTON_OUT_OF_RANGE, function, "fewer objects are seen than `first`", first);
+    count = std::min(capacity, visible.visible.size() - first);
+    return CROFTON_OK;
+}
+
+}  // namespace
+
+crofton_status crofton_visible_objects_create(crofton_visible_objects** visible) {
+    CROFTON_CHECK(check_pointer(visible, __func__));
+    *visible = create<crofton_visible_objects>();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_objects_destroy(crofton_visible_objects* visible) {
+    return destroy(visible, __func__);
+}
+
+crofton_status crofton_world_view(const crofton_world* world, const crofton_view* view,
+                                  const crofton_cull_options* options, const crofton_jobs* jobs,
+                                  crofton_visible_objects* visible) {
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    const ExclusiveUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_query(view, options, jobs, __func__));
+    HostJobs executor(jobs);
+    copy_view(*view, visible->view);
+    world->world.view(visible->view, visible->visible, to_options(options), executor);
+    visible->serial = world->serial;
+    return CROFTON_OK;
+}
+
+crofton_status crofton_world_view_camera(const crofton_world* world, const crofton_camera* camera,
+                                         const crofton_cull_options* options, const crofton_jobs* jobs,
+                                         crofton_visible_objects* visible) {
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    const ExclusiveUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_camera(camera, __func__));
+    CROFTON_CHECK(check_optional(options, __func__));
+    CROFTON_CHECK(check_jobs(jobs, __func__));
+    HostJobs executor(jobs);
+    CROFTON_CHECK(
+        status_of(world->world.view(to_camera(*camera), visible->visible, to_options(options), executor), __func__));
+    visible->serial = world->serial;
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_objects_ids(const crofton_visible_objects* visible, const uint32_t** ids, size_t* count,
+                                           const uint8_t** verdicts, size_t* inside_count) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(ids, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    const VisibleObjects& seen = visible->visible;
+    *ids = seen.ids().data();
+    *count = seen.size();
+    if (verdicts)
+        *verdicts = seen.verdicts().empty() ? nullptr : reinterpret_cast<const std::uint8_t*>(seen.verdicts().data());
+    if (inside_count) *inside_count = seen.inside_count();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_objects_list(const crofton_visible_objects* visible, const crofton_world* world,
+                                            size_t first, crofton_object_ref* objects, size_t capacity) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    std::size_t count = 0;
+    CROFTON_CHECK(count_listed(*visible, *world, first, objects, capacity, __func__, count));
+    for (std::size_t i = 0; i < count; ++i) objects[i] = to_c_ref(visible->visible[first + i]);
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_objects_get_statistics(const crofton_visible_objects* visible,
+                                                      crofton_cull_statistics* statistics) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_struct(statistics, __func__));
+    const cull::Statistics& s = visible->visible.statistics();
+    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested, s.accepted_whole,
+                   s.straddling,       s.exact_tests,  s.improper};
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible) {
+    CROFTON_CHECK(check_pointer(visible, __func__));
+    *visible = create<crofton_visible_in_views>();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible) {
+    return destroy(visible, __func__);
+}
+
+crofton_status crofton_world_views(const crofton_world* world, const crofton_view* views, size_t count,
+                                   const crofton_cull_options* options, crofton_visible_in_views* visible) {
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    const ExclusiveUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_array(views, count, __func__));
+    if (count > cull::kMaxViews) return report(CROFTON_OUT_OF_RANGE, __func__, "more than 32 views");
+    for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(check_view(&views[i], __func__));
+    CROFTON_CHECK(check_optional(options, __func__));
+    for (std::size_t i = 0; i < count; ++i) copy_view(views[i], visible->views[i]);
+    world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible,
+                      to_options(options).mode);
+    visible->serial = world->serial;
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visible, const uint32_t** ids,
+                                            size_t* count) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    CROFTON_CHECK(check_pointer(ids, __func__));
+    CROFTON_CHECK(check_pointer(count, __func__));
+    *ids = visible->visible.ids().data();
+    *count = visible->visible.size();
+    return CROFTON_OK;
+}
+
+crofton_status crofton_visible_in_views_list(const crofton_visible_in_views* visible, const crofton_world* world,
+                                             size_t first, crofton_object_ref* objects, uint32_t* view_masks,
+                                             size_t capacity) {
+    const SharedUse use(visible, __func__);
+    if (use.failed()) return use.status();
+    const SharedUse use_world(world, __func__);
+    if (use_world.failed()) return use_world.status();
+    std::size_t count = 0;
+    CROFTON_CHECK(count_listed(*visible, *world, first, objects, capacity, __func__, count));
+    for (std::size_t i = 0; i < count; ++i) {
+        objects[i] = to_c_ref(visible->visible[first + i]);
+        if (view_masks) view_masks[i] = visible->visible.view_mask(first + i);
+    }
+    return CROFTON_OK;
+}

@@ -1,0 +1,549 @@
+// World in C answers what World in C++ answers, bit for bit.
+#include <array>
+#include <cmath>
+#include <crofton/core/thread_pool.hpp>
+#include <crofton/crofton.hpp>
+#include <cstring>
+#include <oracle/random_boxes.hpp>
+
+#include "handles.hpp"
+
+using namespace crofton;
+using namespace crofton::capi_test;
+using oracle::NearMisses;
+
+namespace {
+
+template <class To, class From>
+To same_bytes(const From& from) {
+    static_assert(sizeof(To) == sizeof(From));
+    To to;
+    std::memcpy(static_cast<void*>(&to), static_cast<const void*>(&from), sizeof to);
+    return to;
+}
+
+// The same objects in a World of each interface.
+struct BothWorlds {
+    World world{{.mesh_depth = true}};
+    WorldHandle c;
+    std::vector<crofton_object> objects;  // their handles are the same in both
+    std::vector<bool> has_mesh;
+    std::vector<crofton_node> nodes;
+    ThreadPool pool{3};
+    crofton_jobs jobs = sized<crofton_jobs>();
+
+    BothWorlds() {
+        auto options = sized<crofton_world_options>();
+        options.with_mesh_depth = 1;
+        c = make_world(&options);
+        jobs.user = &pool;
+        jobs.concurrency = pool.concurrency();
+        jobs.parallel_for = [](void* user, size_t count, size_t grain, crofton_range_task task, void* data) {
+            static_cast<ThreadPool*>(user)->parallel_for(
+                count, grain, [&](std::size_t begin, std::size_t end, unsigned w) { task(data, begin, end, w); });
+        };
+    }
+    [[nodiscard]] ObjectHandle object(std::size_t i) const { return same_bytes<ObjectHandle>(objects[i]); }
+    [[nodiscard]] NodeHandle node(std::size_t i) const { return same_bytes<NodeHandle>(nodes[i]); }
+};
+
+scene::Transform random_transform(NearMisses& random) {
+    const Obb turned = oracle::random_box(random, {}, 8.0);
+    return {glm::dmat3(turned.axes) * random.number(0.5, 3.0), turned.center};
+}
+
+// Two meshes: floats with a stride and 16-bit indices; doubles without indices.
+std::array<crofton_world_mesh, 2> add_meshes(BothWorlds& both) {
+    struct Vertex {
+        glm::vec3 position;
+        float other;
+    };
+    const Tetrahedron source;
+    std::vector<Vertex> vertices;
+    std::vector<glm::dvec3> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const float* p = &source.positions[3 * i];
+        vertices.push_back({{p[0], p[1], p[2]}, 9.0f});
+    }
+    for (const std::uint32_t i : source.indices) corners.push_back(2.0 * glm::dvec3(vertices[i].position));
+    const std::vector<std::uint16_t> indices(source.indices.begin(), source.indices.end());
+    auto data = sized<crofton_mesh_data>();
+    data.positions = vertices.data();
+    data.position_count = vertices.size();
+    data.position_stride = sizeof(Vertex);
+    data.indices = indices.data();
+    data.index_count = indices.size();
+    data.is_short = 1;
+    std::array<crofton_world_mesh, 2> meshes{};
+    REQUIRE(crofton_world_add_mesh(both.c.get(), &data, &meshes[0]) == CROFTON_OK);
+    data = sized<crofton_mesh_data>();
+    data.positions = corners.data();
+    data.position_count = corners.size();
+    data.is_double = 1;
+    REQUIRE(crofton_world_add_mesh(both.c.get(), &data, &meshes[1]) == CROFTON_OK);
+    const auto first = both.world.add_mesh(
+        {.positions = {&vertices[0].position.x, vertices.size(), sizeof(Vertex)}, .indices = indices});
+    const auto second = both.world.add_mesh({.positions = corners});
+    REQUIRE(first.value() == same_bytes<MeshHandle>(meshes[0]));
+    REQUIRE(second.value() == same_bytes<MeshHandle>(meshes[1]));
+    return meshes;
+}
+
+void add_nodes(BothWorlds& both, NearMisses& random, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        NodeDescription description{.transform = random_transform(random), .layers = random.index(4) ? ~0u : 5u};
+        const crofton_node* parent = nullptr;
+        if (i > 0 && random.index(2)) {
+            const std::size_t which = random.index(static_cast<unsigned>(i));
+            parent = &both.nodes[which];
+            description.parent = both.node(which);
+        }
+        const auto transform = same_bytes<crofton_transform>(description.transform);
+        crofton_node node{};
+        REQUIRE(crofton_world_add_node(both.c.get(), parent, &transform, description.layers, &node) == CROFTON_OK);
+        REQUIRE(both.world.add_node(description).value() == same_bytes<NodeHandle>(node));
+        both.nodes.push_back(node);
+    }
+}
+
+void random_bound(NearMisses& random, crofton_bound& c, Bound& bound) {
+    const Obb box = oracle::random_box(random, {}, 10.0);
+    const Aabb aligned = aabb_of(box);
+    const Sphere ball{box.center, static_cast<double>(box.half_extents.x)};
+    const unsigned kind = random.index(3);
+    c = ball_bound(ball.center.x, ball.center.y, ball.center.z, ball.radius);
+    c.kind = kind + CROFTON_BOUND_BOX;
+    c.box = same_bytes<crofton_box>(box);
+    for (int k = 0; k < 3; ++k) {
+        c.min[k] = aligned.min[k];
+        c.max[k] = aligned.max[k];
+    }
+    bound = kind == 0 ? Bound(box) : kind == 1 ? Bound(aligned) : Bound(ball);
+}
+
+void add_object(BothWorlds& both, NearMisses& random, const std::array<crofton_world_mesh, 2>& meshes) {
+    auto c = sized<crofton_object_description>();
+    ObjectDescription description;
+    crofton_bound bound{};
+    crofton_transform transform{};
+    const bool has_mesh = random.index(2) == 0;
+    if (has_mesh) {
+        c.has_mesh = 1;
+        c.mesh = meshes[random.index(2)];
+        description.mesh = same_bytes<MeshHandle>(c.mesh);
+        if (random.index(2)) {
+            const std::size_t node = random.index(static_cast<unsigned>(both.nodes.size()));
+            c.has_node = 1;
+            c.node = both.nodes[node];
+            description.node = both.node(node);
+        }
+        description.transform = random_transform(random);
+        transform = same_bytes<crofton_transform>(*description.transform);
+        c.transform = &transform;
+    } else {
+        random_bound(random, bound, description.bound);
+        c.bound = &bound;
+    }
+    c.user = description.user = random.index(1u << 30);
+    description.layers = 1u << random.index(4) | 1u << random.index(4);
+    c.hidden_layers = ~description.layers;
+    description.collides_with = random.index(3) ? ~0u : 3u;
+    c.ignored_layers = ~description.collides_with;
+    crofton_object object{};
+    REQUIRE(crofton_world_add(both.c.get(), &c, &object) == CROFTON_OK);
+    REQUIRE(both.world.add(description).value() == same_bytes<ObjectHandle>(object));
+    both.objects.push_back(object);
+    both.has_mesh.push_back(has_mesh);
+}
+
+// Changes of every kind.
+void change(BothWorlds& both, NearMisses& random) {
+    World& world = both.world;
+    crofton_world* const c = both.c.get();
+    const auto any = [&](std::size_t count) { return random.index(static_cast<unsigned>(count)); };
+    struct Moved {
+        crofton_object object;
+        crofton_transform transform;
+        crofton_box box;
+    };
+    std::vector<Moved> moved;  // meshes and bounds alike: each call refuses the others
+    std::vector<ObjectHandle> handles;
+    std::vector<scene::Transform> transforms;
+    std::vector<Obb> boxes;
+    for (int i = 0; i < 20; ++i) {
+        const std::size_t object = any(both.objects.size());
+        handles.push_back(both.object(object));
+        transforms.push_back(random_transform(random));
+        boxes.push_back(oracle::random_box(random, {}, 10.0));
+        moved.push_back({both.objects[object], same_bytes<crofton_transform>(transforms.back()),
+                         same_bytes<crofton_box>(boxes.back())});
+    }
+    const auto placed = world.set_transforms(handles, transforms);
+    REQUIRE((crofton_world_set_transforms(c, &moved[0].object, sizeof(Moved), &moved[0].transform, sizeof(Moved),
+                                          moved.size()) == CROFTON_OK) == placed.has_value());
+    if (!placed) CHECK(crofton_last_error_item() == placed.error().item);
+    const auto boxed = world.set_bounds(handles, boxes);
+    REQUIRE((crofton_world_set_boxes(c, &moved[0].object, sizeof(Moved), &moved[0].box, sizeof(Moved), moved.size()) ==
+             CROFTON_OK) == boxed.has_value());
+    if (!boxed) CHECK(crofton_last_error_item() == boxed.error().item);
+    for (int i = 0; i < 6; ++i) {
+        const std::size_t o = any(both.objects.size()), n = any(both.nodes.size()), p = any(both.nodes.size());
+        const crofton_object object = both.objects[o];
+        const std::uint32_t layers = random.index(16);
+        const auto node_place = random_transform(random);
+        const auto c_place = same_bytes<crofton_transform>(node_place);
+        const bool known = world.contains(both.object(o));
+        CHECK((crofton_world_set_hidden(c, object, i % 2) == CROFTON_OK) == known);
+        CHECK(world.set_hidden(both.object(o), i % 2 != 0).has_value() == known);
+        CHECK((crofton_world_set_layers(c, object, layers) == CROFTON_OK) == known);
+        CHECK(world.set_layers(both.object(o), layers).has_value() == known);
+        CHECK((crofton_world_set_collides_with(c, object, ~layers) == CROFTON_OK) == known);
+        CHECK(world.set_collides_with(both.object(o), ~layers).has_value() == known);
+        CHECK((crofton_world_set_user(c, object, layers + 1000) == CROFTON_OK) == known);
+        CHECK(world.set_user(both.object(o), layers + 1000).has_value() == known);
+        CHECK(crofton_world_set_node_transforms(c, &both.nodes[n], 0, &c_place, 0, 1) == CROFTON_OK);
+        CHECK(world.set_transform(both.node(n), node_place).has_value());
+        const bool hung = world.set_parent(both.node(n), both.node(p)).has_value();
+        CHECK((crofton_world_set_parent(c, both.nodes[n], &both.nodes[p]) == CROFTON_OK) == hung);
+        CHECK(crofton_world_set_node_layers(c, both.nodes[n], layers | 1u) == CROFTON_OK);
+        CHECK(world.set_layers(both.node(n), layers | 1u).has_value());
+    }
+    const std::size_t gone = any(both.objects.size());
+    CHECK((crofton_world_remove(c, both.objects[gone]) == CROFTON_OK) == world.remove(both.object(gone)).has_value());
+}
+
+bool same_ref(const crofton_object_ref& a, const ObjectRef& b) {
+    return a.object.index == b.object.index && a.object.generation == b.object.generation && a.user == b.user;
+}
+bool same_vector(const double* a, const glm::dvec3& b) {
+    return a[0] == b.x && a[1] == b.y && a[2] == b.z;
+}
+bool same_hit(const crofton_object_hit& a, const ObjectHit& b) {
+    return same_ref({a.object, a.user}, {b.object, b.user}) && a.t == b.t && same_vector(a.point, b.point) &&
+           a.triangle == b.triangle;
+}
+
+void compare_objects(const BothWorlds& both) {
+    for (std::size_t i = 0; i < both.objects.size(); ++i) {
+        crofton_box box{};
+        crofton_transform transform{};
+        std::uint64_t user = 0;
+        int contains = 0;
+        REQUIRE(crofton_world_contains(both.c.get(), both.objects[i], &contains) == CROFTON_OK);
+        REQUIRE((contains == 1) == both.world.contains(both.object(i)));
+        const auto expected = both.world.box_of(both.object(i));
+        REQUIRE((crofton_world_get_box(both.c.get(), both.objects[i], &box) == CROFTON_OK) == expected.has_value());
+        if (!contains) continue;
+        if (expected) CHECK(std::memcmp(&box, &*expected, sizeof box) == 0);
+        REQUIRE(crofton_world_get_user(both.c.get(), both.objects[i], &user) == CROFTON_OK);
+        CHECK(user == both.world.user_of(both.object(i)).value());
+        const auto place = both.world.transform_of(both.object(i));
+        REQUIRE((crofton_world_get_transform(both.c.get(), both.objects[i], &transform) == CROFTON_OK) ==
+                place.has_value());
+        if (place) CHECK(std::memcmp(&transform, &*place, sizeof transform) == 0);
+    }
+}
+
+std::size_t compare_contacts(const BothWorlds& both) {
+    const crofton_object_pair* pairs = nullptr;
+    std::size_t count = 0;
+    REQUIRE(crofton_world_pairs(both.c.get(), &pairs, &count) == CROFTON_OK);
+    REQUIRE(count == both.world.pairs().size());
+    for (std::size_t i = 0; i < count; ++i) {
+        CHECK(same_ref(pairs[i].first, both.world.pairs()[i].first));
+        CHECK(same_ref(pairs[i].second, both.world.pairs()[i].second));
+    }
+    REQUIRE(crofton_world_contact_count(both.c.get(), &count) == CROFTON_OK);
+    REQUIRE(count == both.world.contacts().size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const Contact& expected = both.world.contacts()[i];
+        auto contact = sized<crofton_object_contact>();
+        REQUIRE(crofton_world_contact(both.c.get(), i, &contact) == CROFTON_OK);
+        CHECK(same_ref(contact.first, expected.first));
+        CHECK(same_ref(contact.second, expected.second));
+        CHECK(contact.phase == static_cast<std::uint32_t>(expected.phase));
+        CHECK(contact.inside == static_cast<std::uint32_t>(expected.inside));
+        CHECK(same_vector(contact.normal, expected.normal));
+        CHECK(contact.depth == expected.depth);
+        REQUIRE(contact.point_count == expected.points.size());
+        for (std::size_t k = 0; k < contact.point_count; ++k) {
+            CHECK(same_vector(contact.points[k].position, expected.points[k].position));
+            CHECK(contact.points[k].depth == expected.points[k].depth);
+        }
+        REQUIRE(contact.triangle_count == expected.triangles.size());
+        for (std::size_t k = 0; k < contact.triangle_count; ++k) {
+            CHECK(contact.triangles[k].triangles.first == expected.triangles[k].triangles.first);
+            CHECK(contact.triangles[k].triangles.second == expected.triangles[k].triangles.second);
+            CHECK(same_vector(contact.triangles[k].begin, expected.triangles[k].segment.begin));
+            CHECK(same_vector(contact.triangles[k].end, expected.triangles[k].segment.end));
+            CHECK(same_vector(contact.triangles[k].normal, expected.triangles[k].normal));
+        }
+    }
+    return count;
+}
+
+void compare_visible(const BothWorlds& both, const crofton_visible_objects* c, const VisibleObjects& expected) {
+    const std::uint32_t* ids = nullptr;
+    const std::uint8_t* verdicts = nullptr;
+    std::size_t count = 0, inside = 0;
+    REQUIRE(crofton_visible_objects_ids(c, &ids, &count, &verdicts, &inside) == CROFTON_OK);
+    REQUIRE(count == expected.size());
+    CHECK(inside == expected.inside_count());
+    CHECK((verdicts == nullptr) == expected.verdicts().empty());
+    std::vector<crofton_object_ref> refs(count);
+    const std::size_t half = count / 2;
+    REQUIRE(crofton_visible_objects_list(c, both.c.get(), 0, refs.data(), half) == CROFTON_OK);
+    REQUIRE(crofton_visible_objects_list(c, both.c.get(), half, refs.data() + half, count) == CROFTON_OK);
+    for (std::size_t i = 0; i < count; ++i) {
+        CHECK(ids[i] == expected.ids()[i]);
+        CHECK(same_ref(refs[i], expected[i]));
+        if (verdicts) CHECK(verdicts[i] == static_cast<std::uint8_t>(expected.verdicts()[i]));
+    }
+    auto statistics = sized<crofton_cull_statistics>();
+    REQUIRE(crofton_visible_objects_get_statistics(c, &statistics) == CROFTON_OK);
+    CHECK(statistics.boxes_tested == expected.statistics().boxes_tested);
+    CHECK(statistics.straddling == expected.statistics().straddling);
+}
+
+std::size_t compare_views(const BothWorlds& both, NearMisses& random) {
+    const VisibleObjectsHandle seen = make_visible_objects();
+    VisibleObjects visible;
+    std::array<cull::View, 3> views{};
+    std::array<crofton_view, 3> c_views{};
+    std::size_t total = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const Camera camera = random.camera();
+        auto c_camera = sized<crofton_camera>();
+        std::memcpy(c_camera.position, &camera.position, sizeof c_camera.position);
+        std::memcpy(c_camera.forward, &camera.forward, sizeof c_camera.forward);
+        std::memcpy(c_camera.up, &camera.up, sizeof c_camera.up);
+        c_camera.projection = static_cast<std::uint32_t>(camera.projection);
+        c_camera.fov_y = camera.fov_y;
+        c_camera.height = camera.height;
+        c_camera.aspect = camera.aspect;
+        c_camera.near_distance = camera.near_distance;
+        c_camera.far_distance = camera.far_distance;
+        auto options = sized<crofton_cull_options>();
+        options.tree_order = v % 2;
+        const cull::CullOptions cull_options{.order = v % 2 ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
+        REQUIRE(crofton_world_view_camera(both.c.get(), &c_camera, &options, &both.jobs, seen.get()) == CROFTON_OK);
+        REQUIRE(both.world.view(camera, visible, cull_options).has_value());
+        compare_visible(both, seen.get(), visible);
+        total += visible.size();
+        views[v] = {.frustum = frustum_of(camera).value(), .layer_mask = 1u << random.index(4) | 1u};
+        c_views[v] = sized<crofton_view>();
+        c_views[v].layer_mask = views[v].layer_mask;
+        c_views[v].frustum.size = sizeof(crofton_frustum);
+        REQUIRE(crofton_frustum_from_camera(&c_camera, &c_views[v].frustum) == CROFTON_OK);
+        REQUIRE(crofton_world_view(both.c.get(), &c_views[v], &options, nullptr, seen.get()) == CROFTON_OK);
+        both.world.view(views[v], visible, cull_options);
+        compare_visible(both, seen.get(), visible);
+    }
+    const VisibleInViewsHandle in_views = make_visible_in_views();
+    VisibleInViews expected;
+    REQUIRE(crofton_world_views(both.c.get(), c_views.data(), 3, nullptr, in_views.get()) == CROFTON_OK);
+    both.world.view(views, expected);
+    const std::uint32_t* ids = nullptr;
+    std::size_t count = 0;
+    REQUIRE(crofton_visible_in_views_ids(in_views.get(), &ids, &count) == CROFTON_OK);
+    REQUIRE(count == expected.size());
+    std::vector<crofton_object_ref> refs(count);
+    std::vector<std::uint32_t> masks(count);
+    REQUIRE(crofton_visible_in_views_list(in_views.get(), both.c.get(), 0, refs.data(), masks.data(), count) ==
+            CROFTON_OK);
+    for (std::size_t i = 0; i < count; ++i) {
+        CHECK(ids[i] == expected.ids()[i]);
+        CHECK(same_ref(refs[i], expected[i]));
+        CHECK(masks[i] == expected.view_mask(i));
+    }
+    return total;
+}
+
+std::size_t compare_rays(const BothWorlds& both, NearMisses& random) {
+    const Found found = make_found();
+    Vector<ObjectHit> expected;
+    std::array<Ray, 12> rays{};
+    std::array<crofton_ray, 12> c_rays{};
+    std::array<crofton_object_hit, 12> hits{};
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays[i].origin = 30.0 * random.direction();
+        rays[i].direction = -rays[i].origin + 4.0 * random.direction();
+        if (random.index(3) == 0) rays[i].max_t = random.number(0.0, 2.0);
+        c_rays[i] = same_bytes<crofton_ray>(rays[i]);
+    }
+    const std::uint32_t layers = random.index(15) + 1;
+    REQUIRE(crofton_world_raycast(both.c.get(), c_rays.data(), rays.size(), layers, hits.data()) == CROFTON_OK);
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const auto nearest = both.world.raycast(rays[i], layers);
+        CHECK((hits[i].object.index != CROFTON_NONE) == nearest.has_value());
+        CHECK((nearest ? same_hit(hits[i], *nearest) : std::isinf(hits[i].t)));
+        int any = 7;
+        REQUIRE(crofton_world_raycast_any(both.c.get(), &c_rays[i], layers, &any) == CROFTON_OK);
+        CHECK(any == (nearest ? 1 : 0));
+        REQUIRE(crofton_world_raycast_all(both.c.get(), &c_rays[i], layers, found.get()) == CROFTON_OK);
+        both.world.raycast_all(rays[i], expected, layers);
+        const crofton_object_hit* all = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_found_hits(found.get(), &all, &count) == CROFTON_OK);
+        REQUIRE(count == expected.size());
+        for (std::size_t k = 0; k < count; ++k) CHECK(same_hit(all[k], expected[k]));
+        total += count;
+    }
+    return total;
+}
+
+void compare_found(const Found& found, const Vector<ObjectRef>& expected) {
+    const crofton_object_ref* objects = nullptr;
+    const crofton_object_hit* hits = nullptr;
+    std::size_t count = 0;
+    REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
+    REQUIRE(count == expected.size());
+    for (std::size_t i = 0; i < count; ++i) CHECK(same_ref(objects[i], expected[i]));
+    REQUIRE(crofton_found_hits(found.get(), &hits, &count) == CROFTON_OK);
+    CHECK(count == 0);
+}
+
+void compare_closest(const crofton_closest_object& c, const std::optional<ClosestObject>& expected) {
+    CHECK((c.object.index != CROFTON_NONE) == expected.has_value());
+    if (!expected) return;
+    CHECK(same_ref({c.object, c.user}, {expected->object, expected->user}));
+    CHECK(c.distance == expected->distance);
+    CHECK(same_vector(c.on_shape, expected->on_shape));
+    CHECK(same_vector(c.on_object, expected->on_object));
+}
+
+void compare_shapes(const BothWorlds& both, NearMisses& random) {
+    const Found found = make_found();
+    Vector<ObjectRef> expected;
+    crofton_world* const c = both.c.get();
+    const Obb box = oracle::random_box(random, {}, 20.0);
+    const auto c_box = same_bytes<crofton_box>(box);
+    const Sphere ball{box.center, random.number(0.0, 6.0)};
+    const collide::Capsule capsule{box.center, 10.0 * random.direction(), random.number(0.0, 3.0)};
+    const std::uint32_t layers = random.index(15) + 1;
+    const double limit = random.index(2) ? 1.0 : std::numeric_limits<double>::infinity();
+    auto closest = sized<crofton_closest_object>();
+    REQUIRE(crofton_world_overlap_box(c, &c_box, layers, found.get()) == CROFTON_OK);
+    both.world.overlap(box, expected, layers);
+    compare_found(found, expected);
+    REQUIRE(crofton_world_overlap_ball(c, &ball.center.x, ball.radius, layers, found.get()) == CROFTON_OK);
+    both.world.overlap(ball, expected, layers);
+    compare_found(found, expected);
+    REQUIRE(crofton_world_overlap_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, layers, found.get()) ==
+            CROFTON_OK);
+    both.world.overlap(capsule, expected, layers);
+    compare_found(found, expected);
+    REQUIRE(crofton_world_closest_to_box(c, &c_box, limit, layers, &closest) == CROFTON_OK);
+    compare_closest(closest, both.world.closest(box, limit, layers));
+    REQUIRE(crofton_world_closest_to_ball(c, &ball.center.x, ball.radius, limit, layers, &closest) == CROFTON_OK);
+    compare_closest(closest, both.world.closest(ball, limit, layers));
+    REQUIRE(crofton_world_closest_to_capsule(c, &capsule.begin.x, &capsule.end.x, capsule.radius, limit, layers,
+                                             &closest) == CROFTON_OK);
+    compare_closest(closest, both.world.closest(capsule, limit, layers));
+}
+
+void compare_statistics(const BothWorlds& both) {
+    auto c = sized<crofton_world_statistics>();
+    std::size_t count = 0;
+    REQUIRE(crofton_world_get_statistics(both.c.get(), &c) == CROFTON_OK);
+    REQUIRE(crofton_world_object_count(both.c.get(), &count) == CROFTON_OK);
+    const WorldStatistics& expected = both.world.statistics();
+    CHECK(count == both.world.object_count());
+    CHECK(c.objects == expected.objects);
+    CHECK(c.resting == expected.resting);
+    CHECK(c.moving == expected.moving);
+    CHECK(c.box_pairs_tested == expected.box_pairs_tested);
+    CHECK(c.contact_pairs_tested == expected.contact_pairs_tested);
+    CHECK(c.boxes_changed == expected.boxes_changed);
+    CHECK(c.nodes_updated == expected.nodes_updated);
+    CHECK(c.out_of_range == expected.out_of_range);
+    CHECK(c.tree_built == (expected.tree_built ? 1u : 0u));
+}
+
+}  // namespace
+
+TEST_SUITE("capi/world agreement") {
+    TEST_CASE("a scene of meshes, nodes and bounds that changes is answered as in C++, bit for bit") {
+        NearMisses random(71);
+        BothWorlds both;
+        const auto meshes = add_meshes(both);
+        add_nodes(both, random, 12);
+        for (int i = 0; i < 400; ++i) add_object(both, random, meshes);
+        std::size_t seen = 0, hit = 0, touching = 0;
+        for (int frame = 0; frame < 12; ++frame) {
+            CAPTURE(frame);
+            if (frame > 0) change(both, random);
+            REQUIRE(crofton_world_update(both.c.get(), &both.jobs) == CROFTON_OK);
+            REQUIRE(both.world.update().has_value());
+            compare_statistics(both);
+            compare_objects(both);
+            touching += compare_contacts(both);
+            seen += compare_views(both, random);
+            hit += compare_rays(both, random);
+            compare_shapes(both, random);
+        }
+        // The comparison is of something.
+        CHECK(seen > 100);
+        CHECK(hit > 100);
+        CHECK(touching > 100);
+    }
+
+    TEST_CASE("bounds, meshes and vertices are exchanged as in C++") {
+        NearMisses random(72);
+        BothWorlds both;
+        const auto meshes = add_meshes(both);
+        add_nodes(both, random, 3);
+        for (int i = 0; i < 40; ++i) add_object(both, random, meshes);
+        crofton_world* const c = both.c.get();
+        for (int frame = 0; frame < 6; ++frame) {
+            CAPTURE(frame);
+            for (int i = 0; i < 5; ++i) {
+                const std::size_t o = random.index(static_cast<unsigned>(both.objects.size()));
+                crofton_bound bound{};
+                Bound expected;
+                random_bound(random, bound, expected);
+                const crofton_world_mesh mesh = meshes[random.index(2)];
+                CHECK((crofton_world_set_bound(c, both.objects[o], &bound) == CROFTON_OK) == !both.has_mesh[o]);
+                CHECK(both.world.set_bound(both.object(o), expected).has_value() == !both.has_mesh[o]);
+                CHECK((crofton_world_set_mesh(c, both.objects[o], mesh) == CROFTON_OK) == both.has_mesh[o]);
+                CHECK(both.world.set_mesh(both.object(o), same_bytes<MeshHandle>(mesh)).has_value() ==
+                      both.has_mesh[o]);
+            }
+            std::vector<float> positions;
+            for (int k = 0; k < 12; ++k) positions.push_back(static_cast<float>(random.number(-2, 2)));
+            auto data = sized<crofton_mesh_data>();
+            data.positions = positions.data();
+            data.position_count = 4;
+            const PointsView points(positions.data(), 4);
+            REQUIRE(crofton_world_set_vertices(c, meshes[0], &data) == CROFTON_OK);
+            REQUIRE(both.world.set_vertices(same_bytes<MeshHandle>(meshes[0]), points).has_value());
+            const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
+            data.indices = indices.data();
+            data.index_count = indices.size();
+            data.without_triangles = static_cast<std::uint32_t>(frame % 2);
+            REQUIRE(crofton_world_replace_mesh(c, meshes[1], &data) == CROFTON_OK);
+            REQUIRE(both.world
+                        .replace_mesh(same_bytes<MeshHandle>(meshes[1]),
+                                      {.positions = points, .indices = indices, .triangles = frame % 2 == 0})
+                        .has_value());
+            REQUIRE(crofton_world_update(c, nullptr) == CROFTON_OK);
+            REQUIRE(both.world.update().has_value());
+            compare_statistics(both);
+            compare_objects(both);
+            compare_contacts(both);
+            compare_rays(both, random);
+        }
+        CHECK(crofton_world_remove_mesh(c, meshes[0]) != CROFTON_OK);  // in use
+        int contains = 0;
+        CHECK(crofton_world_contains_mesh(c, meshes[0], &contains) == CROFTON_OK);
+        CHECK(contains == 1);
+        REQUIRE(crofton_world_remove_node(c, both.nodes[0]) == CROFTON_OK);
+        REQUIRE(both.world.remove(both.node(0)).has_value());
+        CHECK(crofton_world_contains_node(c, both.nodes[0], &contains) == CROFTON_OK);
+        CHECK(contains == 0);
+        REQUIRE(crofton_world_update(c, nullptr) == CROFTON_OK);
+        REQUIRE(both.world.update().has_value());
+        compare_objects(both);
+    }
+}

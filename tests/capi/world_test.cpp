@@ -1,0 +1,438 @@
+// World in C: what is refused, and structs of older headers. world_agreement_test.cpp compares answers.
+#include <cstddef>
+#include <cstring>
+#include <limits>
+
+#include "handles.hpp"
+
+using namespace crofton::capi_test;
+
+namespace {
+
+const double kNotANumber = std::numeric_limits<double>::quiet_NaN(), kNoLimit = std::numeric_limits<double>::infinity();
+
+crofton_status try_add(const WorldHandle& world, const crofton_bound& bound, crofton_object& object,
+                       std::uint64_t user = 0) {
+    auto description = sized<crofton_object_description>();
+    description.bound = &bound;
+    description.user = user;
+    return crofton_world_add(world.get(), &description, &object);
+}
+
+crofton_object add_bound(const WorldHandle& world, const crofton_bound& bound, std::uint64_t user = 0) {
+    crofton_object object{};
+    REQUIRE(try_add(world, bound, object, user) == CROFTON_OK);
+    return object;
+}
+
+void update(const WorldHandle& world) {
+    REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
+}
+
+crofton_mesh_data data_of(const Tetrahedron& tetrahedron) {
+    auto data = sized<crofton_mesh_data>();
+    data.positions = tetrahedron.positions.data();
+    data.position_count = tetrahedron.positions.size() / 3;
+    data.indices = tetrahedron.indices.data();
+    data.index_count = tetrahedron.indices.size();
+    return data;
+}
+
+crofton_world_mesh add_tetrahedron(const WorldHandle& world) {
+    const Tetrahedron tetrahedron;
+    const crofton_mesh_data data = data_of(tetrahedron);
+    crofton_world_mesh mesh{};
+    REQUIRE(crofton_world_add_mesh(world.get(), &data, &mesh) == CROFTON_OK);
+    return mesh;
+}
+
+// One object, and results to ask it with.
+struct SmallWorld {
+    WorldHandle world = make_world();
+    VisibleObjectsHandle visible = make_visible_objects();
+    VisibleInViewsHandle in_views = make_visible_in_views();
+    Found found = make_found();
+    crofton_object box = add_bound(world, box_bound(box_at(0, 0, -5)), 7);
+    SmallWorld() { update(world); }
+};
+
+}  // namespace
+
+TEST_SUITE("capi/world") {
+    TEST_CASE("NULL is refused wherever it is not documented") {
+        const SmallWorld s;
+        crofton_world* const world = s.world.get();
+        const crofton_bound bound = ball_bound(0, 0, 0, 1);
+        const crofton_view view = default_view();
+        const crofton_transform place = translation(0, 0, 0);
+        const crofton_box box = box_at(0, 0, 0);
+        const crofton_ray ray{{0, 0, 0}, {0, 0, -1}, kNoLimit};
+        const double center[3] = {};
+        crofton_object_hit hit{};
+        crofton_object object{};
+        crofton_object_ref refs[1];
+        crofton_node node{};
+        std::size_t count = 0;
+        int flag = 0;
+        const crofton_status bad = CROFTON_INVALID_ARGUMENT;
+        CHECK(crofton_world_create(nullptr, nullptr) == bad);
+        CHECK(crofton_world_add(world, nullptr, &object) == bad);
+        CHECK(crofton_world_add_mesh(world, nullptr, nullptr) == bad);
+        CHECK(crofton_world_add_node(world, nullptr, nullptr, ~0u, nullptr) == bad);
+        CHECK(crofton_world_set_bound(world, s.box, nullptr) == bad);
+        CHECK(crofton_world_set_boxes(world, nullptr, 0, &box, 0, 1) == bad);
+        CHECK(crofton_world_set_boxes(world, &s.box, 0, nullptr, 0, 1) == bad);
+        CHECK(crofton_world_set_transforms(world, nullptr, 0, &place, 0, 1) == bad);
+        CHECK(crofton_world_set_node_transforms(world, &node, 0, nullptr, 0, 1) == bad);
+        CHECK(crofton_world_get_statistics(world, nullptr) == bad);
+        CHECK(crofton_world_get_user(world, s.box, nullptr) == bad);
+        CHECK(crofton_world_get_box(world, s.box, nullptr) == bad);
+        CHECK(crofton_world_contains(world, s.box, nullptr) == bad);
+        CHECK(crofton_world_view(world, nullptr, nullptr, nullptr, s.visible.get()) == bad);
+        CHECK(crofton_world_view_camera(world, nullptr, nullptr, nullptr, s.visible.get()) == bad);
+        CHECK(crofton_world_views(world, nullptr, 1, nullptr, s.in_views.get()) == bad);
+        CHECK(crofton_visible_objects_ids(s.visible.get(), nullptr, &count, nullptr, nullptr) == bad);
+        CHECK(crofton_visible_in_views_ids(s.in_views.get(), nullptr, &count) == bad);
+        CHECK(crofton_world_raycast(world, nullptr, 1, ~0u, &hit) == bad);
+        CHECK(crofton_world_raycast(world, &ray, 1, ~0u, nullptr) == bad);
+        CHECK(crofton_world_raycast_any(world, &ray, ~0u, nullptr) == bad);
+        CHECK(crofton_world_raycast_all(world, nullptr, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_overlap_box(world, nullptr, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_overlap_ball(world, nullptr, 1.0, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_overlap_capsule(world, center, nullptr, 1.0, ~0u, s.found.get()) == bad);
+        CHECK(crofton_world_closest_to_box(world, &box, 1.0, ~0u, nullptr) == bad);
+        CHECK(crofton_world_pairs(world, nullptr, &count) == bad);
+        CHECK(crofton_world_contact(world, 0, nullptr) == bad);
+        CHECK(crofton_found_objects(s.found.get(), nullptr, &count) == bad);
+        CHECK(crofton_found_hits(s.found.get(), nullptr, &count) == bad);
+        // No handle, or one of another kind.
+        CHECK(crofton_world_update(nullptr, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_world_destroy(reinterpret_cast<crofton_world*>(s.found.get())) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_world_set_bound(nullptr, s.box, &bound) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_world_view(world, &view, nullptr, nullptr, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_world_overlap_box(world, &box, ~0u, nullptr) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_world_contains(nullptr, s.box, &flag) == CROFTON_BAD_HANDLE);
+        // What was never viewed, lists no world's objects.
+        CHECK(crofton_visible_objects_list(s.visible.get(), world, 0, refs, 1) == bad);
+        CHECK(crofton_world_set_boxes(world, nullptr, 0, nullptr, 0, 0) == CROFTON_OK);
+        CHECK(crofton_world_raycast(world, nullptr, 0, ~0u, nullptr) == CROFTON_OK);
+        CHECK(crofton_world_views(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
+    }
+
+    TEST_CASE("a struct whose size is larger, none, or within the alignment is refused") {
+        const SmallWorld s;
+        const Tetrahedron tetrahedron;
+        for (const std::size_t size : {std::size_t{0}, std::size_t{4}, std::size_t{9}, std::size_t{4096}, SIZE_MAX}) {
+            CAPTURE(size);
+            auto options = sized<crofton_world_options>();
+            auto statistics = sized<crofton_world_statistics>();
+            auto description = sized<crofton_object_description>();
+            auto closest = sized<crofton_closest_object>();
+            auto contact = sized<crofton_object_contact>();
+            crofton_mesh_data data = data_of(tetrahedron);
+            options.size = statistics.size = description.size = closest.size = contact.size = data.size = size;
+            crofton_world* none = nullptr;
+            crofton_object object{};
+            crofton_world_mesh mesh{};
+            const double center[3] = {};
+            CHECK(crofton_world_create(&options, &none) == CROFTON_WRONG_SIZE);
+            CHECK(none == nullptr);
+            CHECK(crofton_world_get_statistics(s.world.get(), &statistics) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_add(s.world.get(), &description, &object) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_add_mesh(s.world.get(), &data, &mesh) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_closest_to_ball(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
+            CHECK(crofton_world_contact(s.world.get(), 0, &contact) == CROFTON_WRONG_SIZE);
+        }
+    }
+
+    TEST_CASE("a struct with one member more than this library knows is refused") {
+        const SmallWorld s;
+        struct NewerOptions {
+            crofton_world_options options{};
+            std::uint64_t unknown = 0;
+        } options;
+        struct NewerStatistics {
+            crofton_world_statistics statistics{};
+            std::uint64_t unknown = 5;
+        } statistics;
+        options.options.size = sizeof options;
+        statistics.statistics.size = sizeof statistics;
+        crofton_world* none = nullptr;
+        CHECK(crofton_world_create(&options.options, &none) == CROFTON_WRONG_SIZE);
+        CHECK(crofton_world_get_statistics(s.world.get(), &statistics.statistics) == CROFTON_WRONG_SIZE);
+        CHECK(statistics.statistics.objects == 0);
+        CHECK(statistics.unknown == 5);
+    }
+
+    TEST_CASE("each option does what it says, and 0 is its default") {
+        const crofton_bound bound = box_bound(box_at(0, 0, 0));
+        const auto count_in = [&](const crofton_world_options& options, crofton_status expected, std::size_t& pairs,
+                                  std::size_t& contacts) {
+            const WorldHandle world = make_world(&options);
+            for (int i = 0; i < 3; ++i) add_bound(world, bound);
+            CHECK(crofton_world_update(world.get(), nullptr) == expected);
+            const crofton_object_pair* list = nullptr;
+            REQUIRE(crofton_world_pairs(world.get(), &list, &pairs) == CROFTON_OK);
+            REQUIRE(crofton_world_contact_count(world.get(), &contacts) == CROFTON_OK);
+        };
+        auto options = sized<crofton_world_options>();
+        std::size_t pairs = 0, contacts = 0;
+        count_in(options, CROFTON_OK, pairs, contacts);
+        CHECK(pairs == 3);
+        CHECK(contacts == 3);
+        options.without_contacts = 1;
+        count_in(options, CROFTON_OK, pairs, contacts);
+        CHECK(pairs == 3);
+        CHECK(contacts == 0);
+        options.max_pairs = 2;
+        count_in(options, CROFTON_BUDGET_EXCEEDED, pairs, contacts);
+        CHECK(pairs == 0);
+        options.without_pairs = 1;
+        count_in(options, CROFTON_OK, pairs, contacts);
+        CHECK(pairs == 0);
+        // After how many updates at rest a box that has moved counts as resting.
+        const auto updates_to_rest = [&](std::uint32_t given) {
+            options = sized<crofton_world_options>();
+            options.updates_to_rest = given;
+            const WorldHandle world = make_world(&options);
+            const crofton_object object = add_bound(world, bound);
+            auto statistics = sized<crofton_world_statistics>();
+            for (int i = 0; i < 4; ++i) {
+                const crofton_box box = box_at(i, 0, 0);
+                REQUIRE(crofton_world_set_boxes(world.get(), &object, 0, &box, 0, 1) == CROFTON_OK);
+                update(world);
+            }
+            int updates = 0;
+            for (; updates < 100; ++updates) {
+                REQUIRE(crofton_world_get_statistics(world.get(), &statistics) == CROFTON_OK);
+                if (statistics.resting == 1) break;
+                update(world);
+            }
+            return updates;
+        };
+        CHECK(updates_to_rest(0) == updates_to_rest(16));
+        CHECK(updates_to_rest(16) - updates_to_rest(4) == 12);
+    }
+
+    TEST_CASE("an older, smaller struct is read and written as far as it goes") {
+        // Options that ended before `max_pairs`: the byte pattern behind them is not theirs.
+        crofton_world_options options;
+        std::memset(static_cast<void*>(&options), 0x01, sizeof options);
+        options.size = offsetof(crofton_world_options, max_pairs);
+        options.without_pairs = options.without_contacts = options.without_containment = options.with_mesh_depth = 0;
+        const WorldHandle world = make_world(&options);
+        // A description that ended before `hidden_layers`.
+        const crofton_bound bound = box_bound(box_at(0, 0, -5));
+        crofton_object_description description;
+        std::memset(static_cast<void*>(&description), 0xff, sizeof description);
+        description.size = offsetof(crofton_object_description, hidden_layers);
+        description.user = 3;
+        description.bound = &bound;
+        description.transform = nullptr;
+        description.has_mesh = description.has_node = 0;
+        crofton_object objects[2] = {};
+        for (crofton_object& object : objects)
+            REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
+        update(world);
+        const crofton_object_pair* pairs = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_world_pairs(world.get(), &pairs, &count) == CROFTON_OK);
+        CHECK(count == 1);  // in all layers, and 2^24 pairs may be found
+        // Results that ended before `resting` and before `point_count`.
+        crofton_world_statistics statistics;
+        std::memset(static_cast<void*>(&statistics), 0x5a, sizeof statistics);
+        const crofton_world_statistics before = statistics;
+        statistics.size = offsetof(crofton_world_statistics, resting);
+        REQUIRE(crofton_world_get_statistics(world.get(), &statistics) == CROFTON_OK);
+        CHECK(statistics.size == offsetof(crofton_world_statistics, resting));
+        CHECK(statistics.objects == 2);
+        CHECK(std::memcmp(&statistics.resting, &before.resting,
+                          sizeof statistics - offsetof(crofton_world_statistics, resting)) == 0);
+        crofton_object_contact contact;
+        std::memset(static_cast<void*>(&contact), 0x5a, sizeof contact);
+        const std::size_t untouched = contact.point_count;
+        contact.size = offsetof(crofton_object_contact, point_count);
+        REQUIRE(crofton_world_contact(world.get(), 0, &contact) == CROFTON_OK);
+        CHECK(contact.first.user == 3);
+        CHECK(contact.point_count == untouched);
+    }
+
+    TEST_CASE("every call refuses a stale handle") {
+        SmallWorld s;
+        crofton_world* const world = s.world.get();
+        const crofton_bound bound = box_bound(box_at(0, 0, 0));
+        const crofton_transform place = translation(1, 2, 3);
+        const crofton_box box = box_at(0, 0, 0);
+        const crofton_world_mesh mesh = add_tetrahedron(s.world);
+        crofton_node node{};
+        REQUIRE(crofton_world_add_node(world, nullptr, nullptr, ~0u, &node) == CROFTON_OK);
+        REQUIRE(crofton_world_remove(world, s.box) == CROFTON_OK);
+        REQUIRE(crofton_world_remove_node(world, node) == CROFTON_OK);
+        REQUIRE(crofton_world_remove_mesh(world, mesh) == CROFTON_OK);
+        update(s.world);
+        const crofton_object next = add_bound(s.world, bound);
+        CHECK(next.index == s.box.index);
+        CHECK(crofton_world_set_user(world, next, 9) == CROFTON_OK);
+        CHECK(crofton_world_remove_mesh(world, add_tetrahedron(s.world)) == CROFTON_OK);
+        crofton_node next_node{};
+        REQUIRE(crofton_world_add_node(world, nullptr, nullptr, ~0u, &next_node) == CROFTON_OK);
+        CHECK(next_node.index == node.index);
+        CHECK(crofton_world_set_node_layers(world, next_node, 1) == CROFTON_OK);
+        const Tetrahedron tetrahedron;
+        const crofton_mesh_data data = data_of(tetrahedron);
+        const crofton_status stale = CROFTON_STALE_HANDLE;
+        const crofton_object never{12345, 0}, none{CROFTON_NONE, 0};
+        for (const crofton_object object : {s.box, never, none}) {
+            std::uint64_t user = 0;
+            crofton_box at{};
+            crofton_transform transform{};
+            int contains = 7;
+            CHECK(crofton_world_remove(world, object) == stale);
+            CHECK(crofton_world_set_transforms(world, &object, 0, &place, 0, 1) == stale);
+            CHECK(crofton_world_set_boxes(world, &object, 0, &box, 0, 1) == stale);
+            CHECK(crofton_last_error_item() == 0);
+            CHECK(crofton_world_set_bound(world, object, &bound) == stale);
+            CHECK(crofton_world_set_mesh(world, object, mesh) == stale);
+            CHECK(crofton_world_set_hidden(world, object, 1) == stale);
+            CHECK(crofton_world_set_layers(world, object, 1) == stale);
+            CHECK(crofton_world_set_collides_with(world, object, 1) == stale);
+            CHECK(crofton_world_set_user(world, object, 1) == stale);
+            CHECK(crofton_world_get_user(world, object, &user) == stale);
+            CHECK(crofton_world_get_box(world, object, &at) == stale);
+            CHECK(crofton_world_get_transform(world, object, &transform) == stale);
+            CHECK(crofton_world_contains(world, object, &contains) == CROFTON_OK);
+            CHECK(contains == 0);
+        }
+        crofton_node below{};
+        CHECK(crofton_world_remove_node(world, node) == stale);
+        CHECK(crofton_world_set_parent(world, node, nullptr) == stale);
+        CHECK(crofton_world_set_node_layers(world, node, 1) == stale);
+        CHECK(crofton_world_set_node_transforms(world, &node, 0, &place, 0, 1) == stale);
+        CHECK(crofton_world_add_node(world, &node, nullptr, ~0u, &below) == stale);
+        CHECK(crofton_world_remove_mesh(world, mesh) == stale);
+        CHECK(crofton_world_replace_mesh(world, mesh, &data) == stale);
+        CHECK(crofton_world_set_vertices(world, mesh, &data) == stale);
+        auto description = sized<crofton_object_description>();
+        description.has_mesh = 1;
+        description.mesh = mesh;
+        crofton_object object{};
+        CHECK(crofton_world_add(world, &description, &object) == stale);
+    }
+
+    TEST_CASE("numbers that are none are refused, and spoil nothing") {
+        const SmallWorld s;
+        crofton_world* const world = s.world.get();
+        crofton_object object{77, 77};
+        for (const double number : {kNotANumber, kNoLimit}) {
+            const crofton_box box = box_at(0, number, 0);
+            crofton_transform place = translation(0, 0, number);
+            crofton_node node{};
+            CHECK(try_add(s.world, box_bound(box), object) == CROFTON_NON_FINITE);
+            CHECK(try_add(s.world, ball_bound(0, 0, 0, number), object) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_set_boxes(world, &s.box, 0, &box, 0, 1) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_add_node(world, nullptr, &place, ~0u, &node) == CROFTON_NON_FINITE);
+            crofton_bound aligned{};
+            aligned.kind = CROFTON_BOUND_ALIGNED_BOX;
+            aligned.max[1] = number;
+            CHECK(try_add(s.world, aligned, object) != CROFTON_OK);
+            const crofton_ray rays[2] = {{{0, 0, 0}, {0, 0, -1}, 1}, {{0, 0, 0}, {0, number, 0}, 1}};
+            crofton_object_hit hits[2] = {};
+            CHECK(crofton_world_raycast(world, rays, 2, ~0u, hits) == CROFTON_NON_FINITE);
+            CHECK(crofton_last_error_item() == 1);
+            CHECK(crofton_world_raycast_all(world, &rays[1], ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_overlap_box(world, &box, ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_overlap_ball(world, box.center, 1, ~0u, s.found.get()) == CROFTON_NON_FINITE);
+            CHECK(crofton_world_overlap_capsule(world, place.linear, box.center, 1, ~0u, s.found.get()) ==
+                  CROFTON_NON_FINITE);
+            auto camera = sized<crofton_camera>();
+            REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+            camera.position[0] = number;
+            CHECK(crofton_world_view_camera(world, &camera, nullptr, nullptr, s.visible.get()) != CROFTON_OK);
+        }
+        const double center[3] = {};
+        auto closest = sized<crofton_closest_object>();
+        CHECK(crofton_world_closest_to_ball(world, center, 1, kNotANumber, ~0u, &closest) == CROFTON_NON_FINITE);
+        CHECK(crofton_world_closest_to_ball(world, center, 1, -1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_closest_to_ball(world, center, -1, 1, ~0u, &closest) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_closest_to_ball(world, center, 1, kNoLimit, ~0u, &closest) == CROFTON_OK);
+        CHECK(closest.distance == doctest::Approx(3.5));  // the box's face is at z = −4.5
+        CHECK(object.index == 77);
+        std::size_t count = 0;
+        CHECK(crofton_world_object_count(world, &count) == CROFTON_OK);
+        CHECK(count == 1);
+    }
+
+    TEST_CASE("arrays, strides and kinds that cannot be are refused") {
+        const SmallWorld s;
+        crofton_world* const world = s.world.get();
+        const crofton_box box = box_at(0, 0, 0);
+        CHECK(crofton_world_set_boxes(world, &s.box, 4, &box, 0, 1) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_set_boxes(world, &s.box, 0, &box, sizeof box + 1, 1) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_world_set_boxes(world, &s.box, 0, &box, 0, SIZE_MAX / 8) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_world_set_boxes(world, &s.box, SIZE_MAX - 7, &box, 0, 2) == CROFTON_OUT_OF_RANGE);
+        crofton_bound bound = box_bound(box);
+        bound.kind = 9;
+        crofton_object object{};
+        CHECK(try_add(s.world, bound, object) == CROFTON_INVALID_ARGUMENT);
+        bound.kind = CROFTON_BOUND_NONE;
+        CHECK(try_add(s.world, bound, object) == CROFTON_INVALID_ARGUMENT);
+        const Tetrahedron tetrahedron;
+        crofton_mesh_data data = data_of(tetrahedron);
+        crofton_world_mesh mesh{};
+        data.position_stride = 8;
+        CHECK(crofton_world_add_mesh(world, &data, &mesh) == CROFTON_INVALID_ARGUMENT);
+        data = data_of(tetrahedron);
+        data.index_count = SIZE_MAX;
+        CHECK(crofton_world_add_mesh(world, &data, &mesh) == CROFTON_OUT_OF_RANGE);
+        data = data_of(tetrahedron);
+        data.indices = reinterpret_cast<const char*>(tetrahedron.indices.data()) + 1;
+        data.index_count = 3;
+        CHECK(crofton_world_add_mesh(world, &data, &mesh) == CROFTON_INVALID_ARGUMENT);
+        const std::vector<crofton_view> views(33, default_view());
+        CHECK(crofton_world_views(world, views.data(), 33, nullptr, s.in_views.get()) == CROFTON_OUT_OF_RANGE);
+        auto contact = sized<crofton_object_contact>();
+        CHECK(crofton_world_contact(world, 0, &contact) == CROFTON_OUT_OF_RANGE);
+    }
+
+    TEST_CASE("found lists what the last query into it has found, and nothing of the one before") {
+        const SmallWorld s;
+        const crofton_ray ray{{0, 0, 0}, {0, 0, -1}, kNoLimit};
+        const crofton_box box = box_at(0, 0, -5);
+        const crofton_object_ref* objects = nullptr;
+        const crofton_object_hit* hits = nullptr;
+        std::size_t object_count = 0, hit_count = 0;
+        const auto count = [&] {
+            REQUIRE(crofton_found_objects(s.found.get(), &objects, &object_count) == CROFTON_OK);
+            REQUIRE(crofton_found_hits(s.found.get(), &hits, &hit_count) == CROFTON_OK);
+        };
+        for (int i = 0; i < 2; ++i) {
+            REQUIRE(crofton_world_raycast_all(s.world.get(), &ray, ~0u, s.found.get()) == CROFTON_OK);
+            count();
+            CHECK(object_count == 0);
+            REQUIRE(hit_count == 1);
+            CHECK(hits[0].t == doctest::Approx(4.5));
+            REQUIRE(crofton_world_overlap_box(s.world.get(), &box, ~0u, s.found.get()) == CROFTON_OK);
+            count();
+            CHECK(hit_count == 0);
+            REQUIRE(object_count == 1);
+            CHECK(objects[0].user == 7);
+        }
+    }
+
+    TEST_CASE("a result lists the objects of the world that was viewed, and of no other") {
+        SmallWorld s;
+        const crofton_view view = default_view();
+        crofton_object_ref refs[2] = {};
+        REQUIRE(crofton_world_view(s.world.get(), &view, nullptr, nullptr, s.visible.get()) == CROFTON_OK);
+        REQUIRE(crofton_world_views(s.world.get(), &view, 1, nullptr, s.in_views.get()) == CROFTON_OK);
+        REQUIRE(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_OK);
+        CHECK(refs[0].user == 7);
+        CHECK(refs[1].user == 0);
+        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 1, refs, 2) == CROFTON_OK);
+        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 2, refs, 2) == CROFTON_OUT_OF_RANGE);
+        s.world = make_world();  // perhaps where the other one was
+        CHECK(crofton_visible_objects_list(s.visible.get(), s.world.get(), 0, refs, 2) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_visible_in_views_list(s.in_views.get(), s.world.get(), 0, refs, nullptr, 2) ==
+              CROFTON_INVALID_ARGUMENT);
+    }
+}
