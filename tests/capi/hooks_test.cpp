@@ -111,6 +111,45 @@ TEST_SUITE("capi/hooks") {
         REQUIRE(crofton_set_memory_hooks(nullptr) == CROFTON_OK);
     }
 
+    TEST_CASE("a World lives in the host's memory, and its warm queries allocate nothing") {
+        Counter counter;
+        const crofton_memory_hooks hooks{sizeof hooks, &counter, count_allocate, count_release};
+        REQUIRE(crofton_set_memory_hooks(&hooks) == CROFTON_OK);
+        {
+            const WorldHandle world = make_world();
+            for (const crofton_box& box : row_of_boxes(2000)) {
+                const crofton_bound bound = box_bound(box);
+                auto description = sized<crofton_object_description>();
+                description.bound = &bound;
+                crofton_object object{};
+                REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
+            }
+            REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
+            const VisibleObjectsHandle visible = make_visible_objects();
+            const VisibleInViewsHandle in_views = make_visible_in_views();
+            const Found found = make_found();
+            const crofton_view view = default_view();
+            const crofton_ray ray{{0, 0, 0}, {0, 0, -1}, 1e3};
+            const double center[3] = {0, 0, -20};
+            crofton_object_hit hit{};
+            auto closest = sized<crofton_closest_object>();
+            std::size_t before = 0;
+            for (int i = 0; i < 5; ++i) {
+                if (i == 1) before = counter.allocations;
+                REQUIRE(crofton_world_view(world.get(), &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
+                REQUIRE(crofton_world_views(world.get(), &view, 1, nullptr, in_views.get()) == CROFTON_OK);
+                REQUIRE(crofton_world_raycast(world.get(), &ray, 1, ~0u, &hit) == CROFTON_OK);
+                REQUIRE(crofton_world_raycast_all(world.get(), &ray, ~0u, found.get()) == CROFTON_OK);
+                REQUIRE(crofton_world_overlap_ball(world.get(), center, 9, ~0u, found.get()) == CROFTON_OK);
+                REQUIRE(crofton_world_closest_to_ball(world.get(), center, 9, 1e3, ~0u, &closest) == CROFTON_OK);
+            }
+            CHECK(before > 0);
+            CHECK(counter.allocations == before);
+        }
+        CHECK(counter.bytes_live == 0);
+        REQUIRE(crofton_set_memory_hooks(nullptr) == CROFTON_OK);
+    }
+
     TEST_CASE("the host's jobs give the same answer as the calling thread alone") {
         const auto boxes = row_of_boxes(20000);
         crofton::ThreadPool pool(3);
@@ -176,6 +215,40 @@ TEST_SUITE("capi/hooks") {
         CHECK(attempt.write == CROFTON_BUSY);
         CHECK(attempt.read == CROFTON_BUSY);
         CHECK(crofton_scene_update(scene.get(), nullptr, nullptr) == CROFTON_OK);
+#if !defined(CROFTON_ASSERTS)
+        REQUIRE(crofton_set_thread_checks(0) == CROFTON_OK);
+#endif
+    }
+
+    TEST_CASE("with thread checks a World that is being updated is busy") {
+        REQUIRE(crofton_set_thread_checks(1) == CROFTON_OK);
+        const WorldHandle world = make_world();
+        for (const crofton_box& box : row_of_boxes(500)) {
+            const crofton_bound bound = box_bound(box);
+            auto description = sized<crofton_object_description>();
+            description.bound = &bound;
+            crofton_object object{};
+            REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
+        }
+        const VisibleObjectsHandle visible = make_visible_objects();
+        struct Attempt {
+            crofton_world* world;
+            crofton_visible_objects* visible;
+            crofton_view view = default_view();
+            crofton_status write = CROFTON_OK, read = CROFTON_OK;
+        } attempt{world.get(), visible.get()};
+        const crofton_jobs jobs{sizeof jobs, &attempt, 1,
+                                [](void* user, size_t count, size_t grain, crofton_range_task task, void* data) {
+                                    auto& a = *static_cast<Attempt*>(user);
+                                    a.write = crofton_world_set_hidden(a.world, {0, 0}, 1);
+                                    a.read = crofton_world_view(a.world, &a.view, nullptr, nullptr, a.visible);
+                                    for (size_t i = 0; i < count; i += grain)
+                                        task(data, i, i + grain < count ? i + grain : count, 0);
+                                }};
+        CHECK(crofton_world_update(world.get(), &jobs) == CROFTON_OK);
+        CHECK(attempt.write == CROFTON_BUSY);
+        CHECK(attempt.read == CROFTON_BUSY);
+        CHECK(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
 #if !defined(CROFTON_ASSERTS)
         REQUIRE(crofton_set_thread_checks(0) == CROFTON_OK);
 #endif
