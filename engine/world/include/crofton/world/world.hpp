@@ -90,12 +90,13 @@ class World {
     Result<void> update(Executor& executor = serial_executor());
     [[nodiscard]] const WorldStatistics& statistics() const;
 
-    // What a view sees, by the objects' boxes, exactly as the mode says.
+    // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
+    // Errors of the first: as validate(Camera).
     Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
-                      Executor& executor = serial_executor()) const;  // errors: as validate(Camera)
+                      Executor& executor = serial_executor()) const;
     void view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options = {},
               Executor& executor = serial_executor()) const;
-    void view(std::span<const cull::View> views, VisibleInViews& visible,  // at most cull::kMaxViews
+    void view(std::span<const cull::View> views, VisibleInViews& visible,
               cull::CullMode mode = cull::CullMode::exact) const;
 
     // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
