@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What a build from nothing costs, in minutes of processor time (user and system), without a compiler cache:
 #   bench/build_time.sh [PRESET] [cmake options …]     for example bench/build_time.sh release -DCROFTON_SIMD_TARGETS=AVX2
 # First what samples/run.sh builds, then what tests/run.sh builds on top; for each, the sums of its folders from ninja's log (seconds

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the C API adds to a query: the same small queries from C++ and through C, in one run.
 //   bench_capi --benchmark_min_time=0.5 --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true
 #include <benchmark/benchmark.h>

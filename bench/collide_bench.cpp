@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // collide beside FCL, Bullet, Embree and ODE, on the same inputs in one run.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a frame of a game asks of collide: few movers among many boxes, single pairs near touching, meshes that deform.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the broadphase's cost grows with the number of boxes, from the results of bench_collide:
 //   bench_collide --benchmark_filter=broadphase --benchmark_out=growth.json --benchmark_out_format=json
 //   collide_growth growth.json docs/pictures/collide_growth.svg

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What Crofton and the peers are measured on: the same boxes, meshes and poses for all.
 #pragma once
 #include <crofton/geometry/obb.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the benchmarks and ends with how many times as long each peer took, measured in the same run.
 #include <cstdio>
 

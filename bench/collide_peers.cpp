@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // FCL, Bullet, Embree and ODE on the inputs of collide_bench.cpp, each where it is installed.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rays and balls against the boxes of a tree, and of Bullet's dynamic tree where it is installed; the exact test of a
 // box is the same for both.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The crowd that culling is measured on: cubes of half-extent 0.1–0.5 of the mean spacing 1, turned at random, and
 // cameras that see a given share of them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the cost of culling grows with the number of boxes: cull_growth [SVG [LARGEST]] measures a list and a tree
 // from 1,000 boxes up, a fifth of them visible, prints a table and draws it, time against number, both logarithmic.
 #include <algorithm>

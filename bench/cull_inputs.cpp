@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cull_inputs.hpp"
 
 #include <map>

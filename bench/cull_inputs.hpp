@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The crowds of the culling benchmarks, each made once, and what the benchmarks report of a query.
 #pragma once
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One view of a list, beside the plainest loop over AABBs. Compare within one run.
 #include <benchmark/benchmark.h>
 

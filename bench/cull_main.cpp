@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the culling benchmarks and ends with the ratios that matter, of times from the same run.
 #include <cstdio>
 

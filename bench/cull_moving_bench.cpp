@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Trees whose boxes move: an update and a query, and what long motion leaves behind.
 #include <benchmark/benchmark.h>
 
@@ -35,7 +36,7 @@ void aged_cull(benchmark::State& state, bool fresh) {
                 if (!tree.move(item, boxes[item])) state.SkipWithError("move failed");
             }
             tree.refit();
-            tree.maintain(boxes.size() / 50);
+            tree.rebuild_step(boxes.size() / 50);
         }
         aged.emplace(count, std::pair(std::move(boxes), std::move(tree)));
     }
@@ -89,7 +90,7 @@ void move_and_cull(benchmark::State& state, Tenth tenth, bool rebuilt) {
     Moving moving(state.range(0), tenth);
     if (rebuilt) {
         do moving.move();
-        while (!moving.tree.maintain(moving.boxes.size()));
+        while (!moving.tree.rebuild_step(moving.boxes.size()));
     }
     const cull::View view = bench::view_of_share(moving.boxes, 0.2);
     cull::VisibleSet visible;
@@ -114,7 +115,7 @@ BENCHMARK_CAPTURE(move_and_cull, neighbours_numbered, Tenth::neighbours_numbered
     ->Arg(1000000)
     ->Unit(benchmark::kMillisecond);
 
-// The tenth is lifted out of the tree and kept as a list over the caller's boxes. Parts of the frame: 0 the caller's
+// The tenth is taken out of the tree and kept as a list over the caller's boxes. Parts of the frame: 0 the caller's
 // own change of the boxes, 1 the list's update as well, 2 all.
 void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::CullOptions options) {
     Moving moving(state.range(0), tenth);
@@ -126,7 +127,7 @@ void list_and_cull(benchmark::State& state, Tenth tenth, int part, cull::CullOpt
     }
     moving.moved.clear();
     for (const boxtree::ItemId item : moving.items) moving.moved.push_back(moving.boxes[item]);
-    moving.tree = *boxtree::BoxTree::build(moving.boxes, {.lifted = moving.items});
+    moving.tree = *boxtree::BoxTree::build(moving.boxes, {.detached = moving.items});
     cull::MovingBoxes list;
     const cull::View view = bench::view_of_share(moving.boxes, 0.2);
     cull::VisibleSet visible;
@@ -211,7 +212,7 @@ void rebuild_steps(benchmark::State& state) {
         while (!done) {
             moving.move();
             const auto start = std::chrono::steady_clock::now();
-            done = moving.tree.maintain(budget);
+            done = moving.tree.rebuild_step(budget);
             const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             longest = std::max(longest, seconds);
             sum += seconds;

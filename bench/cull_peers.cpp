@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bullet's dynamic AABB tree on the same crowd.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two threads beside one.
 #include <benchmark/benchmark.h>
 

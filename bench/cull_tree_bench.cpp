@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One view of a tree: what a query costs, what its order of ids costs, and building.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Several views in one pass beside one query each.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes: time per fit beside CGAL's optimal_bounding_box and one DiTO-14 pass, and how far from the optimum the quicker
 // qualities stay. Counters: ms (best repetition), cgal_ms, ratio = cgal_ms / ms, excess_percent.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Points, clusters and peers for fit_bench.
 #pragma once
 #include <algorithm>

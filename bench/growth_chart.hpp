@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Costs over sizes as an SVG picture, both scales logarithmic.
 #pragma once
 #include <string>

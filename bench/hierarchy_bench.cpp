@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a tree's criterion is worth: tests per query for trees built by every strategy, on real and random scenes. The
 // time is that of the build. docs/notes/boxtree.md quotes: bench_measure --benchmark_filter=hierarchy
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // By what should inner nodes be bounded? For each kind of bound the expected cost of a query, T = N_v · C_v + N_p ·
 // C_p: bounds tested times the cost of one test, plus items' boxes tested times theirs. One tree each, one flight each;
 // only the bounds differ. usage: bench_inner_bounds [SCENE…]   SCENE: crowd:N, town:N or a file

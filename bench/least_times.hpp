@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A reporter that keeps the least time of each benchmark, and the run of all benchmarks with it.
 #pragma once
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Times of the measures: exact integration in the plane, bounds given ancestors, quadrature in space, samplers.
 #include <benchmark/benchmark.h>
 

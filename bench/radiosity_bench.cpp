@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Global lines a second, one by one and in bundles, and the error of all form factors at equal time beside local lines
 // cast by Embree. `bench_radiosity --benchmark_filter=…`; counters: lines/s, crossings/s, rms.
 #include <benchmark/benchmark.h>

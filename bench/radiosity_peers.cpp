@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "radiosity_peers.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rays through Embree, where it is installed.
 #pragma once
 #include <crofton/geometry/triangle_mesh.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a frame costs on lavapipe by the way it is drawn, and what predicting its triangle count costs.
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Measurements as CSV in bench/results/<processor>/, and the docs' tables made from them.
 
   bench/results.py measure BENCH [--targets AVX2,AVX3_DL] [--build build/bench] [benchmark options …]

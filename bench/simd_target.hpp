@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Restricts the library's kernels to one instruction set: the option --target=NAME of the benchmarks.
 #pragma once
 #include <hwy/targets.h>

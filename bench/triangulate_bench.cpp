@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Microseconds a vertex of the three methods, on real polygons and on contours of noise; CGAL's constrained Delaunay
 // triangulation beside ours where it is installed.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // earcut's fixtures, one line each: time, vertices, triangles beside those that earcut makes, proven or refused.
 #include <benchmark/benchmark.h>
 

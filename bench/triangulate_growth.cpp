@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How time grows with vertices and holes: triangulate_growth SIZES.svg HOLES.svg measures contours of noise, of
 // doubling size and with more and more of one region's holes hanging free, and draws microseconds a vertex; the numbers
 // go to stdout.

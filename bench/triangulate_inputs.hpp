@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Polygons to measure with: the shared files, and contours of noise of any size.
 #pragma once
 #include <crofton/geometry/polygon.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rings whose diagonals nearly all tie or survive every pruning: regular polygons, smooth curves, strips. A plain
 // interval programme and, where installed, earcut are measured beside ours.
 #include <benchmark/benchmark.h>

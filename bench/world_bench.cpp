@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What World costs beside the parts that it is made of, used by hand: the same frames in turns, the least time of each.
 // By hand what moves is known beforehand, lies side by side, and nothing is checked, copied or found out.
 //   bench_world           the table, and what ten million comings and goings leave behind
@@ -79,7 +80,7 @@ struct Crowd {
 Times views(std::size_t count, std::size_t moving_count, int frames, cull::ResultOrder order) {
     Crowd crowd(count, moving_count);
     const cull::View view = bench::view_of_share(crowd.boxes, 0.2);
-    auto tree = boxtree::BoxTree::build(crowd.boxes, {.lifted = crowd.items});
+    auto tree = boxtree::BoxTree::build(crowd.boxes, {.detached = crowd.items});
     must(tree.has_value(), "the tree");
     cull::MovingBoxes moving;
     cull::VisibleSet seen_by_hand;
@@ -168,7 +169,7 @@ Times meshes(std::size_t count, std::size_t moving_count, int frames) {
         if (i < moving_count) items.push_back(static_cast<boxtree::ItemId>(i));
     }
     scene.update();
-    auto tree = boxtree::BoxTree::build(scene.world_boxes(), {.lifted = items});
+    auto tree = boxtree::BoxTree::build(scene.world_boxes(), {.detached = items});
     must(tree.has_value(), "the tree");
     cull::MovingBoxes moving;
     cull::VisibleSet seen_by_hand;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # cmake --install: headers, libraries, and the packages that find_package(crofton) and pkg-config read.
 include(CMakePackageConfigHelpers)
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # cpack -G DEB: libcrofton-dev, headers and library of one version.
 set(CPACK_PACKAGE_NAME libcrofton-dev)
 set(CPACK_PACKAGE_VENDOR "The Crofton project")

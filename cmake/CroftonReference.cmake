@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The target `docs`, where doxygen is installed: reference of the headers that are installed.
 find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)

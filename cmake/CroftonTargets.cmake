@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What every target of ours shares, and how an engine module is declared.
 
 # Warnings, contraction, sanitizers: for our own targets only, never for a consumer's.

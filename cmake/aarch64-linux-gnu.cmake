@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Cross compiling for 64-bit ARM on Debian, its tests run by qemu (docs/testing.md says what to install).
 # CROFTON_ARM64_ROOT: a folder with the arm64 libraries, where they are not installed beside the machine's own.
 set(CMAKE_SYSTEM_NAME Linux)

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs the main job: 120 frames of the built-in town, culled, collided, drawn and counted.
 #   samples/run.sh [options of 'crofton frames' …]      results in out/frames.{csv,json} and out/frames/*.png
 set -euo pipefail

@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // Coloured lines in camera-relative coordinates.
 
 layout(push_constant) uniform Frame { mat4 to_clip; } frame;

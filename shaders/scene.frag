@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // Light, haze and the display's gamma come from the vertices: lavapipe pays for every operation here.
 
 layout(constant_id = 0) const uint faces = 0;  // 0: both, 1: back faces are dropped here, 2: they do not come here

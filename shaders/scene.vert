@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // Lit triangles. The position is computed exactly as ClipPredictor does, so that triangle counts agree to the bit.
 
 layout(constant_id = 0) const uint faces = 0;  // 0: both will be seen, else only the front

@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // A clear sky: horizon to zenith by height, and the sun's disc with its glow. All colours are given as they appear: each
 // root costs software devices as much as the rest of the sky.
 

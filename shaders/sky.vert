@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // One triangle over the whole target, at infinite distance (reversed-Z: depth 0).
 
 layout(push_constant) uniform Frame {

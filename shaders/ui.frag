@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // Text and panels: the texture times the vertex's colour, blended over the picture.
 
 layout(binding = 0) uniform sampler2D image;

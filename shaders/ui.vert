@@ -1,4 +1,5 @@
 #version 460
+// SPDX-License-Identifier: MIT
 // Dear ImGui's vertices: pixels to clip space.
 
 layout(push_constant) uniform Frame {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Counts what the engine allocates while it lives.
 #pragma once
 #include <crofton/core/memory.hpp>

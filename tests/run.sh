@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test.   tests/run.sh [PRESET] [ctest options …]
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Installs the Debian packages that Crofton needs and this machine lacks; says nothing when there are none.
 #   third_party/install.sh            what building, running and testing need
 #   third_party/install.sh --tests    also a browser, in which the tests open the report page

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Draws docs/theory.md's picture: sixty uniform lines through a disc, and where they cross a spiral.   crofton.py > crofton.svg"""
 import math
 import random

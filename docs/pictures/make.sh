@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Makes the pictures of the README and of theory.md anew, beside this script. Needs a build (tests/run.sh or samples/run.sh), and Chromium for
 # the report's.   docs/pictures/make.sh [CROFTON]
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Wraps glslangValidator's array of words into a header of ours: constants in crofton::render::shaders.
 file(READ "${INPUT}" words)
 string(REPLACE "const uint32_t" "inline constexpr std::uint32_t" words "${words}")

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cull_index.hpp"
 
 #include <cstdio>
@@ -57,7 +58,7 @@ void CullIndex::update() {
     if (!tree_) build();
     if (!changed_) return;
     tree_->refit();
-    tree_->maintain(kMaintenance);
+    tree_->rebuild_step(kMaintenance);
     changed_ = false;
 }
 

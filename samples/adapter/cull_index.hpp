@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an engine's adapter keeps: one box per engine object, inserted, moved and removed as objects come and go.
 #pragma once
 #include <crofton/cull/cull.hpp>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Crofton from plain C: a scene of a hundred tetrahedra, what a camera sees of it, and which of them
  * touch; then the same frame of a World, which does all of it in one place. */
 #include <crofton/capi/crofton.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Crofton's work on oneTBB's threads.
 #pragma once
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A thousand boxes on a plane: which of them does the camera see, and what did the answer cost?
 #include <crofton/cull/cull.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A yard of crates, a ball that rolls through it, and a camera: what is seen, what touches, what a ray hits.
 #include <crofton/crofton.hpp>
 #include <cstdint>

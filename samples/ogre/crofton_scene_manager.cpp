@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "crofton_scene_manager.hpp"
 
 #include <OgreCamera.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An OGRE scene manager that asks Crofton which objects a camera sees; the rest of OGRE notices nothing.
 #pragma once
 #include <OgreSceneManager.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What each culling put into OGRE's render queue, and whether anything that can be seen is missing from it.
 #pragma once
 #include <OgreRenderQueue.h>

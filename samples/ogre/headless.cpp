@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "headless.hpp"
 
 #include <OgreException.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OGRE with a small hidden window and the fixed-function renderer: enough to draw, count and read back.
 #pragma once
 #include <OgreRenderWindow.h>

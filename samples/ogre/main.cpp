@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // crofton_ogre: OGRE's culling and Crofton's, on the same frames of the same scene.
 #include <OgreViewport.h>
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "crofton_cull_callback.hpp"
 
 #include <chrono>

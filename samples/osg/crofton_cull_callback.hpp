@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Crofton behind an OpenSceneGraph group of many children: the cull traversal enters only those that the view sees.
 #pragma once
 #include <osg/Group>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // crofton_osg: OpenSceneGraph's cull traversal of a large group, its own and through Crofton. Needs no display.
 #include <CLI/CLI.hpp>
 #include <algorithm>

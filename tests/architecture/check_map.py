@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Compares the map in docs/architecture.md with the modules: what CMake links, and what files include.
 
 check_map.py SOURCE_DIR     prints each false statement and exits with 1 if there is any.

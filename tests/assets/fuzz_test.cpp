@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Damaged files of every format: any answer is right but a crash, a hang or a loaded scene that breaks its promises.
 #include <doctest/doctest.h>
 #include <assets/scene_source.hpp>

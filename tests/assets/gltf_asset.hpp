@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF assets made piece by piece, without the code under test.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <assets/gltf_patches.hpp>
 #include <cmath>

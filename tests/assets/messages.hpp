@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the tests of the loaders ask of error messages.
 #pragma once
 #include <assets/scene_source.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small files of every format, made on the spot, and ways to damage them.
 #pragma once
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <assets/scene_source.hpp>
 #include <assets/sector_polygons.hpp>

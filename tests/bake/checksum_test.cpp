@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/bake/checksum.hpp>
 #include <crofton/core/thread_pool.hpp>

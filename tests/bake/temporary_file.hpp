@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A file that is gone after the test.
 #pragma once
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
@@ -83,7 +84,7 @@ TEST_SUITE("boxtree/box_tree changes") {
                     }
                 }
                 tree.refit();
-                if (budget > 0) rebuilt += tree.maintain(budget);
+                if (budget > 0) rebuilt += tree.rebuild_step(budget);
                 if (frame % 10 == 0) {
                     const auto valid = tree.validate();
                     INFO((valid ? std::string() : valid.error().message));
@@ -105,7 +106,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         }
         tree.refit();
         int steps = 1;
-        while (!tree.maintain(2000)) ++steps;
+        while (!tree.rebuild_step(2000)) ++steps;
         CHECK(steps > 60);
         CHECK(steps < 400);
         CHECK(tree.validate().has_value());
@@ -133,20 +134,20 @@ TEST_SUITE("boxtree/box_tree changes") {
             }
             REQUIRE(tree.move(items, boxes).has_value());
             tree.refit();
-            done = tree.maintain(kBudget);
+            done = tree.rebuild_step(kBudget);
             const boxtree::RebuildStep& step = tree.last_rebuild_step();
             REQUIRE(step.items_added <= kBudget);
             REQUIRE(step.slots_cleared <= 16 * kBudget);
             REQUIRE(32 * step.leaves_filled <= kBudget + 32);
             REQUIRE(8 * step.nodes_linked + 32 * step.nodes_bounded <= kBudget + 40);
-            REQUIRE(2 * step.items_followed <= kMost);
+            REQUIRE(2 * step.items_synced <= kMost);
             REQUIRE(step.divisions <= 1);
             // Kinds of work that follow each other within a step share its budget.
             REQUIRE(step.items_added + 32 * step.leaves_filled + 8 * step.nodes_linked + 32 * step.nodes_bounded +
-                        2 * step.items_followed <=
+                        2 * step.items_synced <=
                     kMost + 40);
             all.items_added += step.items_added;
-            all.items_followed += step.items_followed;
+            all.items_synced += step.items_synced;
             all.slots_cleared += step.slots_cleared;
             all.leaves_filled += step.leaves_filled;
             all.nodes_linked += step.nodes_linked;
@@ -158,7 +159,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(all.leaves_filled == tree.leaves().size());
         CHECK(all.nodes_linked == tree.nodes().size());
         CHECK(all.nodes_bounded == tree.nodes().size());
-        CHECK(all.items_followed > 20000);
+        CHECK(all.items_synced > 20000);
         CHECK(all.divisions > 50);
         CHECK(tree.validate().has_value());
         CHECK(holds_all(tree));
@@ -193,7 +194,7 @@ TEST_SUITE("boxtree/box_tree changes") {
             for (Obb& box : boxes) box.center += 0.01 * random.direction();
             REQUIRE(found.move(items, boxes).has_value());
             found.refit();
-        } while (!found.maintain(20000));
+        } while (!found.rebuild_step(20000));
         CHECK(mixed_leaves(found) == 0);
         CHECK(found.validate().has_value());
         CHECK(holds_all(found));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The example of docs/boxtree.md, compiled and run.
 #include <doctest/doctest.h>
 

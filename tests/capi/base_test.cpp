@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/core/error.hpp>
 #include <crofton/core/version.hpp>
 #include <thread>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One scene in a World of each interface, C and C++: the same objects, nodes and changes.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/cull/cull.hpp>
 #include <limits>
 #include <random>
@@ -114,7 +115,7 @@ TEST_SUITE("capi/cull") {
         const crofton_view view = default_view();
         const auto ids = [&] {
             REQUIRE(crofton_tree_refit(tree) == CROFTON_OK);
-            REQUIRE(crofton_tree_maintain(tree, 100) == CROFTON_OK);
+            REQUIRE(crofton_tree_rebuild_step(tree, 100) == CROFTON_OK);
             REQUIRE(crofton_cull_tree(tree, &view, nullptr, nullptr, visible.get()) == CROFTON_OK);
             const uint32_t* found = nullptr;
             std::size_t count = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/geometry/frustum.hpp>
 #include <limits>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Handles that destroy themselves, and structs with their size set, for the tests of the C API.
 #pragma once
 #include <crofton/capi/crofton.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Callers' mistakes that no handle is to blame for: counts beyond memory, dead handles, calls without anything.
 #include <cstdint>
 
@@ -69,13 +70,13 @@ TEST_SUITE("capi/misuse") {
         CHECK(crofton_tree_move(tree, nullptr, nullptr, 0) == CROFTON_OK);
         CHECK(crofton_tree_remove(tree, 0) != CROFTON_OK);
         CHECK(crofton_tree_refit(tree) == CROFTON_OK);
-        CHECK(crofton_tree_maintain(tree, SIZE_MAX) == CROFTON_OK);
+        CHECK(crofton_tree_rebuild_step(tree, SIZE_MAX) == CROFTON_OK);
         CHECK(crofton_broadphase_update(broadphase.get(), nullptr, nullptr, 0, nullptr) == CROFTON_OK);
         crofton_box box = box_at(1, 2, 3);
         CHECK(crofton_fit_floats(nullptr, 0, nullptr, &box) != CROFTON_OK);
         CHECK(crofton_fit_boxes(nullptr, 0, nullptr, &box) != CROFTON_OK);
         box = box_at(1, 2, 3);
         CHECK(crofton_tree_insert(tree, &box, ~0u, &item) == CROFTON_OK);
-        CHECK(crofton_tree_maintain(tree, SIZE_MAX) == CROFTON_OK);
+        CHECK(crofton_tree_rebuild_step(tree, SIZE_MAX) == CROFTON_OK);
     }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/triangulate/triangulate.hpp>
 
 #include "handles.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // World in C answers what World in C++ answers, bit for bit.
 #include <cmath>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // World in C: what is refused, and structs of older headers. world_agreement_test.cpp compares answers.
 #include <cstddef>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the command line as a user would, and hands back what it said.
 #pragma once
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pairs of boxes that nearly touch, made so that the gap is known to rounding: the inputs that break separating-axis
 // tests.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/collide/obb_obb.hpp>

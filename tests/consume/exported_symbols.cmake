@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Compares what the shared library exports with the list that is checked in: LIBRARY, LIST.
 # The C API symbol by symbol; of C++, that every name belongs to namespace crofton.
 execute_process(COMMAND nm -D --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)

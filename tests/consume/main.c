@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The same from C11. */
 #include <crofton/capi/crofton.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A program outside the project that links the package: it must compile, link and answer, from every module.
 #include <crofton/bake/checksum.hpp>
 #include <crofton/collide/obb_obb.hpp>

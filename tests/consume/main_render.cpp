@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The render component: a machine without a driver is an answer, too.
 #include <crofton/render/device.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Makes the Debian package, installs it into an empty root, looks, removes it: CPACK, BUILD, ROOT, VERSION.
 cmake_minimum_required(VERSION 3.24)
 file(REMOVE_RECURSE ${ROOT})

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/core/log.hpp>
 #include <crofton/core/version.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/core/thread_pool.hpp>
@@ -201,7 +202,7 @@ TEST_SUITE("cull/bound_set") {
         }
     }
 
-    TEST_CASE("a list in the order of space is settled by whole chunks, with the same verdicts") {
+    TEST_CASE("a list in the order of space is decided by whole chunks, with the same verdicts") {
         oracle::Crowd crowd = oracle::random_crowd(40000, 0.0, 10);
         std::sort(crowd.boxes.begin(), crowd.boxes.end(),
                   [](const Obb& a, const Obb& b) { return a.center.x < b.center.x; });

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
@@ -239,7 +240,7 @@ TEST_SUITE("cull/cull") {
                 }
             }
             tree.refit();
-            if (frame % 2) (void)tree.maintain(3000);
+            if (frame % 2) (void)tree.rebuild_step(3000);
             Camera camera = random.camera();
             camera.far_distance = camera.near_distance + random.number(1.0, 60.0);
             const cull::View view{*frustum_of(camera)};

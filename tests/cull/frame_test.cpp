@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What must hold over many frames: no allocation, no rot, the same bits for any number of threads and any instruction
 // set.
 #include <doctest/doctest.h>
@@ -172,7 +173,7 @@ TEST_SUITE("cull/frame") {
                 REQUIRE(neglected.move(item, box).has_value());
             }
             tree.refit();
-            (void)tree.maintain(2000);
+            (void)tree.rebuild_step(2000);
         }
         neglected.refit();
         const boxtree::BoxTree fresh = *boxtree::BoxTree::build(crowd.boxes);

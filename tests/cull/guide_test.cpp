@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The example of docs/cull.md, compiled and run.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
@@ -24,15 +25,15 @@ struct Crowd {
     std::vector<Obb> boxes;
     std::map<ItemId, Obb> all;
 
-    Crowd(const oracle::Crowd& crowd, std::size_t lifted_every) : tree(*BoxTree::build(std::span<const Obb>{})) {
-        for (ItemId i = 0; i < crowd.boxes.size(); i += static_cast<ItemId>(lifted_every)) items.push_back(i);
+    Crowd(const oracle::Crowd& crowd, std::size_t detached_every) : tree(*BoxTree::build(std::span<const Obb>{})) {
+        for (ItemId i = 0; i < crowd.boxes.size(); i += static_cast<ItemId>(detached_every)) items.push_back(i);
         for (const ItemId item : items) boxes.push_back(crowd.boxes[item]);
-        tree = *BoxTree::build(crowd.boxes, crowd.layers, {.lifted = items});
+        tree = *BoxTree::build(crowd.boxes, crowd.layers, {.detached = items});
         for (ItemId i = 0; i < crowd.boxes.size(); ++i) all[i] = crowd.boxes[i];
         REQUIRE(moving.update(tree, items, boxes).has_value());
     }
-    void lift(ItemId item) {
-        REQUIRE(tree.lift(item).has_value());
+    void detach(ItemId item) {
+        REQUIRE(tree.detach(item).has_value());
         items.push_back(item);
         boxes.push_back(all.at(item));
     }
@@ -147,7 +148,7 @@ TEST_SUITE("cull/moving_boxes") {
                     };
                     for (int change = 0; change < 40; ++change) {
                         const ItemId item = random.index(static_cast<unsigned>(crowd.tree.boxes().size()));
-                        const bool moves = crowd.tree.is_lifted(item);
+                        const bool moves = crowd.tree.is_detached(item);
                         const auto at =
                             static_cast<std::size_t>(std::ranges::find(crowd.items, item) - crowd.items.begin());
                         if (!crowd.all.contains(item)) continue;
@@ -155,9 +156,9 @@ TEST_SUITE("cull/moving_boxes") {
                             case 0:
                                 if (moves) {
                                     crowd.all[item] = new_box();
-                                    REQUIRE(crowd.tree.settle(crowd.take(at), crowd.all[item]).has_value());
+                                    REQUIRE(crowd.tree.attach(crowd.take(at), crowd.all[item]).has_value());
                                 } else {
-                                    crowd.lift(item);
+                                    crowd.detach(item);
                                 }
                                 break;
                             case 1:
@@ -169,7 +170,7 @@ TEST_SUITE("cull/moving_boxes") {
                                 const Obb box = new_box();
                                 const ItemId fresh = *crowd.tree.insert(box, 1u << random.index(4));
                                 crowd.all[fresh] = box;
-                                if (random.index(2)) crowd.lift(fresh);
+                                if (random.index(2)) crowd.detach(fresh);
                                 break;
                             }
                             case 3:
@@ -184,7 +185,7 @@ TEST_SUITE("cull/moving_boxes") {
                     for (std::size_t k = 0; k < crowd.items.size(); ++k)
                         crowd.all[crowd.items[k]] = crowd.boxes[k] = new_box();
                     crowd.tree.refit();
-                    (void)crowd.tree.maintain(1000);
+                    (void)crowd.tree.rebuild_step(1000);
                     REQUIRE(crowd.moving.update(crowd.tree, crowd.items, crowd.boxes, three).has_value());
                     check_answers(crowd, views, three);
                 }
@@ -223,7 +224,7 @@ TEST_SUITE("cull/moving_boxes") {
         const oracle::Crowd boxes = oracle::random_crowd(20000, 0.0, 6);
         std::vector<ItemId> items(boxes.boxes.size());
         for (ItemId i = 0; i < items.size(); ++i) items[i] = i;
-        const BoxTree tree = *BoxTree::build(boxes.boxes, boxes.layers, {.lifted = items});
+        const BoxTree tree = *BoxTree::build(boxes.boxes, boxes.layers, {.detached = items});
         cull::MovingBoxes moving;
         cull::VisibleSet visible;
         cull::ManyVisible many;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What touches what, in the same bits everywhere.
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/convex_query.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Input of the same bits on every machine: nothing here asks the C or the C++ library for a random number or a sine, or
 // leaves it to the compiler which of two draws comes first.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a camera sees, in the same bits everywhere.
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bits of answers, added up: numbers by their representation, so that a change in the last place is a change.
 #pragma once
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One answer on every instruction set that this processor has, alone and on threads.
 #pragma once
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes around points, and hulls, in the same bits everywhere.
 #include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>

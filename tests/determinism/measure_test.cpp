@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Measures and random motions in the same bits everywhere.
 #include <crofton/measure/criterion.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>

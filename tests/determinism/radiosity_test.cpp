@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lines and light in the same bits everywhere.
 #include <crofton/radiosity/bundle_tracer.hpp>
 #include <crofton/radiosity/form_factors.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes and their bakes in the same bits everywhere.
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/scene/scene.hpp>

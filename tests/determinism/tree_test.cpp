@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Trees and what is stored of them, in the same bits everywhere.
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -36,7 +37,7 @@ boxtree::BoxTree lived_in_tree(Executor& executor) {
             if (i % 15 == 0) (void)tree.insert(box);
         }
         tree.refit();
-        tree.maintain(2000);
+        tree.rebuild_step(2000);
     }
     return tree;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangulations in the same bits everywhere.
 #include <crofton/triangulate/triangulate.hpp>
 #include <oracle/triangulation_check.hpp>

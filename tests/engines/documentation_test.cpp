@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Code in the documentation is code that is compiled: every C and C++ block is found, line by line, in a source.
 #include <doctest/doctest.h>
 

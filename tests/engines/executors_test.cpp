@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "../../samples/executors/tbb_executor.hpp"
 
 #include <doctest/doctest.h>

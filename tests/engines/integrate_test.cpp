@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The code that docs/integrate.md shows, compiled and run. documentation_test.cpp compares the two.
 #include <doctest/doctest.h>
 
@@ -197,7 +198,7 @@ TEST_SUITE("engines/integrate") {
         const Camera camera;
         // Once: what begins to move leaves the tree, and keeps its id and its layers.
         for (const boxtree::ItemId id : moving_ids)
-            if (!tree.lift(id)) std::abort();
+            if (!tree.detach(id)) std::abort();
         tree.refit();
 
         for (int frame = 0; frame < 30; ++frame) {
@@ -211,7 +212,7 @@ TEST_SUITE("engines/integrate") {
             CHECK(std::ranges::equal(visible.ids(), expected.ids()));
         }
         // What has come to rest goes back.
-        if (!tree.settle(moving_ids.back(), moving_boxes.back())) std::abort();
+        if (!tree.attach(moving_ids.back(), moving_boxes.back())) std::abort();
         moving_ids.pop_back();
         moving_boxes.pop_back();
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A fit is a function of the set: the same bits for any order and any duplication of the points.
 #include <doctest/doctest.h>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Baked scenes whose checksums are right, whatever they hold: an adversary would have made them so, too.
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/bake/checksum.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Camera paths, as `crofton frames --camera` reads them.
 #include <cstdlib>
 #include <pipeline/camera_path.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The C API called in any order with any numbers: arrays are as long as their counts say, handles live, dead or NULL.
 #include <crofton/capi/crofton.h>
 #include <fuzzer/FuzzedDataProvider.h>
@@ -187,7 +188,7 @@ void change_tree(World& world, Input& in) {
             break;
     }
     crofton_tree_refit(world.tree);
-    if (in.flag()) crofton_tree_maintain(world.tree, in.word());
+    if (in.flag()) crofton_tree_rebuild_step(world.tree, in.word());
 }
 
 void ask_tree(World& world, Input& in) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Polygon files of every format, and what triangulating them leads to: the first byte says which format and method.
 #include <commands/polygon_files.hpp>
 #include <crofton/triangulate/triangulate.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scene files of every format: the first byte says which.
 #include <assets/scene_source.hpp>
 #include <crofton/boxtree/box_tree.hpp>

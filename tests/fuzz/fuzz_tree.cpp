@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stored trees, trusted in nothing; of those with sound links but contents of any kind, queries stay within bounds.
 #include <span>
 

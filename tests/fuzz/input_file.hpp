@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The fuzzer's bytes as a file, for readers that take a path.
 #pragma once
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fuzz_seeds FOLDER: writes what each fuzzer begins with into FOLDER/<fuzzer>/.
 #include <assets/test_files.hpp>
 #include <crofton/bake/baked_scene.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All that can be asked of a tree, and done to it, once it has been accepted.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
@@ -25,7 +26,7 @@ inline void change(boxtree::BoxTree& tree) {
         (void)tree.insert(box);
     }
     tree.refit();
-    while (tree.item_count() > 0 && !tree.maintain(1000)) {
+    while (tree.item_count() > 0 && !tree.rebuild_step(1000)) {
     }
     query(tree);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <gmpxx.h>
 
 #include <doctest/doctest.h>

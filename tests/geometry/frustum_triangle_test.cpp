@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/geometry/frustum.hpp>
 #include <oracle/exact_frustum.hpp>

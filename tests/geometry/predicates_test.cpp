@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <gmp.h>
 
 #include <doctest/doctest.h>

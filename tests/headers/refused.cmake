@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Runs COMMAND, a compiler: it must fail with one error that matches MESSAGE, or succeed where MESSAGE is empty.
 execute_process(COMMAND ${COMMAND} RESULT_VARIABLE failed ERROR_VARIABLE said)
 if(MESSAGE STREQUAL "")

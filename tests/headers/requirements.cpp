@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled by refused.cmake with flags that must be refused, and with some that must not.
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/frustum.hpp>

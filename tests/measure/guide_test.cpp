@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The example of docs/measure.md, compiled and run.
 #include <doctest/doctest.h>
 #include <crofton/measure/criterion.hpp>

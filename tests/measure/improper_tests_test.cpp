@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/measure/improper_tests.hpp>

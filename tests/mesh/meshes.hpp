@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Closed meshes with known insides, and poses for them.
 #pragma once
 #include <cmath>

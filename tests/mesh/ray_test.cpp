@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/mesh/mesh_mesh.hpp>
 #include <crofton/mesh/ray.hpp>

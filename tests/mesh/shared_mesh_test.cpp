@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scanned and modelled meshes of the shared data, against brute force.
 #include <doctest/doctest.h>
 #include <algorithm>

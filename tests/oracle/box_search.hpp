@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes around points by brute force: every orientation of a grid, then ever smaller random turns of the best.
 #pragma once
 #include <algorithm>

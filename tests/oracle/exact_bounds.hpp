@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracles for axis-aligned boxes and balls against a frustum, in exact rational arithmetic (GMP), and cases that nearly
 // touch.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracle: do two boxes meet, in exact rational arithmetic (GMP), by two unrelated methods.
 #pragma once
 #include <gmpxx.h>

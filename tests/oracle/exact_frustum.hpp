@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracle: does a convex body meet a frustum, in exact rational arithmetic (GMP), by eliminating one variable after
 // another (Fourier 1826, Motzkin 1936): no geometry, no case distinctions.
 #pragma once

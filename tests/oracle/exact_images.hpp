@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whether a box contains the image of a point under an affine map, decided exactly.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracle: do two triangles meet, in exact rational arithmetic, by a method with no cases.
 #pragma once
 #include <array>

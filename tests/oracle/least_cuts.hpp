@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a small crowd should be cut: all cuts tried, each part sorted anew.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Minimum-weight triangulation without any pruning: every bridge to a hole is tried, then Klincsek's O(n³) programme
 // over all diagonals that cross nothing. Exponential in the number of holes. For simple polygons with simple disjoint
 // holes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random frusta, and boxes and triangles that barely meet them or barely do not.
 #pragma once
 #include <cmath>

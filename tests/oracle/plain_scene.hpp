@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a scene should hold, computed anew from the roots each time: no order, no dirty marks, no lists.
 #pragma once
 #include <crofton/scene/scene.hpp>

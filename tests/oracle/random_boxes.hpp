@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A crowd of boxes of many sizes, turned every way.
 #pragma once
 #include <cmath>

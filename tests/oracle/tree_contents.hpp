@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oracle: walks a box tree from its leaves up and compares every bound with every box below it.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What makes a list of triangles a conforming triangulation of a polygon, checked the slow way in exact arithmetic.
 #pragma once
 #include <gmpxx.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small scenes with known answers.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // ClipPredictor against lavapipe's own counter. The predictor is the CPU's half of `crofton frames --verify`.
 #include <crofton/render/clip_space.hpp>
 #include <glm/gtc/matrix_transform.hpp>

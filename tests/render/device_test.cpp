@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/core/log.hpp>
 #include <crofton/render/vulkan_context.hpp>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The example of docs/render.md, compiled and run.
 #include <crofton/render/clip_space.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A validated software device for the tests; those that need one skip where there is none.
 #pragma once
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scene's boxes against transformed_box() bit for bit and against exact arithmetic, on every instruction set.
 #include <doctest/doctest.h>
 #include <hwy/targets.h>

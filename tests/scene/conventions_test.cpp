@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What docs/conventions.md says of left-handed engines, other up axes and other units.
 #include <doctest/doctest.h>
 #include <algorithm>

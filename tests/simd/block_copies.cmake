@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Fails if a function that is compiled per instruction set (namespace N_AVX2, N_SSE4 …) contains `rep movs`.
 if(NOT OBJDUMP)
     message(STATUS "skipped: objdump is not installed")

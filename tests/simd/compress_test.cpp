@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The vector helpers against loops over lanes, on every instruction set that this processor has.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/compress_test.cpp"

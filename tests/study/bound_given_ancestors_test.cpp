@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/fit/fit.hpp>
 #include <crofton/sampling/random_motion.hpp>

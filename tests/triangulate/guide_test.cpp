@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The code that docs/triangulate.md shows, compiled and run.
 #include <doctest/doctest.h>
 #include <crofton/triangulate/triangulate.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Polygons for the tests: by hand, at random, and from the shared data.
 #pragma once
 #include <crofton/geometry/polygon.hpp>

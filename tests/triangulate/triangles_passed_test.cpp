@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // theory.md (6): the expected number of a polygon's triangles that a random frustum meets is affine in the weight.
 #include <doctest/doctest.h>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/triangulate/triangulate.hpp>
 #include <filesystem>

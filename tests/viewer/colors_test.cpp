@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is coloured and drawn over the scene, against the statistics of the same frame.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Drives the viewer's window by hand, as it were: real pointer, wheel and keys on a virtual display.
 #pragma once
 #include "view_run.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What goes in and out while the viewer runs: scenes dropped, paths recorded, statistics exported, instances picked.
 #include <sstream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The culling camera stays, the eye flies on; time stands still, or does not.
 #include "view_run.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pointer, wheel and keys of a real window, judged by what they do.
 #include <algorithm>
 #include <cmath>

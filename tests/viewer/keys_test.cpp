@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the help promises: keys, statistics rows, and the scripts of the page about the viewer.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is drawn over and beside the scene, counted in pixels and compared with what it stands for.
 #include <array>
 #include <cmath>

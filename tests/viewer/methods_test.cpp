@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bounds, culling and triangulation switched live, and two methods compared.
 #include "view_run.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The viewer's parts that need no window: picking, views, the frame history, shapes.
 #include <doctest/doctest.h>
 

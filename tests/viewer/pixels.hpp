@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A screenshot's pixels, judged by hue.
 #pragma once
 #include <algorithm>

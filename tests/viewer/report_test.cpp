@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The HTML report: complete in itself, and, where Chromium is installed, what a browser makes of it.
 #include <doctest/doctest.h>
 

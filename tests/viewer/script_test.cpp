@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scripts and switches: what is refused, and by which name.
 #include <doctest/doctest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs `crofton view` as a user does, under a virtual display of its own, and hands back what it says.
 #pragma once
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton view` starts, ends and survives: usage, displays, drivers, sizes, lost devices.
 #include "view_run.hpp"
 

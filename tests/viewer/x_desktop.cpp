@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a desktop does to a window, without a desktop: minimises it, restores it, drops a file on it.
 //   x_desktop minimise|restore WINDOW
 //   x_desktop drop WINDOW FILE          (the XDND protocol, version 5, as a file manager speaks it)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Objects that are bounds alone.
 #include <doctest/doctest.h>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which engines a World fits: any handedness, any axis up, any unit.
 #include <doctest/doctest.h>
 #include <crofton/crofton.hpp>

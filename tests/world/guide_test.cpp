@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The code of docs/world.md.
 #include <doctest/doctest.h>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Objects with meshes, under nodes and by themselves.
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>

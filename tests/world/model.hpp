@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a World should answer, from a plain list of its objects, each asked in turn.
 #pragma once
 #include <algorithm>

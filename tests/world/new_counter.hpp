@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How often operator new has been called in this program: what goes past the memory hook.
 #pragma once
 #include <cstddef>

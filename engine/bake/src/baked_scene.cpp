@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_scene.hpp>
 
 #include <string>

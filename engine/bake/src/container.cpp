@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/bake/container.hpp>
 
 #include <algorithm>

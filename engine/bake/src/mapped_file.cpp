@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/bake/mapped_file.hpp>
 
 #include <cerrno>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tree's place in the file.
 #pragma once
 #include <crofton/bake/container.hpp>

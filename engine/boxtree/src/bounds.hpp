@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writing boxes into leaves and bounds into nodes, rounded outward.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

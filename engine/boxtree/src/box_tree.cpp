@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/boxtree/box_tree.hpp>
 
 #include <hwy/cache_control.h>
@@ -43,16 +44,16 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
     BoxTree tree;
     tree.criterion_ = options.criterion;
     Aabb scene;
-    if (auto taken = tree.take_boxes(boxes, scene); !taken) return tl::unexpected(taken.error());
+    if (auto taken = tree.copy_and_validate(boxes, scene); !taken) return tl::unexpected(taken.error());
     tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
     tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
-    for (const ItemId item : options.lifted) {
-        if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to lift");
-        if (!tree.is_lifted(item)) tree.set_lifted(item, true);
+    for (const ItemId item : options.detached) {
+        if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
+        if (!tree.is_detached(item)) tree.set_detached(item, true);
     }
     Builder builder(scene, tree.item_count(), options.criterion);
     for (ItemId item = 0; item < boxes.size(); ++item)
-        if (!tree.is_lifted(item)) builder.add(item, tree.boxes_[item]);
+        if (!tree.is_detached(item)) builder.add(item, tree.boxes_[item]);
     while (!builder.prepare(~std::size_t{0} / 8, tree.boxes_, {moves, moving.data()})) {
     }
     tree.build_subtrees(builder, executor);
@@ -60,7 +61,7 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
 }
 
 // Checks the boxes and copies them while they are at hand.
-Result<void> BoxTree::take_boxes(std::span<const Obb> boxes, Aabb& scene) {
+Result<void> BoxTree::copy_and_validate(std::span<const Obb> boxes, Aabb& scene) {
     boxes_.reserve(boxes.size());
     for (std::size_t begin = 0; begin < boxes.size(); begin += kGrain) {
         const std::span<const Obb> some = boxes.subspan(begin, std::min(kGrain, boxes.size() - begin));
@@ -76,20 +77,20 @@ Result<void> BoxTree::take_boxes(std::span<const Obb> boxes, Aabb& scene) {
 void BoxTree::build_subtrees(Builder& builder, Executor& executor) {
     const Topology& topology = builder.result();
     const std::span<const Subtree> subtrees = builder.subtrees();
-    start(now_, topology);
-    now_.leaves.reserve(topology.leaves.size());
+    start(structure_, topology);
+    structure_.leaves.reserve(topology.leaves.size());
     Vector<SubtreeBuilder> workers(executor.concurrency());
     // A batch's leaves are written before they have left the cache where they were made.
     for (std::size_t first = 0; first < subtrees.size(); first += kSubtreeBatch) {
         const std::size_t count = std::min(kSubtreeBatch, subtrees.size() - first);
         const Subtree& last = subtrees[first + count - 1];
-        now_.leaves.resize(last.first_leaf + last.leaves);
+        structure_.leaves.resize(last.first_leaf + last.leaves);
         executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
             for (std::size_t s = first + begin; s < first + end; ++s) {
                 builder.build(s, workers[worker], boxes_);
                 const Subtree& subtree = subtrees[s];
                 const LeafId leaves_end = subtree.first_leaf + subtree.leaves;
-                for (LeafId l = subtree.first_leaf; l < leaves_end; ++l) fill_leaf(now_, l, leaves_end, topology);
+                for (LeafId l = subtree.first_leaf; l < leaves_end; ++l) fill_leaf(structure_, l, leaves_end, topology);
                 finish_nodes(subtree.first_node, subtree.first_node + subtree.nodes, topology);
             }
         });
@@ -98,9 +99,9 @@ void BoxTree::build_subtrees(Builder& builder, Executor& executor) {
 }
 
 void BoxTree::finish_nodes(NodeId begin, NodeId end, const Topology& topology) {
-    for (NodeId n = begin; n < end; ++n) adopt_node(now_, n, topology);
+    for (NodeId n = begin; n < end; ++n) init_node(structure_, n, topology);
     // Parents come before children.
-    for (NodeId n = end; n-- > begin;) finish_node(now_, n);
+    for (NodeId n = end; n-- > begin;) finish_node(structure_, n);
 }
 
 // Room for a new structure.
@@ -112,11 +113,11 @@ void BoxTree::start(Structure& structure, const Topology& topology) const {
     structure.slot_items.assign(topology.leaves.size() * kWidth, kNone);
     structure.item_slots.assign(boxes_.size(), kNone);
     structure.dirty_lanes.assign(topology.leaves.size(), 0);
-    structure.lanes_before.assign(topology.leaves.size(), 0);
-    structure.lanes_long_before.assign(topology.leaves.size(), 0);
+    structure.moved_last_refit.assign(topology.leaves.size(), 0);
+    structure.moved_two_refits_ago.assign(topology.leaves.size(), 0);
 }
 
-void BoxTree::adopt_node(Structure& structure, NodeId n, const Topology& topology) const {
+void BoxTree::init_node(Structure& structure, NodeId n, const Topology& topology) const {
     const Topology::NodeRecord& record = topology.nodes[n];
     Node& node = structure.nodes[n];
     clear(node);
@@ -133,8 +134,8 @@ void BoxTree::adopt_node(Structure& structure, NodeId n, const Topology& topolog
 
 void BoxTree::clear_marks(Structure& structure) {
     structure.dirty_lanes.assign(structure.leaves.size(), 0);
-    structure.lanes_before.assign(structure.leaves.size(), 0);
-    structure.lanes_long_before.assign(structure.leaves.size(), 0);
+    structure.moved_last_refit.assign(structure.leaves.size(), 0);
+    structure.moved_two_refits_ago.assign(structure.leaves.size(), 0);
 }
 
 // Leaves before `end` may be looked at already: others may still be in the making, on other threads.
@@ -155,7 +156,8 @@ void BoxTree::fill_leaf(Structure& structure, LeafId l, LeafId end, const Topolo
     leaf.lane_in_parent = record.lane_in_parent;
     for (std::uint32_t i = 0; i < record.count; ++i) {
         const ItemId item = topology.order[record.first + i];
-        if (&structure != &now_ && now_.item_slots[item] == kNone) continue;  // removed since this was begun
+        if (&structure != &structure_ && structure_.item_slots[item] == kNone)
+            continue;  // removed since this was begun
         const std::uint32_t slot = l * kWidth + leaf.count++;
         structure.slot_items[slot] = item;
         structure.item_slots[item] = slot;
@@ -209,7 +211,7 @@ void BoxTree::write_dirty_leaves(Structure& structure, std::span<const LeafId> l
     std::size_t many_count = 0;
     CROFTON_ASSERT(leaves.size() <= kRefitBatch, "too many leaves at once");
     for (const LeafId l : leaves)
-        if (!has_few_lanes(structure.dirty_lanes[l])) many[many_count++] = l;
+        if (!at_most_three_bits(structure.dirty_lanes[l])) many[many_count++] = l;
     for (std::span<const LeafId> rest(many, many_count); !rest.empty(); rest = rest.subspan(1)) {
         rest = rest.subspan(write_lanes(structure.leaves.data(), rest, structure.slot_items.data(), boxes_.data()));
         if (rest.empty()) break;
@@ -240,8 +242,9 @@ std::uint32_t BoxTree::items_without_gaps(const Structure& structure, NodeId n) 
 }
 
 // The items of a leaf below here are no longer as many as they were.
-void BoxTree::forget_run(NodeId n) {
-    for (; n != kNone && now_.ranges[n].items != 0; n = now_.nodes[n].parent) now_.ranges[n].items = 0;
+void BoxTree::invalidate_item_count(NodeId n) {
+    for (; n != kNone && structure_.ranges[n].items != 0; n = structure_.nodes[n].parent)
+        structure_.ranges[n].items = 0;
 }
 
 // Bounds and layers of all lanes from the children, in a fitting frame.
@@ -282,8 +285,8 @@ Aabb BoxTree::child_bounds(NodeId node, unsigned lane) const {
 }
 
 Result<void> BoxTree::check_item(ItemId item) const {
-    if (is_lifted(item))
-        return fail(ErrorCode::out_of_range, item, "box tree: the item has been lifted; settle it first");
+    if (is_detached(item))
+        return fail(ErrorCode::out_of_range, item, "box tree: the item has been detached; attach it first");
     if (!is_present(item)) return fail(ErrorCode::out_of_range, item, "box tree: no such item, or it has been removed");
     return {};
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From boxes to the topology of a tree: which items share a leaf, which leaves a node; in steps, if need be.
 #pragma once
 #include <array>

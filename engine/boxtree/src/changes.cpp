@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moving, inserting and removing items.
 #include <hwy/cache_control.h>
 #include <algorithm>
@@ -42,24 +43,24 @@ Result<void> BoxTree::move(std::span<const ItemId> items, std::span<const Obb> b
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (i + kAhead < items.size()) prefetch_all(boxes_[items[i + kAhead]]);
         if (i + kNear < items.size() && has_few_changes(moved_slots_[i + kNear] / kWidth))
-            prefetch_all(now_.leaves[moved_slots_[i + kNear] / kWidth]);
+            prefetch_all(structure_.leaves[moved_slots_[i + kNear] / kWidth]);
         boxes_[items[i]] = boxes[i];
         const LeafId leaf = moved_slots_[i] / kWidth;
-        if (has_few_changes(leaf) && !write_lane(now_.leaves[leaf], moved_slots_[i] % kWidth, boxes[i]))
-            rewrite_leaf(now_, leaf);
+        if (has_few_changes(leaf) && !write_lane(structure_.leaves[leaf], moved_slots_[i] % kWidth, boxes[i]))
+            rewrite_leaf(structure_, leaf);
     }
     if (rebuild_)
-        for (const ItemId item : items) note_change(item);
+        for (const ItemId item : items) mark_changed(item);
     return {};
 }
 
 bool BoxTree::has_few_changes(LeafId leaf) const {
-    return has_few_lanes(now_.dirty_lanes[leaf]);
+    return at_most_three_bits(structure_.dirty_lanes[leaf]);
 }
 
 // The items' slots, if all is well.
 Result<void> BoxTree::find_moved(std::span<const ItemId> items, std::span<const Obb> boxes) {
-    const std::uint32_t* slots = now_.item_slots.data();
+    const std::uint32_t* slots = structure_.item_slots.data();
     moved_slots_.resize(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (i + kAhead < items.size() && items[i + kAhead] < boxes_.size()) hwy::Prefetch(slots + items[i + kAhead]);
@@ -76,7 +77,7 @@ Result<void> BoxTree::find_moved(std::span<const ItemId> items, std::span<const 
 
 // Neighbours often share a leaf: theirs are put down at once.
 void BoxTree::mark_moved() {
-    std::uint16_t* dirty = now_.dirty_lanes.data();
+    std::uint16_t* dirty = structure_.dirty_lanes.data();
     LeafId leaf = 0;
     std::uint32_t lanes = 0;
     for (const std::uint32_t slot : moved_slots_) {
@@ -91,51 +92,51 @@ void BoxTree::mark_moved() {
 }
 
 Result<void> BoxTree::set_layer_mask(ItemId item, std::uint32_t layer_mask) {
-    if (is_lifted(item)) {
+    if (is_detached(item)) {
         layer_masks_[item] = layer_mask;
-        lifted_layers_ &= layer_mask;
+        detached_layers_ &= layer_mask;
         return {};
     }
     if (auto known = check_item(item); !known) return known;
     layer_masks_[item] = layer_mask;
-    const std::uint32_t slot = now_.item_slots[item];
-    write_layers(now_.leaves[slot / kWidth], slot % kWidth, layer_mask);
+    const std::uint32_t slot = structure_.item_slots[item];
+    write_layers(structure_.leaves[slot / kWidth], slot % kWidth, layer_mask);
     layers_changed_ = true;
     mark(slot);
-    note_change(item);
+    mark_changed(item);
     return {};
 }
 
 Result<void> BoxTree::remove(ItemId item) {
-    if (is_lifted(item)) {
-        set_lifted(item, false);
+    if (is_detached(item)) {
+        set_detached(item, false);
         free_items_.push_back(item);
         return {};
     }
     if (auto known = check_item(item); !known) return known;
     vacate(item);
     free_items_.push_back(item);
-    note_change(item);
+    mark_changed(item);
     return {};
 }
 
 // The leaf's last item moves into the gap.
 void BoxTree::vacate(ItemId item) {
-    const std::uint32_t slot = now_.item_slots[item];
+    const std::uint32_t slot = structure_.item_slots[item];
     const LeafId l = slot / kWidth;
-    Leaf& leaf = now_.leaves[l];
+    Leaf& leaf = structure_.leaves[l];
     const std::uint32_t last = --leaf.count;
-    now_.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
-    const ItemId moved = now_.slot_items[l * kWidth + last];
+    structure_.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
+    const ItemId moved = structure_.slot_items[l * kWidth + last];
     if (moved != item) {
-        now_.slot_items[slot] = moved;
-        now_.item_slots[moved] = slot;
-        write_item(now_, moved);
+        structure_.slot_items[slot] = moved;
+        structure_.item_slots[moved] = slot;
+        write_item(structure_, moved);
     }
     clear_lane(leaf, last);
-    now_.slot_items[l * kWidth + last] = kNone;
-    now_.item_slots[item] = kNone;
-    forget_run(leaf.parent);
+    structure_.slot_items[l * kWidth + last] = kNone;
+    structure_.item_slots[item] = kNone;
+    invalidate_item_count(leaf.parent);
     layers_changed_ = true;
     mark(slot);
 }
@@ -147,10 +148,10 @@ Result<ItemId> BoxTree::new_item(const Obb& box, std::uint32_t layer_mask) {
         if (item >= kMaxItems) return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
         grow_for_one(boxes_);
         grow_for_one(layer_masks_);
-        grow_for_one(now_.item_slots);
+        grow_for_one(structure_.item_slots);
         boxes_.push_back(box);
         layer_masks_.push_back(layer_mask);
-        now_.item_slots.push_back(kNone);
+        structure_.item_slots.push_back(kNone);
         return item;
     }
     const ItemId item = free_items_.back();
@@ -165,7 +166,7 @@ Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
         return tl::unexpected(valid.error());
     auto item = new_item(box, layer_mask);
     if (!item) return item;
-    note_change(*item);
+    mark_changed(*item);
     place(*item);
     return item;
 }
@@ -174,28 +175,28 @@ Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
 void BoxTree::place(ItemId item) {
     const Obb& box = boxes_[item];
     const Aabb bounds = aabb_of(box);
-    if (now_.nodes[0].count == 0) add_child(0, add_leaf() | kLeafBit);
+    if (structure_.nodes[0].count == 0) add_child(0, add_leaf() | kLeafBit);
     LeafId l = best_leaf(bounds);
-    if (now_.leaves[l].count == kWidth) split_leaf(l);  // half of its lanes are free then
-    Leaf& leaf = now_.leaves[l];
+    if (structure_.leaves[l].count == kWidth) split_leaf(l);  // half of its lanes are free then
+    Leaf& leaf = structure_.leaves[l];
     const std::uint32_t slot = l * kWidth + leaf.count++;
-    now_.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
-    now_.slot_items[slot] = item;
-    now_.item_slots[item] = slot;
-    write_item(now_, item);
-    forget_run(leaf.parent);
+    structure_.leaf_counts[l] = static_cast<std::uint8_t>(leaf.count);
+    structure_.slot_items[slot] = item;
+    structure_.item_slots[item] = slot;
+    write_item(structure_, item);
+    invalidate_item_count(leaf.parent);
     refresh_path(leaf.parent);
 }
 
 LeafId BoxTree::add_leaf() {
-    const auto fresh = static_cast<LeafId>(now_.leaves.size());
-    now_.leaves.emplace_back();
-    clear(now_.leaves[fresh]);
-    now_.leaf_counts.push_back(0);
-    now_.slot_items.resize(now_.slot_items.size() + kWidth, kNone);
-    now_.dirty_lanes.push_back(0);
-    now_.lanes_before.push_back(0);
-    now_.lanes_long_before.push_back(0);
+    const auto fresh = static_cast<LeafId>(structure_.leaves.size());
+    structure_.leaves.emplace_back();
+    clear(structure_.leaves[fresh]);
+    structure_.leaf_counts.push_back(0);
+    structure_.slot_items.resize(structure_.slot_items.size() + kWidth, kNone);
+    structure_.dirty_lanes.push_back(0);
+    structure_.moved_last_refit.push_back(0);
+    structure_.moved_two_refits_ago.push_back(0);
     return fresh;
 }
 
@@ -207,7 +208,7 @@ LeafId BoxTree::best_leaf(const Aabb& bounds) const {
     };
     NodeId n = 0;
     for (;;) {
-        const Node& node = now_.nodes[n];
+        const Node& node = structure_.nodes[n];
         unsigned best = 0;
         double best_growth = std::numeric_limits<double>::infinity(), best_size = best_growth;
         for (unsigned lane = 0; lane < node.count; ++lane) {
@@ -230,59 +231,59 @@ LeafId BoxTree::best_leaf(const Aabb& bounds) const {
 void BoxTree::split_leaf(LeafId l) {
     BuildItem items[kWidth];
     for (unsigned lane = 0; lane < kWidth; ++lane) {
-        const Obb& box = boxes_[now_.slot_items[l * kWidth + lane]];
+        const Obb& box = boxes_[structure_.slot_items[l * kWidth + lane]];
         items[lane] = {};
         for (int j = 0; j < 3; ++j) {
-            const auto center = static_cast<float>(box.center[j] - now_.leaves[l].origin[j]);
+            const auto center = static_cast<float>(box.center[j] - structure_.leaves[l].origin[j]);
             items[lane].extreme[j] = -center;
             items[lane].extreme[4 + j] = center;
         }
-        items[lane].set_id(now_.slot_items[l * kWidth + lane]);
+        items[lane].set_id(structure_.slot_items[l * kWidth + lane]);
     }
     const Children halves = divide(items, {0, kWidth}, kWidth / 2, Cost(criterion_));
     const LeafId fresh = add_leaf();
-    const NodeId parent = now_.leaves[l].parent;
-    const std::uint32_t lane_in_parent = now_.leaves[l].lane_in_parent;
+    const NodeId parent = structure_.leaves[l].parent;
+    const std::uint32_t lane_in_parent = structure_.leaves[l].lane_in_parent;
     const LeafId both[2] = {l, fresh};
     for (unsigned side = 0; side < 2; ++side) {
-        Leaf& leaf = now_.leaves[both[side]];
+        Leaf& leaf = structure_.leaves[both[side]];
         clear(leaf);
         leaf.parent = parent;
         leaf.lane_in_parent = lane_in_parent;
-        for (unsigned lane = 0; lane < kWidth; ++lane) now_.slot_items[both[side] * kWidth + lane] = kNone;
+        for (unsigned lane = 0; lane < kWidth; ++lane) structure_.slot_items[both[side] * kWidth + lane] = kNone;
         for (std::uint32_t i = halves.ranges[side].begin; i < halves.ranges[side].end; ++i) {
             const std::uint32_t slot = both[side] * kWidth + leaf.count++;
-            now_.slot_items[slot] = items[i].id();
-            now_.item_slots[items[i].id()] = slot;
+            structure_.slot_items[slot] = items[i].id();
+            structure_.item_slots[items[i].id()] = slot;
         }
-        now_.leaf_counts[both[side]] = static_cast<std::uint8_t>(leaf.count);
-        write_leaf_layers(now_, both[side]);
-        rewrite_leaf(now_, both[side]);
+        structure_.leaf_counts[both[side]] = static_cast<std::uint8_t>(leaf.count);
+        write_leaf_layers(structure_, both[side]);
+        rewrite_leaf(structure_, both[side]);
     }
     add_child(parent, fresh | kLeafBit);
-    refresh_path(now_.leaves[l].parent);
-    refresh_path(now_.leaves[fresh].parent);
+    refresh_path(structure_.leaves[l].parent);
+    refresh_path(structure_.leaves[fresh].parent);
 }
 
 void BoxTree::link(NodeId parent, unsigned lane, std::uint32_t child) {
-    now_.nodes[parent].child[lane] = child;
+    structure_.nodes[parent].child[lane] = child;
     if (child & kLeafBit) {
-        now_.leaves[child & ~kLeafBit].parent = parent;
-        now_.leaves[child & ~kLeafBit].lane_in_parent = lane;
+        structure_.leaves[child & ~kLeafBit].parent = parent;
+        structure_.leaves[child & ~kLeafBit].lane_in_parent = lane;
     } else {
-        now_.nodes[child].parent = parent;
-        now_.nodes[child].lane_in_parent = lane;
-        now_.nodes[parent].only_leaves = 0;
+        structure_.nodes[child].parent = parent;
+        structure_.nodes[child].lane_in_parent = lane;
+        structure_.nodes[parent].only_leaves = 0;
     }
 }
 
 void BoxTree::add_child(NodeId parent, std::uint32_t child) {
-    while (now_.nodes[parent].count == kWidth) parent = split_node(parent);
-    Node& node = now_.nodes[parent];
+    while (structure_.nodes[parent].count == kWidth) parent = split_node(parent);
+    Node& node = structure_.nodes[parent];
     node.count++;
     link(parent, node.count - 1, child);
     // No longer one run of leaves, here and above.
-    for (NodeId n = parent; n != kNone; n = now_.nodes[n].parent) now_.ranges[n] = {};
+    for (NodeId n = parent; n != kNone; n = structure_.nodes[n].parent) structure_.ranges[n] = {};
 }
 
 // Half of a full node's children go to a new node; returns the one of the two that the caller may add to. Splitting the
@@ -291,7 +292,7 @@ NodeId BoxTree::split_node(NodeId n) {
     BuildItem items[kWidth];
     std::array<std::uint32_t, kWidth> children;
     for (unsigned lane = 0; lane < kWidth; ++lane) {
-        const Node& node = now_.nodes[n];
+        const Node& node = structure_.nodes[n];
         items[lane] = {};
         for (unsigned j = 0; j < 3; ++j) {
             items[lane].extreme[j] = -static_cast<float>(low_of(node, lane, j));
@@ -302,47 +303,47 @@ NodeId BoxTree::split_node(NodeId n) {
     }
     const Children halves = divide(items, {0, kWidth}, kWidth / 2, Cost(criterion_));
     const auto make = [&](unsigned side, NodeId into, NodeId parent, unsigned lane_in_parent) {
-        clear(now_.nodes[into]);
-        now_.ranges[into] = {};
-        now_.nodes[into].parent = parent;
-        now_.nodes[into].lane_in_parent = lane_in_parent;
-        now_.nodes[into].only_leaves = 1;
+        clear(structure_.nodes[into]);
+        structure_.ranges[into] = {};
+        structure_.nodes[into].parent = parent;
+        structure_.nodes[into].lane_in_parent = lane_in_parent;
+        structure_.nodes[into].only_leaves = 1;
         for (std::uint32_t i = halves.ranges[side].begin; i < halves.ranges[side].end; ++i)
-            link(into, now_.nodes[into].count++, children[items[i].id()]);
+            link(into, structure_.nodes[into].count++, children[items[i].id()]);
     };
-    const auto fresh = static_cast<NodeId>(now_.nodes.size());
+    const auto fresh = static_cast<NodeId>(structure_.nodes.size());
     if (n == 0) {
-        now_.nodes.resize(fresh + 2);
-        now_.ranges.resize(fresh + 2);
+        structure_.nodes.resize(fresh + 2);
+        structure_.ranges.resize(fresh + 2);
         make(0, fresh, 0, 0);
         make(1, fresh + 1, 0, 1);
-        clear(now_.nodes[0]);
-        now_.ranges[0] = {};
+        clear(structure_.nodes[0]);
+        structure_.ranges[0] = {};
         link(0, 0, fresh);
         link(0, 1, fresh + 1);
-        now_.nodes[0].count = 2;
-        ++now_.height;
-        refresh_node(now_, fresh);
-        refresh_node(now_, fresh + 1);
-        refresh_node(now_, 0);
+        structure_.nodes[0].count = 2;
+        ++structure_.height;
+        refresh_node(structure_, fresh);
+        refresh_node(structure_, fresh + 1);
+        refresh_node(structure_, 0);
         return fresh;
     }
-    now_.nodes.emplace_back();
-    now_.ranges.emplace_back();
-    const NodeId parent = now_.nodes[n].parent;
-    const unsigned lane = now_.nodes[n].lane_in_parent;
+    structure_.nodes.emplace_back();
+    structure_.ranges.emplace_back();
+    const NodeId parent = structure_.nodes[n].parent;
+    const unsigned lane = structure_.nodes[n].lane_in_parent;
     make(0, n, parent, lane);
     make(1, fresh, parent, 0);
-    refresh_node(now_, n);
-    refresh_node(now_, fresh);
+    refresh_node(structure_, n);
+    refresh_node(structure_, fresh);
     add_child(parent, fresh);
-    refresh_path(now_.nodes[n].parent);
-    refresh_path(now_.nodes[fresh].parent);
+    refresh_path(structure_.nodes[n].parent);
+    refresh_path(structure_.nodes[fresh].parent);
     return n;
 }
 
 void BoxTree::refresh_path(NodeId n) {
-    for (; n != kNone; n = now_.nodes[n].parent) refresh_node(now_, n);
+    for (; n != kNone; n = structure_.nodes[n].parent) refresh_node(structure_, n);
 }
 
 }  // namespace crofton::boxtree

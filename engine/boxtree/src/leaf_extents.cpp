@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "leaf_extents.hpp"
 
 #include <hwy/cache_control.h>

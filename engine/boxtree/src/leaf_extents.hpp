@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far the boxes of leaves reach, in vectors.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

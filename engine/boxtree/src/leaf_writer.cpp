@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "leaf_writer.hpp"
 
 #include <hwy/cache_control.h>
@@ -131,7 +132,8 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
 
 std::size_t WriteLanes(Leaf* leaves, const LeafId* ids, std::size_t count, const ItemId* slot_items,
                        const unsigned char* all_boxes) {
-    // Two buffers by turns: what was stored in narrow pieces is read in wide ones when it has settled.
+    // Two buffers by turns: what was stored in narrow pieces is read in wide ones a round later, when the stores have
+    // completed.
     Sixteen boxes[2];
     const auto next = [&](std::size_t i, Sixteen& to) HWY_ATTR {
         collect(leaves[ids[i]], slot_items + std::size_t{ids[i]} * kWidth, all_boxes, to);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes into the lanes of leaves, and the check that they may go there: in vectors, sixteen at a time.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cutting a crowd of boxes into compact parts by a criterion.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole rebuilds in the background, a bounded step at a time.
 #include "rebuild.hpp"
 
@@ -21,52 +22,53 @@ std::size_t steps(std::size_t budget, std::size_t cost) {
 
 }  // namespace
 
-bool BoxTree::maintain(std::size_t budget) {
+bool BoxTree::rebuild_step(std::size_t budget) {
     last_step_ = {};
     if (!rebuild_) {
         if (item_count() == 0) return false;
         rebuild_ = std::make_unique<Rebuild>();
-        rebuild_->builder.emplace(bounds_of(now_.nodes[0]), item_count(), criterion_);
+        rebuild_->builder.emplace(bounds_of(structure_.nodes[0]), item_count(), criterion_);
         rebuild_->changed.assign((boxes_.size() + 63) / 64, 0);
     }
     Rebuild& work = *rebuild_;
-    if (work.stage == Rebuild::Stage::follow) budget += kItemMoved * work.new_changes;
+    if (work.stage == Rebuild::Stage::apply_changes) budget += kItemMoved * work.new_changes;
     work.new_changes = 0;
-    while (budget > 0 && work.stage != Rebuild::Stage::done) budget -= std::min(budget, work_on(work, budget));
+    while (budget > 0 && work.stage != Rebuild::Stage::done) budget -= std::min(budget, run_stage(work, budget));
     if (work.stage != Rebuild::Stage::done) return false;
-    now_ = std::move(work.structure);
+    structure_ = std::move(work.structure);
     rebuild_.reset();
     return true;
 }
 
 // A step of about `budget` items' worth; returns what it was.
-std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
+std::size_t BoxTree::run_stage(Rebuild& work, std::size_t budget) {
     using Stage = Rebuild::Stage;
     Structure& structure = work.structure;
     const Topology& topology = work.builder->result();
-    const auto go_on_to = [&](Stage stage, std::size_t next = 0) {
+    const auto enter_stage = [&](Stage stage, std::size_t next = 0) {
         work.stage = stage;
         work.next = next;
     };
     switch (work.stage) {
         case Stage::add: {
             const std::size_t spent = add_items(work, budget);
-            if (work.next == boxes_.size()) go_on_to(Stage::divide);
+            if (work.next == boxes_.size()) enter_stage(Stage::divide);
             return spent;
         }
         case Stage::divide: {
             const auto moves = [](const void* context, ItemId item) {
-                const Structure& now = static_cast<const BoxTree*>(context)->now_;
+                const Structure& now = static_cast<const BoxTree*>(context)->structure_;
                 const std::uint32_t slot = now.item_slots[item];
                 if (slot == kNone) return false;
-                const std::uint32_t lanes = now.lanes_before[slot / kWidth] & now.lanes_long_before[slot / kWidth];
+                const std::uint32_t lanes =
+                    now.moved_last_refit[slot / kWidth] & now.moved_two_refits_ago[slot / kWidth];
                 return (lanes >> slot % kWidth & 1) != 0;
             };
             ++last_step_.divisions;
             if (!work.builder->step(budget, boxes_, {moves, this})) return budget;
             structure.height = topology.height;
             structure.item_slots.reserve(boxes_.size());
-            go_on_to(Stage::clear_slots);
+            enter_stage(Stage::clear_slots);
             return budget;
         }
         case Stage::clear_slots: {
@@ -78,7 +80,7 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
             if (end < boxes_.size()) return spent;
             structure.nodes.reserve(topology.nodes.size());
             structure.ranges.reserve(topology.nodes.size());
-            go_on_to(Stage::link);
+            enter_stage(Stage::link);
             return spent;
         }
         case Stage::link: {
@@ -87,19 +89,19 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
             structure.nodes.resize(end);
             structure.ranges.resize(end);
             for (; work.next < end; ++work.next, ++last_step_.nodes_linked)
-                adopt_node(structure, static_cast<NodeId>(work.next), topology);
+                init_node(structure, static_cast<NodeId>(work.next), topology);
             if (end < topology.nodes.size()) return spent;
             structure.leaves.reserve(topology.leaves.size());
             structure.leaf_counts.reserve(topology.leaves.size());
             structure.slot_items.reserve(topology.leaves.size() * kWidth);
-            go_on_to(Stage::fill);
+            enter_stage(Stage::fill);
             return spent;
         }
         case Stage::fill: {
             const std::size_t spent = fill_leaves(work, budget);
             if (work.next < topology.leaves.size()) return spent;
             clear_marks(structure);
-            go_on_to(Stage::bound, structure.nodes.size());
+            enter_stage(Stage::bound, structure.nodes.size());
             return spent;
         }
         case Stage::bound: {
@@ -107,18 +109,19 @@ std::size_t BoxTree::work_on(Rebuild& work, std::size_t budget) {
             const std::size_t count = std::min(work.next, steps(budget, kNodeBounded));
             for (std::size_t i = 0; i < count; ++i, ++last_step_.nodes_bounded)
                 finish_node(structure, static_cast<NodeId>(--work.next));
-            if (work.next == 0) go_on_to(Stage::follow);
+            if (work.next == 0) enter_stage(Stage::apply_changes);
             return count * kNodeBounded;
         }
         default:
-            return catch_up(work, budget);
+            return apply_changes(work, budget);
     }
 }
 
 std::size_t BoxTree::add_items(Rebuild& work, std::size_t budget) {
     const std::size_t end = std::min(boxes_.size(), work.next + budget), spent = end - work.next;
     for (; work.next < end; ++work.next, ++last_step_.items_added)
-        if (now_.item_slots[work.next] != kNone) work.builder->add(static_cast<ItemId>(work.next), boxes_[work.next]);
+        if (structure_.item_slots[work.next] != kNone)
+            work.builder->add(static_cast<ItemId>(work.next), boxes_[work.next]);
     return spent;
 }
 
@@ -137,10 +140,10 @@ std::size_t BoxTree::fill_leaves(Rebuild& work, std::size_t budget) {
 
 // What has changed since the rebuild began, into the new structure: it takes the old one's place meanwhile, so that
 // what changes a tree changes it.
-std::size_t BoxTree::catch_up(Rebuild& work, std::size_t budget) {
-    std::swap(now_, work.structure);
+std::size_t BoxTree::apply_changes(Rebuild& work, std::size_t budget) {
+    std::swap(structure_, work.structure);
     const Structure& old = work.structure;
-    now_.item_slots.resize(boxes_.size(), kNone);
+    structure_.item_slots.resize(boxes_.size(), kNone);
     std::size_t spent = 1;
     for (; work.changed_count > 0 && spent < budget; ++work.next) {
         if (work.next >= work.changed.size()) work.next = 0;
@@ -149,33 +152,33 @@ std::size_t BoxTree::catch_up(Rebuild& work, std::size_t budget) {
         for (std::uint64_t rest = std::exchange(word, 0); rest; rest &= rest - 1) {
             const auto item = static_cast<ItemId>(64 * work.next + static_cast<unsigned>(std::countr_zero(rest)));
             const bool present = old.item_slots[item] != kNone;
-            spent += present && now_.item_slots[item] == kNone ? kItemPlaced : kItemMoved;
-            follow(item, present);
-            ++last_step_.items_followed;
+            spent += present && structure_.item_slots[item] == kNone ? kItemPlaced : kItemMoved;
+            sync_item(item, present);
+            ++last_step_.items_synced;
             --work.changed_count;
         }
     }
     refit();
-    clear_marks(now_);
-    std::swap(now_, work.structure);
+    clear_marks(structure_);
+    std::swap(structure_, work.structure);
     if (work.changed_count == 0) work.stage = Rebuild::Stage::done;
     return spent;
 }
 
 // The structure agrees with the item's box, layers and presence.
-void BoxTree::follow(ItemId item, bool present) {
-    const std::uint32_t slot = now_.item_slots[item];
+void BoxTree::sync_item(ItemId item, bool present) {
+    const std::uint32_t slot = structure_.item_slots[item];
     if (!present) {
         if (slot != kNone) vacate(item);
         return;
     }
     if (slot == kNone) return place(item);
-    if (now_.leaves[slot / kWidth].layers[slot % kWidth] != layer_masks_[item]) {
-        write_layers(now_.leaves[slot / kWidth], slot % kWidth, layer_masks_[item]);
+    if (structure_.leaves[slot / kWidth].layers[slot % kWidth] != layer_masks_[item]) {
+        write_layers(structure_.leaves[slot / kWidth], slot % kWidth, layer_masks_[item]);
         layers_changed_ = true;
     }
     mark(slot);
-    if (has_few_changes(slot / kWidth)) write_item(now_, item);
+    if (has_few_changes(slot / kWidth)) write_item(structure_, item);
 }
 
 }  // namespace crofton::boxtree

@@ -1,4 +1,5 @@
-// A rebuild under way: what BoxTree::maintain carries from call to call.
+// SPDX-License-Identifier: MIT
+// A rebuild under way: what BoxTree::rebuild_step carries from call to call.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <optional>
@@ -8,8 +9,8 @@
 namespace crofton::boxtree {
 
 struct BoxTree::Rebuild {
-    // One after the other; in `follow` what has changed meanwhile is brought into `structure`.
-    enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, follow, done };
+    // One after the other; in `apply_changes` what has changed meanwhile is brought into `structure`.
+    enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, apply_changes, done };
 
     std::optional<Builder> builder;
     Stage stage = Stage::add;

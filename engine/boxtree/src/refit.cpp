@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bringing bounds up to date after moves.
 #include <algorithm>
 #include <bit>
@@ -12,11 +13,11 @@ namespace crofton::boxtree {
 
 // Refit is to look at this slot and at its leaf.
 void BoxTree::mark(std::uint32_t slot) {
-    std::uint16_t& lanes = now_.dirty_lanes[slot / kWidth];
+    std::uint16_t& lanes = structure_.dirty_lanes[slot / kWidth];
     lanes = static_cast<std::uint16_t>(lanes | 1u << slot % kWidth);
 }
 
-void BoxTree::note_change(ItemId item) {
+void BoxTree::mark_changed(ItemId item) {
     if (!rebuild_) return;
     if (rebuild_->changed.size() <= item / 64) rebuild_->changed.resize(item / 64 + 1, 0);
     std::uint64_t& word = rebuild_->changed[item / 64];
@@ -28,7 +29,7 @@ void BoxTree::note_change(ItemId item) {
 
 void BoxTree::refit() {
     dirty_nodes_.clear();
-    dirty_node_bits_.resize((now_.nodes.size() + 63) / 64, 0);
+    dirty_node_bits_.resize((structure_.nodes.size() + 63) / 64, 0);
     refit_leaves();
     // Level by level up; a node is done once all its dirty children are, for those above are asked again.
     while (!dirty_nodes_.empty()) {
@@ -38,20 +39,20 @@ void BoxTree::refit() {
         dirty_nodes_.swap(dirty_parents_);
     }
     layers_changed_ = false;
-    forget_marks();
+    clear_dirty_bits();
 }
 
 // What has changed is remembered for two refits more.
-void BoxTree::forget_marks() {
+void BoxTree::clear_dirty_bits() {
     if (dirty_list_.empty()) return;
-    now_.lanes_long_before.swap(now_.lanes_before);
-    now_.lanes_before.swap(now_.dirty_lanes);
-    std::fill(now_.dirty_lanes.begin(), now_.dirty_lanes.end(), std::uint16_t{0});
+    structure_.moved_two_refits_ago.swap(structure_.moved_last_refit);
+    structure_.moved_last_refit.swap(structure_.dirty_lanes);
+    std::fill(structure_.dirty_lanes.begin(), structure_.dirty_lanes.end(), std::uint16_t{0});
 }
 
 void BoxTree::list_dirty_leaves() {
     constexpr std::size_t kAtOnce = 16;
-    const Vector<std::uint16_t>& dirty = now_.dirty_lanes;
+    const Vector<std::uint16_t>& dirty = structure_.dirty_lanes;
     dirty_list_.clear();
     for (std::size_t first = 0; first < dirty.size(); first += kAtOnce) {
         const std::size_t last = std::min(first + kAtOnce, dirty.size());
@@ -69,16 +70,16 @@ void BoxTree::refit_leaves() {
     LeafExtent extents[kRefitBatch];
     for (std::size_t first = 0; first < dirty_list_.size(); first += kRefitBatch) {
         const std::size_t count = std::min(kRefitBatch, dirty_list_.size() - first);
-        write_dirty_leaves(now_, std::span(dirty_list_).subspan(first, count));
-        leaf_extents(now_.leaves.data(), std::span(dirty_list_).subspan(first, count), extents);
+        write_dirty_leaves(structure_, std::span(dirty_list_).subspan(first, count));
+        leaf_extents(structure_.leaves.data(), std::span(dirty_list_).subspan(first, count), extents);
         for (std::size_t i = 0; i < count; ++i) {
             const LeafId l = dirty_list_[first + i];
-            const Leaf& leaf = now_.leaves[l];
+            const Leaf& leaf = structure_.leaves[l];
             Aabb bounds = bounds_of(leaf, extents[i]);
             const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
             // Far from its origin a leaf loses digits.
             if (double{leaf.reach} > 8.0 * (size.x + size.y + size.z)) {
-                rewrite_leaf(now_, l);
+                rewrite_leaf(structure_, l);
                 bounds = bounds_of(leaf);
             }
             set_child(leaf.parent, leaf.lane_in_parent, bounds, dirty_nodes_);
@@ -88,21 +89,21 @@ void BoxTree::refit_leaves() {
 
 // A node whose lanes are up to date, into its parent's lane.
 void BoxTree::refit_node(NodeId n) {
-    Aabb bounds = bounds_of(now_.nodes[n]);
+    Aabb bounds = bounds_of(structure_.nodes[n]);
     const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
-    if (double{now_.nodes[n].reach} > 8.0 * (size.x + size.y + size.z)) {
-        refresh_node(now_, n);
-        bounds = bounds_of(now_.nodes[n]);
+    if (double{structure_.nodes[n].reach} > 8.0 * (size.x + size.y + size.z)) {
+        refresh_node(structure_, n);
+        bounds = bounds_of(structure_.nodes[n]);
     }
-    const NodeId parent = now_.nodes[n].parent;
-    if (parent != kNone) set_child(parent, now_.nodes[n].lane_in_parent, bounds, dirty_parents_);
+    const NodeId parent = structure_.nodes[n].parent;
+    if (parent != kNone) set_child(parent, structure_.nodes[n].lane_in_parent, bounds, dirty_parents_);
 }
 
 // A child's bound, and layers if any have changed, into its lane; the node then is to be refitted. All lanes anew if
 // its frame does not take the bound.
 void BoxTree::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
-    if (!write_lane(now_.nodes[n], lane, bounds)) refresh_node(now_, n);
-    if (layers_changed_) refresh_layers(now_, n, lane);
+    if (!write_lane(structure_.nodes[n], lane, bounds)) refresh_node(structure_, n);
+    if (layers_changed_) refresh_layers(structure_, n, lane);
     std::uint64_t& word = dirty_node_bits_[n / 64];
     const std::uint64_t bit = std::uint64_t{1} << (n % 64);
     if (word & bit) return;

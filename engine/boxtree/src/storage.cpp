@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Trees as byte strings.
 #include <crofton/boxtree/box_tree.hpp>
 #include <cstring>
@@ -25,22 +26,22 @@ struct TreeStorage {
         visit(tree.boxes_, h.boxes);
         visit(tree.layer_masks_, h.boxes);
         visit(tree.free_items_, h.free_items);
-        visit(tree.now_.nodes, h.nodes);
-        visit(tree.now_.ranges, h.nodes);
-        visit(tree.now_.leaves, h.leaves);
-        visit(tree.now_.leaf_counts, h.leaves);
-        visit(tree.now_.slot_items, h.leaves * kWidth);
-        visit(tree.now_.item_slots, h.boxes);
+        visit(tree.structure_.nodes, h.nodes);
+        visit(tree.structure_.ranges, h.nodes);
+        visit(tree.structure_.leaves, h.leaves);
+        visit(tree.structure_.leaf_counts, h.leaves);
+        visit(tree.structure_.slot_items, h.leaves * kWidth);
+        visit(tree.structure_.item_slots, h.boxes);
     }
 };
 
 Vector<std::byte> BoxTree::serialise() const {
     Header header;
-    header.height = now_.height;
+    header.height = structure_.height;
     header.boxes = boxes_.size();
     header.free_items = free_items_.size();
-    header.nodes = now_.nodes.size();
-    header.leaves = now_.leaves.size();
+    header.nodes = structure_.nodes.size();
+    header.leaves = structure_.leaves.size();
     header.criterion[0] = criterion_.volume_weight;
     header.criterion[1] = criterion_.area_weight;
     header.criterion[2] = criterion_.mean_curvature_weight;
@@ -74,7 +75,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         return damaged("sizes out of range");
     BoxTree tree;
     tree.criterion_ = {header.criterion[0], header.criterion[1], header.criterion[2]};
-    tree.now_.height = header.height;
+    tree.structure_.height = header.height;
     std::size_t expected_size = sizeof(header);
     TreeStorage::arrays(tree, header,
                         [&](const auto& array, std::uint64_t count) { expected_size += count * sizeof(array[0]); });
@@ -85,8 +86,8 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         if (count > 0) std::memcpy(static_cast<void*>(array.data()), bytes.data() + at, count * sizeof(array[0]));
         at += count * sizeof(array[0]);
     });
-    clear_marks(tree.now_);
-    tree.find_lifted();
+    clear_marks(tree.structure_);
+    tree.find_detached();
     if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
     if (auto valid = tree.validate(trust); !valid)
         return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "subtree.hpp"
 
 #include <hwy/cache_control.h>

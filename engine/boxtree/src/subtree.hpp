@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The nodes and leaves below one node, from its items.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Does a tree keep all its promises?
 #include <algorithm>
 #include <cmath>
@@ -48,35 +49,38 @@ Result<void> BoxTree::validate() const {
 }
 
 Result<void> BoxTree::validate(Trust trust) const {
-    const std::size_t nodes = now_.nodes.size(), leaves = now_.leaves.size();
-    if (nodes == 0 || now_.ranges.size() != nodes || now_.leaf_counts.size() != leaves ||
-        now_.slot_items.size() != leaves * kWidth || now_.item_slots.size() != boxes_.size() ||
+    const std::size_t nodes = structure_.nodes.size(), leaves = structure_.leaves.size();
+    if (nodes == 0 || structure_.ranges.size() != nodes || structure_.leaf_counts.size() != leaves ||
+        structure_.slot_items.size() != leaves * kWidth || structure_.item_slots.size() != boxes_.size() ||
         layer_masks_.size() != boxes_.size())
         return broken(kNoItem, "array sizes do not match");
     for (LeafId l = 0; l < leaves; ++l)
-        if (now_.leaves[l].count > kWidth) return broken(l, "a leaf has more than 16 items");
+        if (structure_.leaves[l].count > kWidth) return broken(l, "a leaf has more than 16 items");
     for (NodeId n = 0; n < nodes; ++n)
-        if (now_.nodes[n].count > kWidth) return broken(n, "a node has more than 16 children");
+        if (structure_.nodes[n].count > kWidth) return broken(n, "a node has more than 16 children");
     std::size_t reached = 1;
     for (NodeId n = 0; n < nodes; ++n) {
-        const Node& node = now_.nodes[n];
+        const Node& node = structure_.nodes[n];
         bool only_leaves = true;
         for (unsigned lane = 0; lane < node.count; ++lane, ++reached) {
             const std::uint32_t child = node.child[lane], id = child & ~kLeafBit;
             const bool is_leaf = (child & kLeafBit) != 0;
             if (id >= (is_leaf ? leaves : nodes)) return broken(n, "a node's child does not exist");
             only_leaves = only_leaves && is_leaf;
-            const NodeId parent = is_leaf ? now_.leaves[id].parent : now_.nodes[id].parent;
-            const std::uint32_t at = is_leaf ? now_.leaves[id].lane_in_parent : now_.nodes[id].lane_in_parent;
+            const NodeId parent = is_leaf ? structure_.leaves[id].parent : structure_.nodes[id].parent;
+            const std::uint32_t at =
+                is_leaf ? structure_.leaves[id].lane_in_parent : structure_.nodes[id].lane_in_parent;
             if (parent != n || at != lane || child == 0) return broken(n, "a child does not know its parent");
             if (trust == Trust::contents) continue;
-            if (!holds(node, lane, is_leaf ? bounds_of(now_.leaves[id]) : bounds_of(now_.nodes[id])))
+            if (!holds(node, lane, is_leaf ? bounds_of(structure_.leaves[id]) : bounds_of(structure_.nodes[id])))
                 return broken(n, "a bound does not contain what lies below it");
             Node layers;
             if (is_leaf)
-                write_layers(layers, lane, now_.leaves[id].layers, now_.leaves[id].layers, now_.leaves[id].count);
+                write_layers(layers, lane, structure_.leaves[id].layers, structure_.leaves[id].layers,
+                             structure_.leaves[id].count);
             else
-                write_layers(layers, lane, now_.nodes[id].layers_any, now_.nodes[id].layers_all, now_.nodes[id].count);
+                write_layers(layers, lane, structure_.nodes[id].layers_any, structure_.nodes[id].layers_all,
+                             structure_.nodes[id].count);
             if (layers.layers_any[lane] != node.layers_any[lane] || layers.layers_all[lane] != node.layers_all[lane])
                 return broken(n, "layers do not match those below");
         }
@@ -86,16 +90,16 @@ Result<void> BoxTree::validate(Trust trust) const {
             if (!is_frame(node) || every != node.layers_every) return broken(n, "a node's frame is not one");
         }
         if (only_leaves != (node.only_leaves != 0)) return broken(n, "a node is wrong about its children's kind");
-        if (const LeafRange range = now_.ranges[n]; range.count > leaves || range.first > leaves - range.count)
+        if (const LeafRange range = structure_.ranges[n]; range.count > leaves || range.first > leaves - range.count)
             return broken(n, "a node's leaves do not exist");
-        if (const LeafRange range = now_.ranges[n];
+        if (const LeafRange range = structure_.ranges[n];
             range.items != 0 && range.items != boxtree::items_without_gaps(range, leaf_counts()))
             return broken(n, "a node is wrong about its items");
         // Up to the root within `height` steps: no cycles.
         NodeId up = n;
         unsigned steps = 1;
-        for (; now_.nodes[up].parent != kNone; up = now_.nodes[up].parent)
-            if (++steps > now_.height || now_.nodes[up].parent >= nodes)
+        for (; structure_.nodes[up].parent != kNone; up = structure_.nodes[up].parent)
+            if (++steps > structure_.height || structure_.nodes[up].parent >= nodes)
                 return broken(n, "a node is too deep, or in a cycle");
         if (up != 0) return broken(n, "a node is not below the root");
     }
@@ -105,18 +109,18 @@ Result<void> BoxTree::validate(Trust trust) const {
 
 Result<void> BoxTree::validate_leaves(Trust trust) const {
     std::size_t items = 0;
-    for (LeafId l = 0; l < now_.leaves.size(); ++l) {
-        const Leaf& leaf = now_.leaves[l];
-        if (leaf.count != now_.leaf_counts[l]) return broken(l, "a leaf's count is wrong");
+    for (LeafId l = 0; l < structure_.leaves.size(); ++l) {
+        const Leaf& leaf = structure_.leaves[l];
+        if (leaf.count != structure_.leaf_counts[l]) return broken(l, "a leaf's count is wrong");
         items += leaf.count;
         for (unsigned lane = 0; lane < kWidth; ++lane) {
-            const ItemId item = now_.slot_items[l * kWidth + lane];
+            const ItemId item = structure_.slot_items[l * kWidth + lane];
             if ((item != kNone) != (lane < leaf.count)) return broken(l, "a leaf's lanes do not match its count");
             if (item == kNone) {
                 if (leaf.layers[lane] != 0) return broken(l, "an empty lane has layers");
                 continue;
             }
-            if (item >= boxes_.size() || now_.item_slots[item] != l * kWidth + lane)
+            if (item >= boxes_.size() || structure_.item_slots[item] != l * kWidth + lane)
                 return broken(item, "an item is not where its slot says");
             if (trust == Trust::contents) continue;
             if (auto valid = crofton::validate(boxes_[item], item); !valid) return valid;
@@ -129,7 +133,7 @@ Result<void> BoxTree::validate_leaves(Trust trust) const {
     }
     if (items != item_count()) return broken(kNoItem, "the leaves do not hold all items");
     for (const ItemId item : free_items_)
-        if (item >= boxes_.size() || now_.item_slots[item] != kNone) return broken(item, "a free id is in use");
+        if (item >= boxes_.size() || structure_.item_slots[item] != kNone) return broken(item, "a free id is in use");
     return {};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every function of the C API does first and last: look at its handles and structs, and leave word of a failure.
 #pragma once
 #include <crofton/capi/base.h>

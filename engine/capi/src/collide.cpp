@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/collide.h>
 
 #include <crofton/collide/broadphase.hpp>

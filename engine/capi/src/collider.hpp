@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What collides, as the functions of several headers see it: boxes, and meshes made ready.
 #pragma once
 #include <crofton/capi/collide.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/contacts.h>
 
 #include <crofton/collide/convex_query.hpp>

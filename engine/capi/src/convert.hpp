@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The C structs and the C++ ones, which say the same: arrays of them are read in place.
 #pragma once
 #include <crofton/capi/geometry.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/cull.h>
 
 #include <crofton/cull/cull.hpp>
@@ -79,10 +80,10 @@ crofton_status crofton_tree_refit(crofton_tree* tree) {
     return CROFTON_OK;
 }
 
-crofton_status crofton_tree_maintain(crofton_tree* tree, size_t budget) {
+crofton_status crofton_tree_rebuild_step(crofton_tree* tree, size_t budget) {
     const ExclusiveUse use(tree, __func__);
     if (use.failed()) return use.status();
-    tree->tree.maintain(budget);
+    tree->tree.rebuild_step(budget);
     return CROFTON_OK;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/crofton.h>
 
 #include <crofton/core/version.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/fit.h>
 
 #include <crofton/fit/fit.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/geometry.h>
 
 #include <crofton/measure/criterion.hpp>

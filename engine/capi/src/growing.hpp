@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Structs of callers that were compiled against an older header, in which they were smaller.
 #pragma once
 #include <cstring>

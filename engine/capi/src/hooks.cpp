@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/hooks.h>
 
 #include <crofton/core/assert.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Meshes as C gives them.
 #pragma once
 #include <crofton/capi/scene.h>

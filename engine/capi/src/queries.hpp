@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What queries are asked with, checked: views, rays and bodies.
 #pragma once
 #include <crofton/capi/cull.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/rays.h>
 
 #include <algorithm>

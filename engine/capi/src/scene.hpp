@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene, as the functions of several headers see it.
 #pragma once
 #include <crofton/scene/scene.hpp>

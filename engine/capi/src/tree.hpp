@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy over boxes, as the functions of several headers see it.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>

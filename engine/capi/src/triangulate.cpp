@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/capi/triangulate.h>
 
 #include <crofton/triangulate/triangulate.hpp>

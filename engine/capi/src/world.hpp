@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A World, as the functions of several headers see it.
 #pragma once
 #include <crofton/capi/world.h>

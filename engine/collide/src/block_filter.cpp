@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The separating-axis test on sixteen pairs of boxes at once, compiled for each instruction set and chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "block_filter.cpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The float filter over blocks of box pairs: what kernel files and the code around them share.
 #pragma once
 #include <crofton/collide/box_block.hpp>

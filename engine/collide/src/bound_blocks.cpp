@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The broadphase's kernels, compiled for each instruction set and chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bound_blocks.cpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Axis-aligned bounds in blocks of sixteen and the implicit tree over them: what the broadphase's kernels share with
 // it.
 #pragma once

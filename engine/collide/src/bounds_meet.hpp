@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Do the axis-aligned bounds of two boxes meet? Exactly.
 #pragma once
 #include <crofton/geometry/obb.hpp>

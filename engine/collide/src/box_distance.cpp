@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far apart two boxes are: GJK on their corners, with a proof of the answer; where rounding keeps it from one, the
 // features near the answer are tried one by one.
 #include <algorithm>

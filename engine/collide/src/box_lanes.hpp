@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Puts boxes into the lanes of a block.
 #pragma once
 #include <crofton/collide/box_block.hpp>

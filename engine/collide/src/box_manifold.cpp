@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where two boxes touch. Everything is reckoned about the centre of one of them.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The fifteen separating axes of two boxes in double: along which do they overlap least?
 #pragma once
 #include <cmath>

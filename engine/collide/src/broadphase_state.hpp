@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a broadphase keeps between updates. broadphase.cpp looks at all boxes, broadphase_movers.cpp at those that
 // moved.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The answer for two boxes that float cannot tell apart, or need not be asked about.
 #pragma once
 #include <crofton/collide/obb_obb.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Four floats side by side, of which three are the components or axes of a box; the last is anything. The compilers'
 // own vectors: operations are single roundings on every machine.
 #pragma once

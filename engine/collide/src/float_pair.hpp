@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two boxes in float, in the layout of pair_columns.hpp: gaps along the fifteen axes.
 #pragma once
 #include <crofton/geometry/obb.hpp>

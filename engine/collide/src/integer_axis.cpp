@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "integer_axis.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The exact answer along a few axes, in integers, for boxes whose numbers are not too unlike in size.
 #pragma once
 #include <crofton/geometry/obb.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "manifold_points.hpp"
 
 #include <algorithm>

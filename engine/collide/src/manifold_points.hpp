@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The points of a manifold as they are gathered and thinned out.
 #pragma once
 #include <crofton/collide/convex_query.hpp>

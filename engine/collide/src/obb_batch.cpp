@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <bit>

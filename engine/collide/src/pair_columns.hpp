@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two boxes as the tests of one pair lay them out: plain arrays, which kernel files may read without any other header.
 //
 // The fifteen axes go in five groups of three, side by side: face normals of a, face normals of b, and three groups of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Found pairs of slots, turned into a sorted list of pairs of items.
 #pragma once
 #include <crofton/collide/broadphase.hpp>

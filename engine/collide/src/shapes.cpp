@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/collide/shapes.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An order of items in which neighbours in space are neighbours in memory.
 #pragma once
 #include <crofton/core/memory.hpp>

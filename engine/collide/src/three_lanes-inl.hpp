@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Three doubles side by side, in one vector of four, two of two or three of one. Included once per instruction set.
 #if defined(CROFTON_COLLIDE_THREE_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_THREE_LANES

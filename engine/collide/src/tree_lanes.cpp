@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tree_lanes.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies and rays against the sixteen children of a node, or the sixteen boxes of a leaf, of a BoxTree: filters that
 // lose nothing.
 #pragma once

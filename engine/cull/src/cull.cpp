@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/cull.hpp>
 

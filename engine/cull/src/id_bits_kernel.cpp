@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "id_bits_kernel.hpp"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ids in any order to bits, and bits to ascending ids, in vectors.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A view as the vector kernels read it: plain numbers, no GLM.
 #pragma once
 #include <cmath>

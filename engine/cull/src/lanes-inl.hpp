@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lanes of floats and of pairs of 16-bit integers. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
 #include <crofton/boxtree/layout.hpp>

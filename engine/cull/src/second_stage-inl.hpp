@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes that cross two planes or more: do they meet the frustum? Compiled once per instruction set (Highway).
 #include "kernel_view.hpp"
 #include "lanes-inl.hpp"
@@ -14,11 +15,12 @@ namespace crofton::cull::HWY_NAMESPACE {
 
 // Lanes of boxes: what the filter knows of them.
 struct BoxTest {
-    MF inside;      // certainly inside
-    MF straddling;  // certainly straddling (and, in the exact mode, meeting the frustum)
-    MF unsettled;   // certainly not rejected by a plane, certainly not inside; whether they meet the frustum is open
-    MF undecided;   // the rest of those that are not certainly outside
-    MF improper;    // rejected by no plane, and certainly outside all the same
+    MF inside;           // certainly inside
+    MF straddling;       // certainly straddling (and, in the exact mode, meeting the frustum)
+    MF needs_edge_test;  // certainly not rejected by a plane, certainly not inside; whether they meet the frustum is
+                         // open
+    MF undecided;        // the rest of those that are not certainly outside
+    MF improper;         // rejected by no plane, and certainly outside all the same
 };
 
 HWY_INLINE VF plane_value(const KernelPlane& plane, VF x, VF y, VF z, float offset) {
@@ -157,23 +159,24 @@ HWY_INLINE MF cut_twice_at_most(const BoxRows& box) {
     return hn::Not(thrice);
 }
 
-// The second stage in vectors: what it cannot settle either is undecided. No plane certainly rejects an unsettled box.
-HWY_INLINE void settle(const BoxRows& box, BoxTest& test) {
+// The second stage in vectors: what it cannot resolve either is undecided. No plane certainly rejects a box that needs
+// it.
+HWY_INLINE void resolve(const BoxRows& box, BoxTest& test) {
     const DF d;
-    const PairTest pairs = test_pairs(box, test.unsettled);
+    const PairTest pairs = test_pairs(box, test.needs_edge_test);
     test.improper = pairs.separated;
     MF meets = hn::And(pairs.met, cut_twice_at_most(box));
-    const MF rest = hn::AndNot(hn::Or(meets, pairs.separated), test.unsettled);
+    const MF rest = hn::AndNot(hn::Or(meets, pairs.separated), test.needs_edge_test);
     if (!hn::AllFalse(d, rest)) meets = hn::Or(meets, has_witness(box, rest));
     test.straddling = hn::Or(test.straddling, meets);
-    test.undecided = hn::Or(test.undecided, hn::AndNot(hn::Or(meets, pairs.separated), test.unsettled));
-    test.unsettled = hn::FirstN(d, 0);
+    test.undecided = hn::Or(test.undecided, hn::AndNot(hn::Or(meets, pairs.separated), test.needs_edge_test));
+    test.needs_edge_test = hn::FirstN(d, 0);
 }
 
 template <class Lanes>
-HWY_INLINE void settle(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
-                       BoxTest& test) {
-    settle(BoxRows(view, boxes, planes, local), test);
+HWY_INLINE void resolve(const KernelView& view, const Lanes& boxes, std::uint32_t planes, const LocalPlane* local,
+                        BoxTest& test) {
+    resolve(BoxRows(view, boxes, planes, local), test);
 }
 
 }  // namespace crofton::cull::HWY_NAMESPACE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/fit/exact.hpp>
 
 #include "fitter.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/fit/fit.hpp>
 
 #include "cloud/enclose.hpp"

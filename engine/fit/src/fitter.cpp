@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fitter.hpp"
 
 #include <algorithm>

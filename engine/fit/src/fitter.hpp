@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the fits of all qualities. Keeps its memory from one fit to the next.
 #pragma once
 #include <crofton/fit/exact.hpp>

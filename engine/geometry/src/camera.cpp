@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/trigonometry.hpp>

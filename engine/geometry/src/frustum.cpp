@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/geometry/obb.hpp>

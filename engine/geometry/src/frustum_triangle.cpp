@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Does a triangle meet a frustum? Exactly, for any number of planes.
 #include <array>
 #include <cmath>

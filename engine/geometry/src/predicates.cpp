@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/plane_filter.hpp>
 #include <crofton/geometry/predicates.hpp>

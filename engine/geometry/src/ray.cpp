@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/geometry/ray.hpp>
 #include <glm/geometric.hpp>

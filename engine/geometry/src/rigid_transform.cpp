@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/geometry/rigid_transform.hpp>
 #include <glm/geometric.hpp>

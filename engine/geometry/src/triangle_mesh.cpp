@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/geometry/triangle_mesh.hpp>
 #include <string>

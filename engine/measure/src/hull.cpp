@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/geometry/convex_hull.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>

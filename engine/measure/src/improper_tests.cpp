@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/measure/improper_tests.hpp>
 #include <numbers>
 

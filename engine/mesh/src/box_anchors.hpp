@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How the boxes of a mesh tree follow their vertices.
 #pragma once
 #include <crofton/mesh/mesh_layout.hpp>

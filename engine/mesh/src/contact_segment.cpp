@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <crofton/mesh/triangle_triangle.hpp>
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vectors of three coordinates in double, eight triangles side by side. Included once per instruction set.
 #if defined(CROFTON_COLLIDE_DOUBLE_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_DOUBLE_LANES

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exact signs of determinants of points, shared by the triangle tests.
 #pragma once
 #include <crofton/geometry/predicates.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The triangles of two leaves in a's frame, and which of them may meet by their bounds; included once per instruction
 // set.
 #if defined(CROFTON_COLLIDE_LEAF_KERNELS) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which of sixteen turned rectangles around points is the smallest: what the kernel shares with the code around it.
 #pragma once
 #include <cstddef>

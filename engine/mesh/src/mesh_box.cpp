@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh_box.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The boxes of a mesh tree.
 #pragma once
 #include <crofton/core/memory.hpp>

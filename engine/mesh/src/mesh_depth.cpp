@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/mesh/mesh_mesh.hpp>
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One box against the sixteen of a node; included once per instruction set.
 #if defined(CROFTON_COLLIDE_MESH_KERNELS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_MESH_KERNELS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the SIMD traversals of a pair of mesh trees share with the exact code around them.
 #pragma once
 #include <crofton/core/function_ref.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The connected pieces of a mesh, and which of them are closed.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh_refit.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The kernels of MeshTree::refit.
 #pragma once
 #include <crofton/mesh/mesh_layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pairwise descent through two mesh trees, compiled for each instruction set and chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mesh_traversal.cpp"
@@ -74,7 +75,7 @@ HWY_INLINE void load_pair(const MeshPair& pair, std::uint32_t a, std::uint32_t b
 }
 
 // Hands on what the gathered pairs come to, and empties them.
-HWY_INLINE bool settle(TrianglePairs& gathered, PairVisitor visit) {
+HWY_INLINE bool flush(TrianglePairs& gathered, PairVisitor visit) {
     if (gathered.count == 0) return false;
     const LaneVerdict verdict = judge(gathered);
     gathered.count = 0;
@@ -97,7 +98,7 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);
-            if (gathered.count == mesh::kMeshLeafWidth && settle(gathered, visit)) return true;
+            if (gathered.count == mesh::kMeshLeafWidth && flush(gathered, visit)) return true;
         }
     }
     return false;
@@ -143,7 +144,7 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
             const std::size_t place = (queue.begin + queue.count++) % LeafQueue::kCapacity;
             queue.a[place] = a & ~mesh::kMeshLeaf;
             queue.b[place] = b & ~mesh::kMeshLeaf;
-            if (at_once && (visit_first() || settle(gathered, visit))) return;
+            if (at_once && (visit_first() || flush(gathered, visit))) return;
             continue;
         }
         const bool into_a = descends_a(step);
@@ -160,10 +161,10 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
     }
     while (queue.count > 0)
         if (visit_first()) return;
-    settle(gathered, visit);
+    flush(gathered, visit);
 }
 
-HWY_INLINE bool settle_near(TrianglePairs& gathered, const Nearest& nearest, PairVisitor visit) {
+HWY_INLINE bool flush_nearest(TrianglePairs& gathered, const Nearest& nearest, PairVisitor visit) {
     const LaneVerdict verdict = judge(gathered);
     std::uint32_t lanes = verdict.hits | verdict.open | closer_lanes(gathered, nearest.squared);
     gathered.count = 0;
@@ -191,10 +192,10 @@ bool visit_near_leaves(const MeshPair& pair, const Step& step, LeafPair& leaves,
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);
-            if (gathered.count == mesh::kMeshLeafWidth && settle_near(gathered, nearest, visit)) return true;
+            if (gathered.count == mesh::kMeshLeafWidth && flush_nearest(gathered, nearest, visit)) return true;
         }
     }
-    return gathered.count > 0 && settle_near(gathered, nearest, visit);
+    return gathered.count > 0 && flush_nearest(gathered, nearest, visit);
 }
 
 // A leaf's box that is larger than what it is compared with says little of where its triangles are.

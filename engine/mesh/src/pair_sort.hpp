@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Puts a few hundred pairs of triangles in order.
 #pragma once
 #include <crofton/geometry/id_pair.hpp>

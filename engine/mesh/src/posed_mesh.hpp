@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A mesh tree's triangles as the exact tests see them.
 #pragma once
 #include <crofton/geometry/rigid_transform.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the SIMD traversal of a ray shares with the exact code around it.
 #pragma once
 #include <crofton/core/function_ref.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Covariances of points, and principal directions of symmetric 3 × 3 matrices, by Jacobi rotations.
 #pragma once
 #include <cmath>

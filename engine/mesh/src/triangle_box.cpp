@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "triangle_box.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One triangle in place of the box of its leaf.
 #pragma once
 #include <crofton/mesh/mesh_layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Eight pairs of triangles side by side, in a's frame and in double: do they meet? Included once per instruction set.
 #if defined(CROFTON_COLLIDE_TRIANGLE_PAIRS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_COLLIDE_TRIANGLE_PAIRS

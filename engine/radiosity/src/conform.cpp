@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // T-junctions mended: a vertex on the side of a triangle becomes a corner of the triangles it is cut into.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "draw_kernels.hpp"
 
 #include "trace_kernels.hpp"

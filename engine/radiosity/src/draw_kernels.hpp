@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The inner loops of BundleTracer, on plain floats (no GLM here: see docs/architecture.md on vector kernels).
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/core/assert.hpp>
 #include <crofton/radiosity/form_factors.hpp>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What arrives on every patch along one set of lines.
 #include <crofton/radiosity/form_factors.hpp>
 #include <crofton/radiosity/solver.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // First-shot improvement: what lamps and the sun send before any bounce.
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Points and directions on patches.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tracing by any thread, adding up by one: what makes sums the same bits whatever the executor.
 #pragma once
 #include <algorithm>

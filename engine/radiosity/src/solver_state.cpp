@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a solver knows after some runs: means, errors, checkpoints.
 #include <algorithm>
 #include <cmath>

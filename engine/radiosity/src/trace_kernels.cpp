@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "trace_kernels.hpp"
 
 #undef HWY_TARGET_INCLUDE

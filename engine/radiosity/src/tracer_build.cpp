@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Surface-area splits in sixteen bins: for uniform lines the chance to meet a box inside another is the ratio of their
 // surface areas (theory.md section 2), exactly, so this is the one criterion that fits.
 #include "tracer_build.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/triangle_mesh.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/render/device.hpp>
 #include <cstring>
 

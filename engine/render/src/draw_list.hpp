@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ranges checked, merged and laid out for the GPU.
 #pragma once
 #include <array>

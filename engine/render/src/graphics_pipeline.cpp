@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <array>
 #include <crofton/render/graphics_pipeline.hpp>
 #include <crofton/render/resources.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The Vulkan instance: loader, driver, validation.
 #pragma once
 #include <crofton/render/device.hpp>

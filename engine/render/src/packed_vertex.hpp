@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vertices as the device reads them: of 20 bytes, not 36.
 #pragma once
 #include <algorithm>

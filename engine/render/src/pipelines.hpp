@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The render pass and the pipelines, as one owner.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All that a Rasterizer keeps between frames.
 #pragma once
 #include <crofton/render/rasterizer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From a frame to a command buffer.
 #include <algorithm>
 #include <array>

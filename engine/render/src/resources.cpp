@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/render/resources.hpp>
 
 #include <algorithm>

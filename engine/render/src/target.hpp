@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is drawn into: RGBA8 + D32, with a way back to the host.
 #pragma once
 #include <crofton/render/resources.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/core/assert.hpp>
 #include <crofton/render/vertex.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The one place where the loader's code is compiled.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push

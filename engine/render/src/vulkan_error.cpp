@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/render/vulkan_context.hpp>
 
 namespace crofton::render {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/sampling/random.hpp>
 
 namespace crofton::sampling {

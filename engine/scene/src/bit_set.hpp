@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A set of small integers that is walked in ascending order.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "box_kernel.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes of many instances at once.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/scene/planar_polygon.hpp>
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The errors that calls of Scene share.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <crofton/fit/fit.hpp>
 #include <utility>

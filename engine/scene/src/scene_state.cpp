@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene_state.hpp"
 
 #include <crofton/fit/fit.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a scene keeps.
 #pragma once
 #include <crofton/scene/scene.hpp>

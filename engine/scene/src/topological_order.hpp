@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Nodes in an order in which parents come before their children, kept under changes.
 #pragma once
 #include <crofton/scene/scene.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/scene/transform.hpp>
 #include <glm/geometric.hpp>

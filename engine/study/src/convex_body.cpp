@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/geometry/frustum.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Adaptive integration over the directions of a half sphere: spherical triangles, the worst bounded one split first.
 #pragma once
 #include <algorithm>

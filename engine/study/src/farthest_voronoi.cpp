@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "farthest_voronoi.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The farthest-point Voronoi diagram of a convex polygon's corners, edge by edge.
 #pragma once
 #include <crofton/core/memory.hpp>

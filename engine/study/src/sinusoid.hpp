@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // x·cos φ + y·sin φ + r: values, integrals and zeros, and walks over functions made of such pieces.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/planar.hpp>
 #include <crofton/sampling/random_motion.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/sampling/random_motion.hpp>
 #include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>

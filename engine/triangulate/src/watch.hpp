@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // When to stop: work, time, the caller's wish.
 #pragma once
 #include <algorithm>

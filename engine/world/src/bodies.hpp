@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Objects as meshes: the trees over triangles that rays and contacts ask.
 #pragma once
 #include <crofton/geometry/rigid_transform.hpp>

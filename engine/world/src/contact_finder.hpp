@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which objects meet, and where: all pairs of boxes, then each pair's own shapes.
 #pragma once
 #include <crofton/collide/broadphase.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What calls for many handles share.
 #pragma once
 #include <crofton/world/inputs.hpp>

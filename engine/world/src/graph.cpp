@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Nodes and meshes.
 #include <cstring>
 #include <string>

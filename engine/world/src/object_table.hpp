@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a World knows of its objects beside their boxes. Indices are the spatial index's.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Objects: adding, changing, removing.
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is asked between updates.
 #include <algorithm>
 #include <cmath>

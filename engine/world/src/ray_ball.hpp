@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a ray enters a ball.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "spatial_index.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ constexpr std::uint8_t kUpdatesToMove = 2;       // in a row, until an item leav
 constexpr std::size_t kAttachedPerUpdate = 256;  // one at a time, at about a microsecond each
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
-// Putting an item into the new tree is worth 64 (BoxTree::maintain); so the new tree gains on what changes.
+// Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.
 constexpr std::size_t kBudgetPerChange = 128;
 constexpr std::size_t kChangesToRebuild = 64;  // the tree is rebuilt once a part of 1 / 64 of its items has changed
 
@@ -28,7 +29,7 @@ bool same(const Obb& a, const Obb& b) {
 SpatialIndex::SpatialIndex() : tree_(std::move(*boxtree::BoxTree::build({}))) {}
 
 Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
-    auto item = tree_.insert_lifted(layers);
+    auto item = tree_.insert_detached(layers);
     if (!item) return item;
     if (*item >= items_.size()) {
         if (items_.size() == items_.capacity()) items_.reserve(items_.size() + items_.size() / 8 + 16);
@@ -60,7 +61,7 @@ void SpatialIndex::take(ItemId item) {
 }
 
 void SpatialIndex::detach(ItemId item) {
-    must(tree_.lift(item));
+    must(tree_.detach(item));
     ++tree_changes_;
     wants_refit_ = true;
 }
@@ -172,7 +173,7 @@ void SpatialIndex::rebuild_step(std::size_t budget) {
         rebuilding_ = true;
         changes_at_start_ = tree_changes_;
     }
-    if (!tree_.maintain(budget + kBudgetPerChange * fresh)) return;
+    if (!tree_.rebuild_step(budget + kBudgetPerChange * fresh)) return;
     rebuilding_ = false;
     tree_changes_ -= changes_at_start_;
     changes_before_ = tree_changes_;
@@ -202,7 +203,7 @@ void SpatialIndex::attach(ItemId item) {
     const Obb last = box(item);
     take(item);
     items_[item].place = Place::resting;
-    must(tree_.settle(item, last));
+    must(tree_.attach(item, last));
     ++tree_changes_;
 }
 
@@ -228,13 +229,13 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
         items_[item].place = Place::resting;
         items_[item].streak = 0;
     }
-    Vector<ItemId> lifted, removed;
+    Vector<ItemId> detached, removed;
     for (ItemId item = 0; item < items_.size(); ++item) {
         if (items_[item].place == Place::resting) continue;
-        lifted.push_back(item);
-        if (!tree_.is_lifted(item) && tree_.slot_of(item) == boxtree::kNone) removed.push_back(item);
+        detached.push_back(item);
+        if (!tree_.is_detached(item) && tree_.slot_of(item) == boxtree::kNone) removed.push_back(item);
     }
-    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(), {.lifted = lifted}, executor);
+    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(), {.detached = detached}, executor);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;
     // The lowest ids are given first.

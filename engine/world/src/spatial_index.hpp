@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The boxes of a World's objects: a tree of those that rest, a list of those that move. It finds out which is which.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>

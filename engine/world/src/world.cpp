@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <crofton/core/memory.hpp>
 #include <new>
 

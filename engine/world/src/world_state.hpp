@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a World keeps.
 #pragma once
 #include <crofton/collide/tree_query.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/data_uri.hpp"
 
 #include <array>

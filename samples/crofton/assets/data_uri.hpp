@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // URIs as glTF files use them: data in base64, or the name of a file beside.
 #pragma once
 #include <crofton/core/error.hpp>

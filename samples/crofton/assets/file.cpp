@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/file.hpp"
 
 #include <unistd.h>

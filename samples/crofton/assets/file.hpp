@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole files, read and written, and errors that say which file.
 #pragma once
 #include <crofton/core/error.hpp>

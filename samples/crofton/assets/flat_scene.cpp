@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/flat_scene.hpp"
 
 #include <glm/geometric.hpp>

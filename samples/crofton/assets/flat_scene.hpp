@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene as one mesh in world coordinates, with the light that its faces give off.
 #pragma once
 #include <glm/vec3.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/gltf_accessor.hpp"
 
 #include <tiny_gltf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers out of a glTF file's buffers, with every bound checked first.
 #pragma once
 #include <crofton/core/error.hpp>

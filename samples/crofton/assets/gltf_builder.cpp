@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/gltf_builder.hpp"
 
 #include <glm/common.hpp>

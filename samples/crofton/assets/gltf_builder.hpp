@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF assets made of our own meshes.
 #pragma once
 #include <crofton/scene/scene.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/gltf_color.hpp"
 
 #include <stb/stb_image.h>

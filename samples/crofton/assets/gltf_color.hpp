@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One colour per vertex out of glTF materials: factors, textures, vertex colours.
 #pragma once
 #include <crofton/geometry/triangle_mesh.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A glTF asset as its file has it, to change one thing in it and leave the rest as it is.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Accessors of a document: from JSON that may say anything to elements that are there.
 #include <cstring>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/gltf_elements.hpp"
 
 #include <algorithm>

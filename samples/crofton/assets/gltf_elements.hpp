@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The numbers that a glTF accessor means: where they lie, with every bound checked first, and what they are.
 #pragma once
 #include <crofton/core/error.hpp>

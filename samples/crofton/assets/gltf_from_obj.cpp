@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Wavefront OBJ as glTF, with all that its corners carry.
 #include <array>
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF 2.0, text and binary: the default scene's nodes, matrices and TRS, meshes shared by instances.
 #include <tiny_gltf.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/gltf_patches.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A glTF asset's planar patches triangulated anew; everything else about it stays as it is.
 #pragma once
 #include <crofton/triangulate/planar_patches.hpp>

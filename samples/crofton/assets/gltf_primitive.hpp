@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One primitive of a glTF mesh as a triangle mesh with what its vertices carry.
 #pragma once
 #include <crofton/geometry/triangle_mesh.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where a text stops being JSON, for messages that say so.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/mesh_builder.hpp"
 
 #include <algorithm>

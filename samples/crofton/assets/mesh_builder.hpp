@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shapes that the town is made of, added one by one to a mesh of flat-coloured faces.
 #pragma once
 #include <crofton/geometry/triangle_mesh.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/name_color.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A plausible colour for a thing of which only the name is known.
 #pragma once
 #include <glm/vec3.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/obj_file.hpp"
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Wavefront OBJ: v (with optional colours), vt, vn, f (any polygon, as a fan), o, g, usemtl with Kd, Ke and map_Kd of a
 // material library.
 #pragma once

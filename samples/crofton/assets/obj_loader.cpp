@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The faces of a Wavefront OBJ file as a scene.
 #include "assets/file.hpp"
 #include "assets/obj_file.hpp"

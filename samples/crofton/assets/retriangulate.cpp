@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/retriangulate.hpp"
 
 #include <crofton/triangulate/planar_patches.hpp>

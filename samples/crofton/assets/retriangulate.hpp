@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The same scene cut into triangles anew, to compare ways of triangulating.
 #pragma once
 #include <crofton/triangulate/triangulate.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The built-in interior: a room with a window, a table, chairs, a shelf and a lamp; every face looks into the air.
 #include "assets/mesh_builder.hpp"
 #include "assets/scene_source.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where scenes come from: files of several formats, and the town we make ourselves.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/sector_polygons.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which polygons, with holes, the lines around a sector enclose.
 #pragma once
 #include <crofton/geometry/polygon.hpp>

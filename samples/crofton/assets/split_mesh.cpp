@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/split_mesh.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Large meshes into pieces that culling can tell apart.
 #pragma once
 #include <crofton/geometry/triangle_mesh.hpp>

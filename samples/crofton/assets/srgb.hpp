@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours as files store them, made linear.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The built-in town: a grid of streets, blocks of several kinds, traffic.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/town_blocks.hpp"
 
 #include <cmath>

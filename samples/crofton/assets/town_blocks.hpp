@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What fills the blocks between the streets.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What stands and leans in streets, gardens and squares: much of it thin and slanted, so that axis-aligned bounds are
 // bad.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parcels with courtyards, streets, and the country around.
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Terraced houses: façades with window and door holes, gables, roofs.
 #include <array>
 #include <cmath>

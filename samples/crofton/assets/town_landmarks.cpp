@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one sees from afar: a church and a tower crane.
 #include <array>
 #include <cmath>

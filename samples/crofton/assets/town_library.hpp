@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The town's vocabulary: every kind of thing once, as meshes and planar polygons of one scene.
 #pragma once
 #include <crofton/sampling/random.hpp>

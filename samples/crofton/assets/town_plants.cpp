@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Trees, hedges and fences.
 #include <array>
 #include <cmath>

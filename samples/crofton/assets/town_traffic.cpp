@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/town_traffic.hpp"
 
 #include <cmath>

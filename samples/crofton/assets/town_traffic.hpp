@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vehicles that drive around blocks, on the right, for ever.
 #pragma once
 #include <crofton/scene/scene.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cars, vans, buses and lorries with trailers, driving toward +x.
 #include <array>
 

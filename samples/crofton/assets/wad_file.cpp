@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "assets/wad_file.hpp"
 
 #include <algorithm>

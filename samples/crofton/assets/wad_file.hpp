@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // DOOM's archive of lumps, and a level's lines and sectors in it.
 #pragma once
 #include <crofton/core/error.hpp>

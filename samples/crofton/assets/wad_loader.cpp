@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A level as a scene: floors and ceilings as polygons with holes, lines as walls.
 #include <algorithm>
 #include <cmath>

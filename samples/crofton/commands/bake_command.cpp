@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton bake`: a scene made ready at build time, and what such a file holds.
 #include <chrono>
 #include <crofton/bake/baked_scene.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // crofton collide: do two meshes meet, where, how deep, or how far apart are they?
 #include <charconv>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The command line's parser: sub-commands, their options, and where the values go. CLI11 does the work, in
 // command_line.cpp alone, since its headers take longer to compile than most programs that use them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The sub-commands of `crofton`: each function adds one, its options and what it does.
 #pragma once
 #include "command_line.hpp"

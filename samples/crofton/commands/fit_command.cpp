@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // crofton fit: the best oriented box around each mesh, with the proof that it is.
 #include <chrono>
 #include <crofton/fit/exact.hpp>

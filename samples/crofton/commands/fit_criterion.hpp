@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A criterion as the user writes it.
 #pragma once
 #include <crofton/measure/criterion.hpp>

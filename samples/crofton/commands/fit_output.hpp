@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `crofton fit` found, as JSON, as text and as a drawing.
 #pragma once
 #include <crofton/geometry/obb.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton frames`: the main job. A scene, a camera path; each frame culled, collided, drawn and counted.
 #include <algorithm>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frames_output.hpp"
 
 #include <algorithm>

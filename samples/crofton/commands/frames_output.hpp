@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `crofton frames` leaves behind: JSON, CSV, pictures, and a table for the person who waits.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A line chart as inline SVG.
 #pragma once
 #include <string>

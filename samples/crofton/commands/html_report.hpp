@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton frames --report FILE.html`: one page that needs nothing else, with pictures, charts and the numbers.
 #pragma once
 #include <crofton/render/rasterizer.hpp>

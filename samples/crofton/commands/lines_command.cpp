@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton lines`: the ways to draw global lines, compared on one scene.
 #include <algorithm>
 #include <chrono>

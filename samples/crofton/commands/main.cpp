@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The command line `crofton`: one sub-command per question.
 #include <cerrno>
 #include <crofton/core/version.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton measure`: Crofton's formula on one's own mesh. What random lines count, beside what the mesh's geometry
 // says.
 #include <algorithm>

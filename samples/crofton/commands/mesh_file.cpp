@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh_file.hpp"
 
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One mesh, or one set of points, from any file that scenes come in.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "polygon_files.hpp"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Polygons with holes out of files of several formats.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangulated polygons as a picture.
 #pragma once
 #include <crofton/triangulate/triangulate.hpp>

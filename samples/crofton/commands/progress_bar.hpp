@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A progress bar on stderr, where that is a terminal; silent otherwise.
 #pragma once
 #include <cstddef>

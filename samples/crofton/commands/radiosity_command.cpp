@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton radiosity`: light in a scene, to a target error, baked into vertex colours.
 #include <chrono>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes into patches, and lit patches into files.
 #pragma once
 #include <crofton/geometry/camera.hpp>

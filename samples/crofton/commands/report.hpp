@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every sub-command says and writes the same way: messages to stderr, files whole or not at all.
 #pragma once
 #include <crofton/core/error.hpp>

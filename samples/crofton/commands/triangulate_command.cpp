@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton triangulate`: polygons with holes, or the planar patches of meshes, to triangles.
 #include <algorithm>
 #include <chrono>

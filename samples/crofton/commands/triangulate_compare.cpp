@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "triangulate_compare.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The three methods side by side.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "triangulate_meshes.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton triangulate` on meshes: their planar patches, triangulated anew.
 #pragma once
 #include <crofton/core/error.hpp>

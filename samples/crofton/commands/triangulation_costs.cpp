@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "triangulation_costs.hpp"
 
 #include <algorithm>

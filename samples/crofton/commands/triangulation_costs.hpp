@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a triangulation costs a frustum, a rasterizer and its pixels: predicted and measured.
 #pragma once
 #include <crofton/core/error.hpp>

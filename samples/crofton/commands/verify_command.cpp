@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // crofton verify: is what Crofton is built on true? One row a claim.
 #include <cmath>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton view`: see what is culled, why, and what it costs.
 #include <memory>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A JSON value, to build documents and to read small ones. nlohmann-json writes and parses them, in json.cpp alone,
 // since its headers take longer to compile than the files that would include them.
 #pragma once

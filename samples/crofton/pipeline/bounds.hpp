@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bound by which an instance is culled: what `crofton frames --bounds` chooses between.
 #pragma once
 #include <crofton/core/error.hpp>

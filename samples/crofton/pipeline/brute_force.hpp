@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The slow, obvious answers that `crofton frames --verify` holds the engine against: every triangle clipped, every pair
 // tested, in double, sharing no code with the engine's queries.
 #pragma once

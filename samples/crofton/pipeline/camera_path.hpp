@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the camera is in each frame: built-in paths around any scene, or one recorded in a file.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "draw_list.hpp"
 
 #include <algorithm>

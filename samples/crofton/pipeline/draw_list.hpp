@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene as one static vertex and index buffer, and a set of visible instances as ranges of it.
 #pragma once
 #include <crofton/render/clip_space.hpp>

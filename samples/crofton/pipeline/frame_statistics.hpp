@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one frame cost and found; the rows of `crofton frames` and of the viewer's panel.
 #pragma once
 #include <crofton/geometry/camera.hpp>

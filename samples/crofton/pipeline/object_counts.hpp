@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the bounds cannot say: how much of the objects themselves the frustum meets.
 #pragma once
 #include <crofton/cull/classify.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pedestrian_path.hpp"
 
 #include <algorithm>

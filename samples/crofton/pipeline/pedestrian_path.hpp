@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where one could walk in a scene that does not say so itself.
 #pragma once
 #include <crofton/geometry/aabb.hpp>

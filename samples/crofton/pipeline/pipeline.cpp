@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "pipeline.hpp"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ struct Pipeline::State {
         for (const scene::InstanceId i : moved) moved_boxes.push_back(bounds.boxes()[i]);
         if (auto done = tree->move(moved, moved_boxes); !done) return done;
         tree->refit();
-        tree->maintain(kMaintenancePerFrame);
+        tree->rebuild_step(kMaintenancePerFrame);
         return {};
     }
 

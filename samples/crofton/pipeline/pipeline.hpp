@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One frame of the project's main job: move, bound, cull, collide, count. Drawing is beside it, in draw_list.hpp.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "png.hpp"
 
 #define STBI_WRITE_NO_STDIO

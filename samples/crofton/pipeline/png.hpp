@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A drawn picture as the bytes of a PNG file.
 #pragma once
 #include <crofton/render/rasterizer.hpp>

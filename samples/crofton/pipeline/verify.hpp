@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton frames --verify`: one frame against brute force.
 #pragma once
 #include <crofton/scene/scene.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Convex bodies for the claims' random trials: slow and plain tests of what meets what, independent of the engine's.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Proofs, checked in exact arithmetic, that a bound and a frustum meet or do not: the judge of `crofton verify cull`.
 #pragma once
 #include <crofton/geometry/aabb.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The claims of `crofton verify collide`.
 #pragma once
 #include <vector>

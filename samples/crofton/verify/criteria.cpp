@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Space: which criterion ranks bounds right for which query, minimal boxes, planes and lines through all, formula (6).
 #include <algorithm>
 #include <crofton/fit/fit.hpp>

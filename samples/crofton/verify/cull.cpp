@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cull.hpp"
 
 #include <algorithm>

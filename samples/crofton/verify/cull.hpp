@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // crofton verify cull: is anything visible ever culled?
 #pragma once
 #include <vector>

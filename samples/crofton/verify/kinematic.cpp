@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The kinematic formula (1) and its likes: predicted measures of motions against counted ones.
 #include <crofton/measure/criterion.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>

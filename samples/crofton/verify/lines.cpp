@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Global lines: the right densities pass a test of uniformity, the wrong ones fail it; what a patch expects of N lines.
 #include <algorithm>
 #include <cmath>

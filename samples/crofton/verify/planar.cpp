@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's plane: measures of lines (3), (7), (8), (9), Theorems 1 and 2, bounds given ancestors, minimal
 // rectangles.
 #include <algorithm>

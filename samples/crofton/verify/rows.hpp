@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `crofton verify` is made of: one row a claim, with what was predicted, what was measured, and the verdict.
 #pragma once
 #include <cstdint>

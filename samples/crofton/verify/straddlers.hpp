@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cameras, and bounds that reach a little across the surface of what they see or stop a little short of it.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The claims `crofton verify` can check, by topic.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "camera_controller.hpp"
 
 #include <algorithm>

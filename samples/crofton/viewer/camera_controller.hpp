@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The camera in the user's hand: flying freely, or circling a point.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where bodies touch, and what keeps those apart that nearly do; in world coordinates.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What happened, frame by frame: for the plots, and for files to take away.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The list of keys, and messages that come and go.
 #pragma once
 #include "panels.hpp"

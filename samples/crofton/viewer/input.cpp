@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The session's ears: keys, clicks, scripts, buttons.
 #include <imgui.h>
 

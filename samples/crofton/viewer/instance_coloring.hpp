@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which colour each visible instance is drawn in.
 #pragma once
 #include <crofton/geometry/frustum.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The session's panels, built and drawn over the picture.
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>

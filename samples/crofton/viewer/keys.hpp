@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every key and what it does: for the help in the window, tooltips, `crofton view --help` and scripts.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes, frusta and segments as lines for the rasterizer, relative to the eye.
 #pragma once
 #include <crofton/geometry/camera.hpp>

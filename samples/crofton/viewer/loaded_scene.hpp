@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene with its culling and collisions, ready to be asked once a frame.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The session's beginnings: window, device, interface, scene.
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>

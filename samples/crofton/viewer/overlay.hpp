@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is drawn over the scene as lines: bounds, frusta, contacts.
 #pragma once
 #include <optional>

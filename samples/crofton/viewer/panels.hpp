@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The user interface: what one can read and switch.
 #pragma once
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "picking.hpp"
 
 #include <cmath>

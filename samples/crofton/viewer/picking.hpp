@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What lies under the cursor.
 #pragma once
 #include <crofton/geometry/camera.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scene graph as a tree, and what is known of the instance picked.
 #pragma once
 #include "panels.hpp"

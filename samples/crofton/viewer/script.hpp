@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an unattended run does, and when: keys, cameras, switches, pictures.
 #pragma once
 #include <crofton/geometry/camera.hpp>

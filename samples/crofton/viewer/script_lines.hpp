@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where things stand in a script's text, for messages that a person can follow.
 #pragma once
 #include <cstddef>

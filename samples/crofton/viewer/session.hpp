@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The viewer's state and one frame of it: events, motion, culling, drawing, user interface, picture.
 #pragma once
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Everything that can be switched while the viewer runs, by panel, key or script.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles coloured by their shape.
 #pragma once
 #include <crofton/render/vertex.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What frames cost and found, as numbers and plots.
 #pragma once
 #include "panels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The window's half that speaks Vulkan: surface, swapchain, presenting by copy.
 // clang-format off
 #include "window.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "switches_panel.hpp"
 
 #include <algorithm>

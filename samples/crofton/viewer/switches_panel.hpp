@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Everything that can be switched, with its key.
 #pragma once
 #include "panels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Draws Dear ImGui's lists over a picture, through the rasterizer's own device. (ImGui's Vulkan backend as packaged
 // calls the loader's functions by name; ours are loaded at run time and share those names.)
 #pragma once

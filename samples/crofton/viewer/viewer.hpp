@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `crofton view`: a window (or none) onto a scene, its culling and what it costs.
 #pragma once
 #include <crofton/core/error.hpp>

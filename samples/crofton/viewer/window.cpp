@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window.hpp"
 
 #define GLFW_INCLUDE_NONE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A window, its events, and the way a finished picture gets onto it.
 #pragma once
 #include <crofton/render/resources.hpp>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Programs built with nothing but a compiler and pkg-config: PREFIX, LIBDIR, C_COMPILER, CXX_COMPILER, SOURCES, OUTPUT.
 set(ENV{PKG_CONFIG_PATH} ${PREFIX}/${LIBDIR}/pkgconfig)
 function(build_and_run package command)

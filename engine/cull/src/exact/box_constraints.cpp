@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exact/box_constraints.hpp"
 
 namespace crofton::cull {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A frustum's planes as the box sees them.
 #pragma once
 #include <cmath>

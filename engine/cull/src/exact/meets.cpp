@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Box against convex volume, exactly: certificates in double first, vertex enumeration where they do not decide.
 #include <algorithm>
 #include <array>

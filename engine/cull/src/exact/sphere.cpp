@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ball against convex volume, exactly. A ball misses the volume iff some sum of its half-spaces with weights ≥ 0 does
 // not reach the ball: Σ λ_i s_i + r |Σ λ_i n_i| < 0, with s_i the value of plane i at the centre. The best weights are
 // those of the nearest point of the volume, which lies where at most three planes of independent normals vanish:

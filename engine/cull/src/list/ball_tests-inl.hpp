@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The second stage for balls, 16 lanes at a time. Compiled once per instruction set (Highway).
 #include "tree/block_tests-inl.hpp"
 
@@ -87,8 +88,8 @@ HWY_INLINE MF is_excluded(const SphereLanes& balls, const BallRow* rows, unsigne
     return hn::And(excluded, wanted);
 }
 
-HWY_INLINE void settle(const KernelView& view, const SphereLanes& balls, std::uint32_t planes, const LocalPlane* local,
-                       BoxTest& test) {
+HWY_INLINE void resolve(const KernelView& view, const SphereLanes& balls, std::uint32_t planes, const LocalPlane* local,
+                        BoxTest& test) {
     const DF d;
     BallRow rows[KernelView::kMaxPlanes];
     unsigned count = 0;
@@ -97,11 +98,11 @@ HWY_INLINE void settle(const KernelView& view, const SphereLanes& balls, std::ui
         rows[count++] = {&view.planes[i], plane_value(view.planes[i], balls.x, balls.y, balls.z, local[i].offset),
                          balls.slack(local[i])};
     }
-    const MF meets = has_witness(balls, rows, count, test.unsettled);
+    const MF meets = has_witness(balls, rows, count, test.needs_edge_test);
     test.straddling = hn::Or(test.straddling, meets);
-    test.unsettled = hn::AndNot(meets, test.unsettled);
-    if (!hn::AllFalse(d, test.unsettled)) test.improper = is_excluded(balls, rows, count, test.unsettled);
-    test.undecided = hn::Or(test.undecided, hn::AndNot(test.improper, test.unsettled));
+    test.needs_edge_test = hn::AndNot(meets, test.needs_edge_test);
+    if (!hn::AllFalse(d, test.needs_edge_test)) test.improper = is_excluded(balls, rows, count, test.needs_edge_test);
+    test.undecided = hn::Or(test.undecided, hn::AndNot(test.improper, test.needs_edge_test));
 }
 
 }  // namespace crofton::cull::HWY_NAMESPACE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "list/box_writer.hpp"
 
 #include <hwy/cache_control.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes into the rows and records of a list, in vectors, sixteen at a time.
 #pragma once
 #include <crofton/cull/list_layout.hpp>

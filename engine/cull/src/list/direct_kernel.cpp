@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "list/direct_kernel.hpp"
 
 #include <algorithm>
@@ -162,10 +163,10 @@ class DirectQuery {
             std::copy_n(origin_, 3, chunk.origin);
             OpenRecords<DirectBox, DirectQuery, DirectBoxes> records(
                 *in_.view, chunk, boxes_, (1u << in_.view->plane_count) - 1, in_.exact, *this);
-            std::uint32_t unsettled[kChunk + 16];
-            counts = records.test(open_, count, unsettled);
+            std::uint32_t needs_edge_test[kChunk + 16];
+            counts = records.test(open_, count, needs_edge_test);
         }
-        out_.settled_count = counts.settled;
+        out_.resolved_count = counts.resolved;
         out_.improper = counts.improper;
         out_.open = counts.straddling + out_.undecided_count;
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One view against boxes as the caller has them, in vectors: nothing is prepared and nothing kept.
 #pragma once
 #include "list/list_kernel.hpp"

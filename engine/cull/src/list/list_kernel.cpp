@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "list/list_kernel.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ class ChunkQuery {
     }
 
     void run() {
-        out_.undecided_count = out_.settled_count = 0;
+        out_.undecided_count = out_.resolved_count = 0;
         out_.improper = out_.open = 0;
         const std::uint64_t last = ~std::uint64_t{0} >> (64 * words_ - in_.count);
         if (rows_.outside || rows_.planes == 0) {
@@ -51,11 +52,11 @@ class ChunkQuery {
             out_.inside[w] = inside & valid;
             open[w] = ~(outside | inside) & valid;
         }
-        std::uint32_t indices[kChunk + 16], unsettled[kChunk + 16];
+        std::uint32_t indices[kChunk + 16], needs_edge_test[kChunk + 16];
         const std::size_t count = list_sparse_bits(open, words_, indices);
         OpenRecords<Record, ChunkQuery> records(*in_.view, *in_.chunk, in_.records, rows_.planes, in_.exact, *this);
-        const OpenCounts counts = records.test(indices, count, unsettled);
-        out_.settled_count = counts.settled;
+        const OpenCounts counts = records.test(indices, count, needs_edge_test);
+        out_.resolved_count = counts.resolved;
         out_.improper = counts.improper;
         out_.open = counts.straddling + counts.undecided;
     }

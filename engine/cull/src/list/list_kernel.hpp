@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One view against a chunk of a list, in vectors: what a filter can decide, and the list of what it cannot.
 #pragma once
 #include <crofton/cull/list_layout.hpp>
@@ -21,7 +22,7 @@ struct ListKernelOutput {
     std::uint64_t visible[kChunk / 64];  // not certainly outside
     std::uint64_t inside[kChunk / 64];
     std::uint32_t undecided[kChunk + 16];  // theirs are open
-    std::size_t undecided_count, settled_count;
+    std::size_t undecided_count, resolved_count;
     std::uint64_t improper, open;  // open: straddling or undecided
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A list's records, gathered from wherever they lie and turned into lanes. Compiled once per instruction set (Highway).
 #include <crofton/cull/list_layout.hpp>
 #include <cstring>

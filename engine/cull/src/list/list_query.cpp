@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Queries of lists: chunks through the kernels, and what those leave undecided.
 #include <algorithm>
 #include <crofton/core/assert.hpp>
@@ -34,7 +35,7 @@ struct ListQuery {
         Statistics statistics;
         if (kCountStatistics) {
             statistics.boxes_tested = count;
-            statistics.exact_tests = output.settled_count + output.undecided_count;
+            statistics.exact_tests = output.resolved_count + output.undecided_count;
             statistics.improper = output.improper;
             statistics.straddling = output.open;
         }
@@ -134,7 +135,7 @@ class ListViews {
             if (kCountStatistics)
                 cost[v] += {.boxes_tested = count,
                             .straddling = own.straddling + own.undecided,
-                            .exact_tests = own.settled + own.undecided,
+                            .exact_tests = own.resolved + own.undecided,
                             .improper = own.improper};
             if (singly_ >> v & 1) chunk.ask_singly(v, count, layers, masks);
         }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "list/list_views_kernel.hpp"
 
 #include <hwy/cache_control.h>
@@ -171,12 +172,12 @@ class ChunkViews {
     }
 
     void ask_records(const RowView& asked, const std::uint32_t* indices, std::size_t count, ListViewCost& cost) {
-        std::uint32_t unsettled[kChunk + 16];
+        std::uint32_t needs_edge_test[kChunk + 16];
         Sink sink{in_, masks_, asked.view, asked.bit};
         OpenRecords<Record, Sink> records(in_.views[asked.view], *in_.chunk, in_.records, asked.planes.planes,
                                           in_.exact, sink);
-        const OpenCounts counts = records.test(indices, count, unsettled);
-        cost.settled += counts.settled;
+        const OpenCounts counts = records.test(indices, count, needs_edge_test);
+        cost.resolved += counts.resolved;
         cost.improper += counts.improper;
         cost.straddling += counts.straddling;
         cost.undecided += counts.undecided;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Many views against a chunk of a list, in vectors.
 #pragma once
 #include <crofton/cull/list_layout.hpp>
@@ -10,7 +11,7 @@ inline constexpr std::size_t kMaxListViews = 32;
 
 // What one view's verdicts cost, beyond the rows of all.
 struct ListViewCost {
-    std::uint64_t settled, improper, straddling, undecided;
+    std::uint64_t resolved, improper, straddling, undecided;
 };
 
 template <class Record>

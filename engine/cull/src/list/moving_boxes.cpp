@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/cull/moving_boxes.hpp>
@@ -11,8 +12,8 @@ Result<void> MovingBoxes::update(const boxtree::BoxTree& tree, std::span<const I
     if (items.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "moving boxes: as many boxes as items are needed");
     for (const ItemId item : items)
-        if (!tree.is_lifted(item))
-            return fail(ErrorCode::out_of_range, item, "moving boxes: the item has not been lifted from the tree");
+        if (!tree.is_detached(item))
+            return fail(ErrorCode::out_of_range, item, "moving boxes: the item has not been detached from the tree");
     const std::size_t valid = sets_[1 - now_].update(boxes, executor);
     if (valid < boxes.size()) return validate(boxes[valid], items[valid]);
     now_ = 1 - now_;
@@ -44,7 +45,7 @@ void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uin
     std::uint32_t* listed = visible_.listed_.data();
     const std::size_t found = list_bits(bits, visible_.listed_);
     for (std::size_t i = 0; i < found; ++i) listed[i] = moving_->items()[listed[i]];
-    if (tree.lifted_layers() & view_.layer_mask) {
+    if (tree.detached_layers() & view_.layer_mask) {
         std::copy_n(listed, found, to + count);
         count += found;
         return;

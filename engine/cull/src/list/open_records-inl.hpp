@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a chunk's rows leave open, asked of the records. Compiled once per instruction set (Highway).
 #include <algorithm>
 #include <crofton/cull/list_layout.hpp>
@@ -16,12 +17,12 @@ namespace crofton::cull::HWY_NAMESPACE {
 
 // Verdicts of up to 16 bounds, a bit each.
 struct Sixteen {
-    std::uint32_t inside = 0, straddling = 0, unsettled = 0, undecided = 0, improper = 0;
+    std::uint32_t inside = 0, straddling = 0, needs_edge_test = 0, undecided = 0, improper = 0;
 
     HWY_INLINE void add(const BoxTest& test, std::size_t shift) {
         inside |= bits_of(test.inside) << shift;
         straddling |= bits_of(test.straddling) << shift;
-        unsettled |= bits_of(test.unsettled) << shift;
+        needs_edge_test |= bits_of(test.needs_edge_test) << shift;
         undecided |= bits_of(test.undecided) << shift;
         improper |= bits_of(test.improper) << shift;
     }
@@ -34,7 +35,7 @@ HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
 
 // How many of the records went which way.
 struct OpenCounts {
-    std::size_t settled = 0, straddling = 0, undecided = 0, improper = 0;
+    std::size_t resolved = 0, straddling = 0, undecided = 0, improper = 0;
 };
 
 // One view's questions. Tells `sink` by outside(i), inside(i) and undecided(i) what the records know; the others are
@@ -49,15 +50,15 @@ class OpenRecords {
         for_each_bit(planes, [&](unsigned i) { local_[i] = local_plane(view.planes[i], at); });
     }
 
-    // `unsettled` is for its own use and has room for all.
-    HWY_INLINE OpenCounts test(const std::uint32_t* indices, std::size_t count, std::uint32_t* unsettled) {
+    // `needs_edge_test` is for its own use and has room for all.
+    HWY_INLINE OpenCounts test(const std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
         for_each_sixteen(indices, count, [&](const auto& lanes, const std::uint32_t* which) {
             const Sixteen test =
                 lanes([&](const auto& boxes) HWY_ATTR { return test_boxes(view_, boxes, planes_, local_, exact_); });
-            for_each_bit(test.unsettled, [&](unsigned i) { unsettled[counts_.settled++] = which[i]; });
+            for_each_bit(test.needs_edge_test, [&](unsigned i) { needs_edge_test[counts_.resolved++] = which[i]; });
             apply(test, which);
         });
-        settle_all(unsettled, counts_.settled);
+        resolve_all(needs_edge_test, counts_.resolved);
         return counts_;
     }
 
@@ -84,7 +85,7 @@ class OpenRecords {
     }
 
     HWY_INLINE void apply(const Sixteen& test, const std::uint32_t* which) {
-        const std::uint32_t kept = test.inside | test.straddling | test.unsettled | test.undecided;
+        const std::uint32_t kept = test.inside | test.straddling | test.needs_edge_test | test.undecided;
         for_each_bit(valid_ & ~kept, [&](unsigned i) { sink_.outside(which[i]); });
         for_each_bit(test.inside, [&](unsigned i) { sink_.inside(which[i]); });
         for_each_bit(test.undecided, [&](unsigned i) { sink_.undecided(which[i]); });
@@ -93,16 +94,16 @@ class OpenRecords {
         counts_.improper += hwy::PopCount(test.improper);
     }
 
-    HWY_INLINE void settle_all(const std::uint32_t* unsettled, std::size_t count) {
-        for_each_sixteen(unsettled, count, [&](const auto& lanes, const std::uint32_t* which) {
+    HWY_INLINE void resolve_all(const std::uint32_t* needs_edge_test, std::size_t count) {
+        for_each_sixteen(needs_edge_test, count, [&](const auto& lanes, const std::uint32_t* which) {
             Sixteen test = lanes([&](const auto& bounds) HWY_ATTR {
                 BoxTest result;
                 result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
-                result.unsettled = bounds.present;
-                settle(view_, bounds, planes_, local_, result);
+                result.needs_edge_test = bounds.present;
+                resolve(view_, bounds, planes_, local_, result);
                 return result;
             });
-            test.unsettled = 0;
+            test.needs_edge_test = 0;
             apply(test, which);
         });
     }

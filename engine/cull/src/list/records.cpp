@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "list/records.hpp"
 
 #include <algorithm>

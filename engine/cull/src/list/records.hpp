@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A bound as a list keeps it.
 #pragma once
 #include <crofton/cull/list_layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "list/row_planes.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A view's planes in the integers of a chunk's rows.
 #pragma once
 #include <crofton/cull/list_layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A list's rows against planes in integers, 64 bounds at a time. Compiled once per instruction set (Highway).
 #include "list/row_planes.hpp"
 #include "tree/block_tests-inl.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A view's planes in the integers of a tree's nodes and leaves.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Nodes and leaves against one view's planes, 16 lanes at a time. Compiled once per instruction set (Highway).
 #include "lanes-inl.hpp"
 #include "second_stage-inl.hpp"
@@ -14,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
 struct NodeTest {
-    std::uint32_t settled;                 // lanes that are certainly inside of all planes
+    std::uint32_t inside;                  // lanes that are certainly inside of all planes
     std::uint32_t alive;                   // lanes that no plane certainly rejects and that share a layer with the view
     alignas(64) std::uint32_t planes[16];  // per lane, those of the planes that it is not certainly inside of
 };
@@ -61,7 +62,7 @@ struct NodeSide {
 HWY_INLINE NodeTest test_node(const KernelView& view, const boxtree::Node& node, std::uint32_t planes) {
     const DU du;
     NodeTest result;
-    result.alive = result.settled = 0;
+    result.alive = result.inside = 0;
     BlockPlane before[KernelView::kMaxPlanes];
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
@@ -80,7 +81,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const boxtree::Node& node,
         }
         hn::Store(straddled, du, result.planes + l);
         result.alive |= bits_of(alive) << l;
-        result.settled |= bits_of(hn::RebindMask(DF(), hn::Eq(straddled, hn::Zero(du)))) << l;
+        result.inside |= bits_of(hn::RebindMask(DF(), hn::Eq(straddled, hn::Zero(du)))) << l;
     }
     return result;
 }
@@ -146,7 +147,7 @@ HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::u
     // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
     const MF meets = exact ? hn::Or(hn::Not(open_twice), center) : boxes.present;
     result.straddling = hn::And(crossing, meets);
-    result.unsettled = hn::AndNot(meets, crossing);
+    result.needs_edge_test = hn::AndNot(meets, crossing);
     result.undecided = hn::AndNot(hn::Or(result.inside, crossing), maybe);
     return result;
 }

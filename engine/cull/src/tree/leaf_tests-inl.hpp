@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The boxes of a leaf against planes, in integers. Compiled once per instruction set (Highway).
 #include "tree/block_tests-inl.hpp"
 
@@ -75,7 +76,7 @@ HWY_INLINE BoxTest test_leaf(const LeafRows& rows, MF present, const LeafPlane& 
     result.straddling = hn::And(present, test.cuts);
     result.inside = hn::And(present, test.inside);
     result.undecided = hn::And(present, test.unsure);
-    result.unsettled = result.improper = hn::FirstN(DF(), 0);
+    result.needs_edge_test = result.improper = hn::FirstN(DF(), 0);
     return result;
 }
 
@@ -100,9 +101,9 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
 }
 
 // Not inlined, and given no vectors: what calls it keeps its own in registers.
-static HWY_NOINLINE void settle_leaf(const boxtree::Leaf& leaf, std::size_t l, const LeafPlane* planes, unsigned count,
-                                     BoxTest& test) {
-    settle(box_rows(LeafRows(leaf, l), planes, count), test);
+static HWY_NOINLINE void resolve_leaf(const boxtree::Leaf& leaf, std::size_t l, const LeafPlane* planes, unsigned count,
+                                      BoxTest& test) {
+    resolve(box_rows(LeafRows(leaf, l), planes, count), test);
 }
 
 // Of two planes or more. In the exact mode a box that crosses two is asked for a common point, unless its centre is
@@ -127,13 +128,13 @@ HWY_INLINE BoxTest test_leaf(const boxtree::Leaf& leaf, std::size_t l, MF presen
     const MF sure = hn::AndNot(unsure, maybe);
     result.undecided = hn::And(unsure, maybe);
     result.inside = hn::AndNot(once, sure);
-    result.improper = result.unsettled = none;
+    result.improper = result.needs_edge_test = none;
     result.straddling = hn::And(once, sure);
     if (!exact) return result;
-    result.unsettled = hn::AndNot(center, hn::And(twice, sure));
-    if (hn::AllFalse(d, result.unsettled)) return result;
-    result.straddling = hn::AndNot(result.unsettled, result.straddling);
-    settle_leaf(leaf, l, planes, count, result);
+    result.needs_edge_test = hn::AndNot(center, hn::And(twice, sure));
+    if (hn::AllFalse(d, result.needs_edge_test)) return result;
+    result.straddling = hn::AndNot(result.needs_edge_test, result.straddling);
+    resolve_leaf(leaf, l, planes, count, result);
     return result;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tree/query.hpp"
 
 #include <hwy/cache_control.h>
@@ -61,7 +62,7 @@ bool takes_vectors(const Frustum& frustum) {
 }
 
 void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
-    output.settled_count = output.improper = 0;
+    output.resolved_count = output.improper = 0;
     output.open = output.undecided_count = count;
     for (std::size_t i = 0; i < count; ++i) output.undecided[i] = static_cast<std::uint32_t>(i);
     std::fill_n(output.visible, (count + 63) / 64, 0);
@@ -140,7 +141,7 @@ void Query::decide(std::span<const Obb> boxes, ListKernelOutput& output) {
     }
     if (!kCountStatistics) return;
     visible_.statistics_.boxes_tested += boxes.size();
-    visible_.statistics_.exact_tests += output.settled_count + output.undecided_count;
+    visible_.statistics_.exact_tests += output.resolved_count + output.undecided_count;
     visible_.statistics_.improper += output.improper + rejected;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One query at work in a VisibleSet's buffers.
 #pragma once
 #include <crofton/cull/cull.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tree/tree_kernel.hpp"
 
 #include <hwy/cache_control.h>
@@ -31,7 +32,7 @@ class Walk {
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
 
     // Group after group of entries through the nodes; what lies inside as a whole is noted, and so are the leaves that
-    // stay open. These follow when all nodes are done. The groups settle the order of the answer.
+    // stay open. These follow when all nodes are done. The groups set the order of the answer.
     HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
         constexpr std::size_t kMaxGroups = boxtree::kWidth * boxtree::kWidth / kTreeGroup;
         std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
@@ -298,7 +299,7 @@ std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::
     const boxtree::Node& node = input.nodes[child];
     const NodeTest test = test_node(*input.view, node, planes);
     std::size_t count = 0;
-    const std::uint32_t whole = seen(*input.view, node, test.alive & test.settled);
+    const std::uint32_t whole = seen(*input.view, node, test.alive & test.inside);
     for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {
         const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(alive));
         entries[count++] = tree_entry(node.child[lane], whole >> lane & 1 ? kWhole : test.planes[lane]);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One view against a box tree, in vectors: what a filter can decide, and the list of what it cannot.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

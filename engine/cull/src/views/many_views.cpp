@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <bit>
 #include <crofton/core/assert.hpp>
 #include <crofton/cull/many_views.hpp>

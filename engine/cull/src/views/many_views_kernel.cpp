@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "views/many_views_kernel.hpp"
 
 #include <hwy/cache_control.h>
@@ -71,7 +72,7 @@ class ManyWalk {
     HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size) {
         const boxtree::Node& node = in_.nodes[id];
         const NodeTest test = test_node(in_.views[v], node, planes);
-        const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.settled);
+        const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.inside);
         if (node.only_leaves) {
             note_leaves(node, test, whole, v);
             return size;

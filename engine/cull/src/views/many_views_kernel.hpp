@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Many views against a box tree, in vectors.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

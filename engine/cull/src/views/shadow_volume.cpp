@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/cull/shadow_volume.hpp>
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cloud/cloud_kernels.hpp"
 
 #include <cmath>

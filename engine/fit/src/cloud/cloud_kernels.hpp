@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Passes over many points, compiled for every instruction set and chosen at run time.
 #pragma once
 #include <cstddef>

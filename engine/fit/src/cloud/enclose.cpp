@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cloud/enclose.hpp"
 
 #include <bit>

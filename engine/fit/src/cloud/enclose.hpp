@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The last step of every fit: a float box with given axes that holds every point, by exact tests.
 #pragma once
 #include <crofton/geometry/obb.hpp>

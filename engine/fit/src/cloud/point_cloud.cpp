@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cloud/point_cloud.hpp"
 
 #include <algorithm>

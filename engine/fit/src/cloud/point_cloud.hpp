@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A point set that answers support queries: the input of every search, checked and normalised.
 #pragma once
 #include <array>

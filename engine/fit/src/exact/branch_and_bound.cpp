@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exact/branch_and_bound.hpp"
 
 #include <algorithm>

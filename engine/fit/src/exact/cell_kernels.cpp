@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "exact/cell_kernels.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kernels of the exact search: lower bounds for eight cells of orientations at once, for every instruction set.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "search/calipers.hpp"
 
 #include <algorithm>

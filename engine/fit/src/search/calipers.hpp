@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rotating calipers: the best rectangle around a convex polygon in linear time.
 #pragma once
 #include <cstddef>

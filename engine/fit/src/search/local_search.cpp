@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "search/local_search.hpp"
 
 #include <algorithm>

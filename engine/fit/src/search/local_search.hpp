@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Local search in double on a small set of points: turns of a frame to its best angles.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The last digits of a local optimum: slides along frames that keep two faces flush with edges.
 #pragma once
 #include "search/local_search.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A criterion's weights for boxes in normalised coordinates.
 #pragma once
 #include <crofton/measure/criterion.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kernels of the local search on a small set of points: sixteen frames at a time, compiled for every instruction set.
 // They compute in float, and no value depends on the vector's width, so all instruction sets give the same bits.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vectors of up to sixteen floats, points and ranges: shared by the kernels of small sets.
 #if defined(CROFTON_FIT_SMALL_SET_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_FIT_SMALL_SET_LANES_INL

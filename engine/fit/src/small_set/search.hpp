@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The local search on a small set of points: a cluster, or the extreme points of a mesh. Works in float on sixteen
 // frames at a time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <crofton/core/assert.hpp>
 #include <crofton/geometry/predicates.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From the caller's rings to a checked subdivision: which vertices there are, which triangles lie inside.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles as half-edges, and the constrained Delaunay triangulation built on them.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "domain/spatial_order.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An order in which points that are near each other are near in memory, and that cuts into halves by straight lines.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A set of numbers below a bound that finds the next one quickly.
 #pragma once
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ear/ear_clipping.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ear clipping: quick to understand, and what most engines do today.
 #pragma once
 #include <array>

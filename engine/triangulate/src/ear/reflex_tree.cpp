@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ear/reflex_tree.hpp"
 
 #include <algorithm>

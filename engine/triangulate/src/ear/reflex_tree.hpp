@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The reflex corners that may still lie in an ear, by place.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/candidate_graph.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The edges that a minimum-weight triangulation may use, in angular order about each vertex.
 #pragma once
 #include <crofton/core/memory.hpp>

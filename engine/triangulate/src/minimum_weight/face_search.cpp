@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/face_search.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Faces whose boundary the certain edges leave in pieces: holes and isolated vertices that hang in the air.
 #pragma once
 #include "minimum_weight/faces.hpp"

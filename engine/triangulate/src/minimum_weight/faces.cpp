@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/faces.hpp"
 
 #include <algorithm>

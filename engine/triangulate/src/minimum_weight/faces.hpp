@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The faces that the certain edges of a candidate graph leave to be triangulated.
 #pragma once
 #include "minimum_weight/candidate_graph.hpp"

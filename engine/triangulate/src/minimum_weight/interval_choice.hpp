@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The exact minimum among the triangulations that an interval programme in double cannot tell apart.
 #pragma once
 #include <array>

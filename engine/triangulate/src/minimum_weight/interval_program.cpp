@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/interval_program.hpp"
 
 #include <algorithm>

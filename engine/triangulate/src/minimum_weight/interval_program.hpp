@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Klincsek's interval dynamic programme, over candidate edges only.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The inner loop of interval programmes.
 #pragma once
 #include <algorithm>

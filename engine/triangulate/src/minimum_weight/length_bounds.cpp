@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/length_bounds.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How short the diagonals of any triangulation can be: what is known when there was no time for more.
 #pragma once
 #include "domain/domain.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/lmt_skeleton.hpp"
 
 #include <algorithm>

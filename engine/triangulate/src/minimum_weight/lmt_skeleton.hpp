@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The locally-minimal-triangulation skeleton: which candidates are surely in, which surely out.
 #pragma once
 #include "minimum_weight/candidate_graph.hpp"

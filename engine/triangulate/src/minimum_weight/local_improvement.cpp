@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/local_improvement.hpp"
 
 #include <algorithm>

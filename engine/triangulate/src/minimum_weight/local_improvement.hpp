@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A triangulation made lighter piece by piece: what is done where the minimum is out of reach.
 #pragma once
 #include <array>

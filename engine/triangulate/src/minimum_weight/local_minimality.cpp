@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/local_minimality.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // When an edge is the better diagonal of the two triangles beside it.
 #pragma once
 #include <cmath>

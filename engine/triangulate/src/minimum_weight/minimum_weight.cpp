@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/minimum_weight.hpp"
 
 #include <algorithm>

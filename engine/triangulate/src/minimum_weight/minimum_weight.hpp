@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exact minimum-weight triangulation of a domain: candidates, LMT skeleton, interval programmes, branching.
 #pragma once
 #include <crofton/triangulate/triangulate.hpp>

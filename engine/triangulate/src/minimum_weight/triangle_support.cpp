@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "minimum_weight/triangle_support.hpp"
 
 #include <algorithm>

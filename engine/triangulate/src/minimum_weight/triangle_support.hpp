@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which triangles a minimum-weight triangulation may use: those whose neighbours support them on all sides.
 #pragma once
 #include "minimum_weight/candidate_graph.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sums of lengths to about 100 bits.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers for pairs of values, the same number for the same pair.
 #pragma once
 #include <crofton/core/memory.hpp>

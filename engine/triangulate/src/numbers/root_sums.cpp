@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "numbers/root_sums.hpp"
 
 #include <algorithm>

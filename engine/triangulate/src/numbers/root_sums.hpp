@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exact comparison of sums of Euclidean lengths.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "numbers/wide_integer.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Non-negative integers of any size, for the rare comparisons that double cannot decide. Written to be short, not fast.
 #pragma once
 #include <compare>

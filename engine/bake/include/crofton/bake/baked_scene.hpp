@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
 #pragma once
 #include <crofton/bake/container.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tells damaged bytes from sound ones, at the speed of memory.
 #pragma once
 #include <crofton/core/executor.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The outside of a .crofton file: named sections of plain arrays, each with its checksum, to be read where they lie.
 #pragma once
 #include <crofton/core/error.hpp>

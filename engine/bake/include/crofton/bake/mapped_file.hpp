@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A file as memory, without reading it first.
 #pragma once
 #include <crofton/core/error.hpp>

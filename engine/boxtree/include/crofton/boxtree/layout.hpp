@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How a BoxTree lies in memory: plain arrays that vector kernels read as they are (no GLM here, see DESIGN section 3).
 #pragma once
 #include <crofton/core/requirements.hpp>

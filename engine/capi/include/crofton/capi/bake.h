@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scenes made ready at build time: boxes, tree and meshes in one file that is used where it lies. */
 #ifndef CROFTON_CAPI_BAKE_H
 #define CROFTON_CAPI_BAKE_H

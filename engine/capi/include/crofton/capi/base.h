@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Statuses, their text, and versions. */
 #ifndef CROFTON_CAPI_BASE_H
 #define CROFTON_CAPI_BASE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What touches what? Exactly; touching counts. */
 #ifndef CROFTON_CAPI_COLLIDE_H
 #define CROFTON_CAPI_COLLIDE_H

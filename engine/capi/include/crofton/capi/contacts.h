@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where do boxes and meshes touch, how deep, and how far are they apart? */
 #ifndef CROFTON_CAPI_CONTACTS_H
 #define CROFTON_CAPI_CONTACTS_H

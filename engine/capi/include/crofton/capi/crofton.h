@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Crofton for C and for languages that call C: all of the CPU modules behind opaque handles.
  *
  * Every function returns a status; nothing throws, and nothing but a failed allocation ends the program. Results go to

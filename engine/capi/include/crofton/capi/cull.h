@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What does a view see? */
 #ifndef CROFTON_CAPI_CULL_H
 #define CROFTON_CAPI_CULL_H
@@ -47,7 +48,7 @@ CROFTON_API crofton_status crofton_tree_set_layer_mask(crofton_tree* tree, uint3
 CROFTON_API crofton_status crofton_tree_refit(crofton_tree* tree);
 /* Rebuilds in the background, `budget` items' worth of work a call: once a frame, after refit, where items move for
  * long. */
-CROFTON_API crofton_status crofton_tree_maintain(crofton_tree* tree, size_t budget);
+CROFTON_API crofton_status crofton_tree_rebuild_step(crofton_tree* tree, size_t budget);
 
 CROFTON_API crofton_status crofton_visible_set_create(crofton_visible_set** visible);
 CROFTON_API crofton_status crofton_visible_set_destroy(crofton_visible_set* visible);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Boxes around points, best by the criterion that the queries imply. */
 #ifndef CROFTON_CAPI_FIT_H
 #define CROFTON_CAPI_FIT_H

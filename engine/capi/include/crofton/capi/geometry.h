@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Boxes, cameras and frusta, with the conventions of docs/conventions.md. */
 #ifndef CROFTON_CAPI_GEOMETRY_H
 #define CROFTON_CAPI_GEOMETRY_H

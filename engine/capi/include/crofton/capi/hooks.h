@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The host's allocator, job system, log and assert handler. */
 #ifndef CROFTON_CAPI_HOOKS_H
 #define CROFTON_CAPI_HOOKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What does a ray hit first, and what lies within a body? */
 #ifndef CROFTON_CAPI_RAYS_H
 #define CROFTON_CAPI_RAYS_H

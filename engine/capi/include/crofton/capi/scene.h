@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scene graph: who is where, and how large. */
 #ifndef CROFTON_CAPI_SCENE_H
 #define CROFTON_CAPI_SCENE_H

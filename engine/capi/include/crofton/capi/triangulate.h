@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Polygons with holes to triangles of minimum weight. */
 #ifndef CROFTON_CAPI_TRIANGULATE_H
 #define CROFTON_CAPI_TRIANGULATE_H

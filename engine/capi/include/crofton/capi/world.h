@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The front door: an engine's objects, what they are and where. world_queries.h asks; docs/world.md is the guide. */
 #ifndef CROFTON_CAPI_WORLD_H
 #define CROFTON_CAPI_WORLD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a World answers: what is seen, what rays and shapes meet, what touches. All as of its last update. */
 #ifndef CROFTON_CAPI_WORLD_QUERIES_H
 #define CROFTON_CAPI_WORLD_QUERIES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which of many moving boxes meet?
 #pragma once
 #include <crofton/collide/obb_batch.hpp>

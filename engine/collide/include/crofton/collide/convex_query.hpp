@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far apart two convex bodies are, how deep they overlap, where they touch, and when they will.
 #pragma once
 #include <crofton/collide/shapes.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Many pairs of boxes at once: the exact answers of intersects(Obb, Obb), sixteen pairs to a step.
 #pragma once
 #include <crofton/collide/box_block.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Do two oriented boxes meet? Exactly.
 #pragma once
 #include <crofton/geometry/obb.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Simple bodies that boxes meet: spheres, capsules, triangles, half-spaces.
 #pragma once
 #include <crofton/geometry/obb.hpp>

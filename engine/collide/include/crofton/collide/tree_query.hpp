@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which of many boxes does a body or a ray meet? Asked of the tree that culling uses.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A caller's mistake (as opposed to bad data) goes to a hook; the host decides whether to stop.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How bad data is reported: a value that names the item, never an exception.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The engine owns no threads: work is handed to the host's, through this hook.
 #pragma once
 #include <crofton/core/function_ref.hpp>

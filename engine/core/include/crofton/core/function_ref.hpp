@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A callable by reference: two words, no allocation; valid only while the callable lives.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages for a person, to the host's own log.
 #pragma once
 #include <crofton/core/requirements.hpp>

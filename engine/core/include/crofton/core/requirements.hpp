@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What Crofton asks of the compiler and of GLM. Every public header includes this one, itself or through another, so
 // that a build that lacks something says so first.
 #ifndef CROFTON_CORE_REQUIREMENTS_HPP

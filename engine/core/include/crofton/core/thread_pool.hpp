@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A plain pool of std::threads behind the Executor hook, for hosts without a job system.
 #pragma once
 #include <crofton/core/executor.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which Crofton the headers are of (macros), and which is linked (functions).
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Flat lists of boxes, axis-aligned boxes or spheres, laid out for testing all of them against views at the speed of
 // memory.
 #pragma once

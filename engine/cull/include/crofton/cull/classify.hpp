@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The one question a renderer asks of a bound: is this worth drawing?
 #pragma once
 #include <crofton/geometry/aabb.hpp>
@@ -19,7 +20,7 @@ enum class CullMode : std::uint8_t {
 
 // Exact for the boxes' and planes' stored numbers: `outside` as the mode says, `inside` iff the frustum contains the
 // box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30, is `straddling`:
-// never lost. Planes settle most boxes in double with a proven error bound; the rest go through the separating-axis
+// never lost. Planes decide most boxes in double with a proven error bound; the rest go through the separating-axis
 // test (Gottschalk, Lin, Manocha 1996) and, where rounding could still matter, through exact arithmetic.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, CullMode mode = CullMode::exact);
 

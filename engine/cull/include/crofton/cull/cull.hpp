@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which items does a view see? From a list of boxes or from a tree of them.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Visible items as a bit set, or as runs that one draw call takes.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadow cascades, cube faces, two eyes: up to 32 views in one walk through the tree.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What moves in every frame: a list over the caller's own boxes, asked together with a tree of what rests.
 #pragma once
 #include <crofton/core/error.hpp>
@@ -11,14 +12,15 @@
 
 namespace crofton::cull {
 
-// The ids are the tree's: an item is lifted out of it when it begins to move (BoxTree::lift), and settles there when it
+// The ids are the tree's: an item is taken out of it when it begins to move (BoxTree::detach), and is put back when it
 // comes to rest. The layers are the tree's too. 80 bytes an item beside the caller's boxes.
 class MovingBoxes {
   public:
     // From now on these are the items that move, each once, and boxes[k] is that of items[k]. Both are the caller's and
     // are not copied: they must stay as they are until the next update. It reads each box once, whatever has changed.
-    // Errors leave the list as it was: as many boxes as items are needed; an item that has not been lifted; a box that
-    // fails validate(Obb), named by its item. Where it was overwritten in place, put it right before the next query.
+    // Errors leave the list as it was: as many boxes as items are needed; an item that has not been detached; a box
+    // that fails validate(Obb), named by its item. Where it was overwritten in place, put it right before the next
+    // query.
     [[nodiscard]] Result<void> update(const boxtree::BoxTree& tree, std::span<const ItemId> items,
                                       std::span<const Obb> boxes, Executor& executor = serial_executor());
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Who may throw a shadow into a view? The view volume, drawn out towards the light.
 #pragma once
 #include <crofton/core/error.hpp>

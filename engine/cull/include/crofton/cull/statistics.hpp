@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a query cost, and what of it was in vain.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a query of a list answers.
 #pragma once
 #include <crofton/core/memory.hpp>

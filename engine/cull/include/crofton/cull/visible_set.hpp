@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The answer to a query, in buffers that are kept from frame to frame.
 #pragma once
 #include <crofton/boxtree/layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The best box there is, with a proof of how good it is.
 #pragma once
 #include <crofton/core/function_ref.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oriented boxes around points, best by a criterion that the user's queries imply.
 #pragma once
 #include <crofton/core/executor.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boxes around many small clusters at once, as the leaves and nodes of trees need them.
 #pragma once
 #include <crofton/core/executor.hpp>

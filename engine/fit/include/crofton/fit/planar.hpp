@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // In the plane: the best rectangle and the smallest disc around points.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Axis-aligned bounding box.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What an engine knows of its view, and the matrices that follow.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Convex hulls of points in space.
 #pragma once
 #include <crofton/core/error.hpp>

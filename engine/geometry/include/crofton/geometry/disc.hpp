@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Disc: a solid circle of the plane.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A view volume as half-spaces around an origin: what culling tests against.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two of many items, by index.
 #pragma once
 #include <compare>

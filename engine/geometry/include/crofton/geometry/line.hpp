@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Line: unbounded on both sides.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Oriented bounding box: the bound that everything here shares.
 #pragma once
 #include <array>

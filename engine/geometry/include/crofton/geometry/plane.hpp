@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A half-space, by its boundary plane.
 #pragma once
 #include <crofton/core/requirements.hpp>

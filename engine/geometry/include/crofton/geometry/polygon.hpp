@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A planar polygon with holes.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Signs of determinants, exactly: a filter with Shewchuk's proven bounds first, expansions where it cannot tell.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A ray or segment in space.
 #pragma once
 #include <crofton/core/error.hpp>

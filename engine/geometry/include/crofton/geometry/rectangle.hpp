@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rectangle: the oriented box of the plane.
 #pragma once
 #include <crofton/core/requirements.hpp>

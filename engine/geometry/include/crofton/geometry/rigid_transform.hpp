@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where one body is, seen from another.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sphere, the solid ball: the cheapest bound.
 #pragma once
 #include <crofton/core/requirements.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A triangle in space, by its vertices.
 #pragma once
 #include <array>

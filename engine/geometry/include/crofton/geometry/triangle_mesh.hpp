@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An indexed triangle mesh, as plain data.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Closest points of simple features, in double. Candidates are points of the features themselves, so a distance may be
 // too large by rounding but never stands for a point outside.
 #pragma once

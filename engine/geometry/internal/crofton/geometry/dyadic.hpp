@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exact numbers of any size that doubles can make: where an expansion's range would not do.
 #pragma once
 #include <array>

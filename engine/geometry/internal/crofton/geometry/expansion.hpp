@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exact sums and products of doubles, for signs that floating-point filters cannot decide.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The side of a plane on which a point lies, in double, with the bound that says when the answer is certain.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sines and angles from + − × ÷ and square roots alone: the same bits on every machine. The C library's differ between
 // libraries, and one library's between processors with and without fused multiply-add.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The criterion by which a bound is good for a kind of query: a weighted sum of intrinsic volumes.
 #pragma once
 #include <crofton/measure/intrinsic_volumes.hpp>

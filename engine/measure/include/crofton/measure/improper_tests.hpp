@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How often a bound misleads: a query meets the bound but not the object, or contains the object but not the bound.
 #pragma once
 #include <crofton/measure/intrinsic_volumes.hpp>

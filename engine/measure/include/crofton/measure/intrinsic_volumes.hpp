@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Intrinsic volumes: the three numbers that say how often uniformly random queries meet a convex body.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The plane: area and perimeter say how often uniformly random queries meet a convex figure.
 #pragma once
 #include <crofton/core/error.hpp>

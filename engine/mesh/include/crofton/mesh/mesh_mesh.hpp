@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hierarchy of oriented boxes over the triangles of one mesh, for collisions and rays. A node has sixteen boxes.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rays and segments against boxes, triangles and meshes.
 #pragma once
 #include <crofton/geometry/obb.hpp>

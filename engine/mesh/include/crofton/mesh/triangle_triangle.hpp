@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Do two triangles meet? Exactly, whatever their shape.
 #pragma once
 #include <crofton/geometry/triangle.hpp>

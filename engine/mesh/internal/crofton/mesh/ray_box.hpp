@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A ray against a box, both known to be valid.
 #pragma once
 #include <crofton/mesh/ray.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole bundles of parallel global lines at once: the scene is drawn into the grid whose cells the lines pass through.
 #pragma once
 #include <array>

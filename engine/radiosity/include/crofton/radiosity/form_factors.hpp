@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Form factors F_ij: the share of what leaves patch i that reaches patch j first, estimated three ways.
 #pragma once
 #include <crofton/core/executor.hpp>

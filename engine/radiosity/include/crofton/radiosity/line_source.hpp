@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Global lines for a scene, in blocks that anyone can draw again: the four right ways of theory.md section 6.
 #pragma once
 #include <crofton/core/executor.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What lines and rays meet among many triangles: every crossing in order, or the first.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Surfaces that give and take light: triangles grouped into patches of one radiosity each.
 #pragma once
 #include <crofton/core/error.hpp>

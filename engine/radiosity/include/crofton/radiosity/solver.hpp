@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light in a scene of patches, by random walks along global lines: usable at any time, better with every run.
 #pragma once
 #include <crofton/core/executor.hpp>

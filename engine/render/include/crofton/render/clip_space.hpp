@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Model coordinates to clip coordinates in float, and how many triangles a software clipper makes of a mesh there.
 #pragma once
 #include <crofton/core/memory.hpp>

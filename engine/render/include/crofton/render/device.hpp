@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which Vulkan device draws, and what its validation had to say.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Passes and pipelines by what differs between them, for the rasterizer and for those who draw beside it.
 #pragma once
 #include <crofton/render/vulkan_context.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Headless Vulkan rasterizer: draws index ranges and says how many triangles that cost.
 #pragma once
 #include <array>

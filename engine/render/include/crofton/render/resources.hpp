@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Native resources that free themselves, for those who draw beside the rasterizer: buffers, images, commands.
 #pragma once
 #include <crofton/render/vulkan_context.hpp>

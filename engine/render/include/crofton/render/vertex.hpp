@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the rasterizer's static buffer holds, and how meshes get there.
 #pragma once
 #include <crofton/core/memory.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Native Vulkan handles, for those who draw beside the rasterizer: a window's swapchain, a user interface.
 #pragma once
 #include <volk.h>

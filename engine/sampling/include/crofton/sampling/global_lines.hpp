@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Uniform random lines through a region: no place and no direction is preferred (theory.md section 6). The directions'
 // signs are uniform too unless a function says otherwise.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random numbers that are the same bits on every machine, for any number of threads.
 #pragma once
 #include <array>

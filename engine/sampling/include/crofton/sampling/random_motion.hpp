@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Uniform directions, rotations, motions and cameras, as functions of points u of the unit cube. Take these from Random
 // or UnitPoints. Computed with + − × ÷ and square roots only: the same bits on every machine.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A polygon with holes, standing in space.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scene graph: who is where, and how large.
 #pragma once
 #include <crofton/core/executor.hpp>

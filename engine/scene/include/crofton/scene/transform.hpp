@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Affine maps in double, and the box of a box after one.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The selected lanes of a vector, moved to its front. Compiled once per instruction set (Highway).
 //
 // Instead of Highway's Compress and CompressStore: in version 1.0.3 those of AVX2 and SSE4 copy their table to the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shuffles that move the selected lanes of a vector to its front, by mask. Filled by the compiler, read only.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Masks of vectors as bits of integers. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A binary hierarchy of boxes built by the chance of a visit: for studying what a criterion is worth, and for items
 // that come and go. BoxTree is the one to cull with where speed counts; this is the one to compare by, and the one that
 // has oriented inner bounds (docs/notes/boxtree.md).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The oriented box around an object that fewest queries hit together with all its ancestors' bounds (paper, section 4).
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Convex bodies of space by their support function: the hull of points, grown by a radius. Balls, boxes, frusta, flat
 // polygons, segments and hulls are all of this kind.
 #pragma once

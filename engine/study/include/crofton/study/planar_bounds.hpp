@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The best disc, box or rectangle around an object of the plane, given its ancestors' bounds: the one that fewest lines
 // hit together with all of them (theory.md section 4). The paper's n-level case has n − 1 ancestors.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The measure of the lines of the plane that hit all of n convex figures, theory.md (3): the chance that a node of a
 // hierarchy is tested.
 #pragma once

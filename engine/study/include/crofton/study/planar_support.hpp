@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Support functions in the plane, piece by piece in closed form: the measures of theory.md section 4 are exact by them.
 #pragma once
 #include <crofton/core/error.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A fixed sample of uniform queries, to count those that hit several boxes where no formula says how many (theory.md
 // section 4).
 #pragma once

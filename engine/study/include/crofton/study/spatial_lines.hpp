@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Planes and lines of space that hit all of n convex bodies (theory.md (4) and (5)), by quadrature with a proven error
 // bound.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Line densities that look uniform and are not: for tests, which must reject them, and for teaching. Never sample with
 // these.
 #pragma once

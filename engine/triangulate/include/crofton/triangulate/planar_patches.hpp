@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The planar polygons hidden in a triangle mesh, found and triangulated anew.
 #pragma once
 #include <crofton/geometry/triangle_mesh.hpp>

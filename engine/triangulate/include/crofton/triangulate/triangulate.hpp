@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Polygons with holes to triangles: minimum weight, because that is what a frustum pays for (theory.md section 5).
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a World answers.
 #pragma once
 #include <crofton/collide/convex_query.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Names of things in a World: an index that is used again, and a generation that tells its users apart.
 #pragma once
 #include <compare>

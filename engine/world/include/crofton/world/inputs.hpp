@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a World is told: views of the caller's memory, and what an object is.
 #pragma once
 #include <array>

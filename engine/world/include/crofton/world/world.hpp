@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The front door: objects in, what is seen and what touches out.
 #pragma once
 #include <crofton/collide/shapes.hpp>
@@ -20,8 +21,8 @@ struct WorldOptions {
     bool containment = true;  // a closed mesh around another object touches it
     bool mesh_depth = false;  // depth and direction of contacts between meshes, which cost more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
-    // Items' worth of background work on the tree an update (BoxTree::maintain), beside what changes make necessary;
-    // kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
+    // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
+    // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
     std::size_t rebuild_budget = kAutomatic;
     std::uint32_t updates_to_rest = 16;  // without moving, until an object counts as resting again
 };
