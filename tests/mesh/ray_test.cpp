@@ -106,6 +106,38 @@ TEST_SUITE("mesh/ray") {
         CHECK(hits > 200);
     }
 
+    // Rays an ulp or a few beside edges and vertices, at all scales of the mesh, of the ray's offset and of its
+    // direction.
+    TEST_CASE("rays that all but miss: as rational arithmetic says, at every scale and distance") {
+        std::mt19937_64 random(12);
+        int hits = 0, misses = 0;
+        for (int trial = 0; trial < 4000; ++trial) {
+            const double size = std::pow(10.0, static_cast<int>(random() % 13) - 6);
+            const double away = size * std::pow(10.0, static_cast<int>(random() % 6) - 1);
+            TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 5, 4);
+            const glm::vec3 shift(trial % 2 ? 0.0f : static_cast<float>(1e3 * size));
+            for (glm::vec3& p : mesh.positions) p = p * static_cast<float>(size) + shift;
+            const auto tree = mesh::MeshTree::build(mesh);
+            const std::size_t t = random() % mesh.triangle_count();
+            const glm::dvec3 a = vertex(mesh, t, 0), b = vertex(mesh, t, 1);
+            const double along = static_cast<double>(random() % 5) / 4.0;
+            glm::dvec3 target = a + along * (b - a);
+            for (int i = 0; i < 3; ++i)
+                for (std::size_t ulps = random() % 3; ulps > 0; --ulps)
+                    target[i] = std::nextafter(target[i], random() % 2 ? 1e300 : -1e300);
+            Ray ray{target + away * random_vector(random), {}};
+            ray.direction = (target - ray.origin) * std::pow(10.0, static_cast<int>(random() % 201) - 100);
+            const auto truth = oracle_hit(ray, mesh);
+            const auto hit = raycast(ray, *tree);
+            CHECK(hit.has_value() == truth.has_value());
+            CHECK(hits_any(ray, *tree) == truth.has_value());
+            if (hit && truth) CHECK(hit->t == doctest::Approx(*truth).epsilon(1e-6));
+            ++(truth ? hits : misses);
+        }
+        CHECK(hits > 1000);
+        CHECK(misses > 300);
+    }
+
     TEST_CASE("a closed mesh has no leaks: rays from inside always hit") {
         std::mt19937_64 random(4);
         const auto tree = mesh::MeshTree::build(wavy_torus(0.6, 0.59, 0.0, 16, 16));

@@ -56,6 +56,7 @@ Result<void> MeshTree::refit(std::span<const glm::vec3> positions) {
         pieces_[p] = {positions[refit_.piece_vertices[p]], refit_.piece_closed[p] != 0};
     for (const Weld& weld : refit_.welds)
         if (positions[weld.vertex] != positions[weld.other]) pieces_[weld.piece].closed = false;
+    refit_ray_nodes();
     return {};
 }
 

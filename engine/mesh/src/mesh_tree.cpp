@@ -259,6 +259,7 @@ Result<MeshTree> MeshTreeBuilder::build() {
         set_leaf_ranges(0);
         tree_.refit_.root.end_leaf[0] = static_cast<std::uint32_t>(tree_.leaves_.size());
     }
+    tree_.build_ray_nodes();
     return std::move(tree_);
 }
 

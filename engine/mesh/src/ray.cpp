@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/plane_filter.hpp>
@@ -58,23 +59,41 @@ double parameter(const Ray& ray, const Triangle& t) {
     return by_plane >= low - margin ? std::min(by_plane, high + margin) : low - margin;
 }
 
+// The largest one that is not above x > 0, where it and its reciprocal are normal numbers.
+double power_of_two(double x) {
+    constexpr std::uint64_t kExponent = 0x7ff0000000000000u;
+    const double power = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & kExponent);
+    return std::min(std::max(power, 0x1p-1000), 0x1p1000);
+}
+
 RayAnswer trace(const Ray& ray, const mesh::MeshTree& mesh, bool any) {
-    RayQuery query{};
-    const double length = glm::length(ray.direction);
+    RayQuery query;
+    const glm::dvec3 size = glm::abs(ray.direction);
+    query.scale = power_of_two(std::max({size.x, size.y, size.z}));
+    const double per_scale = 1.0 / query.scale;
     double far = 0.0;
     for (int i = 0; i < 3; ++i) {
         query.origin[i] = ray.origin[i];
         query.direction[i] = ray.direction[i];
         query.start[i] = static_cast<float>(ray.origin[i]);
-        query.unit[i] = static_cast<float>(ray.direction[i] / length);
+        const auto along = static_cast<float>(ray.direction[i] * per_scale);
+        // A component of 0 would make 0 · infinity; this one bends the ray by less than its rounding.
+        query.direction_f[i] = std::abs(along) < 1e-18f ? std::copysign(1e-18f, along) : along;
+        query.inverse[i] = 1.0f / query.direction_f[i];
         far = std::max(far, std::abs(ray.origin[i]));
     }
+    query.axis[2] = 0;
+    for (std::uint32_t i = 1; i < 3; ++i)
+        if (std::abs(query.direction_f[i]) > std::abs(query.direction_f[query.axis[2]])) query.axis[2] = i;
+    for (std::uint32_t k = 0; k < 2; ++k) {
+        query.axis[k] = (query.axis[2] + 1 + k) % 3;
+        query.shear[k] = query.direction_f[query.axis[k]] * query.inverse[query.axis[2]];
+    }
     query.max_t = ray.max_t;
-    query.length = static_cast<float>(length);
     // Rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any point the mesh can
     // reach.
     query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
-    query.nodes = mesh.nodes().data();
+    query.nodes = mesh.ray_nodes().data();
     query.leaves = mesh.leaves().data();
     query.any = any;
     return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) {

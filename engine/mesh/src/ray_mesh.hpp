@@ -8,10 +8,16 @@ namespace crofton::mesh {
 
 struct RayQuery {
     double origin[3], direction[3], max_t;  // as the caller gave them
-    float start[3], unit[3];                // rounded, direction of unit length
-    float length;                           // of direction: parameters of boxes are distances
-    float slop;                             // bound of the rounding at any point of the mesh
-    const mesh::MeshNode* nodes;
+    // In float, scaled by 1/scale, a power of two: no component is above 2 in size, or below 1e-18. Parameters along it
+    // are `scale` times the caller's.
+    float start[3], direction_f[3], inverse[3];
+    double scale;
+    // The triangles' plane coordinates: axis[2] is that of the largest component, and shear[k] is
+    // direction_f[axis[k]] / direction_f[axis[2]].
+    std::uint32_t axis[3];
+    float shear[2];
+    float slop;  // bound of the rounding at any point of the mesh
+    const mesh::RayNode* nodes;
     const mesh::MeshLeaf* leaves;
     bool any;
 };

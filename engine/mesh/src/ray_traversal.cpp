@@ -13,41 +13,95 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, mesh::kMeshNodeWidth>;
+using D = hn::CappedTag<float, mesh::kRayNodeWidth>;
 using V = hn::Vec<D>;
 
-// Slabs of sixteen boxes, grown by the slop: entry distance of each lane that is met before `limit`.
-HWY_INLINE std::uint32_t box_entries(const mesh::MeshNode& node, const RayQuery& q, float limit, float* entry) {
+template <class Tag>
+HWY_INLINE std::uint32_t bits_of(Tag d, hn::Mask<Tag> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return static_cast<std::uint32_t>(bytes[0]);
+}
+
+// The ray against aligned boxes grown by the slop: for each axis the coordinates where it meets the nearer face and the
+// farther one, seen from its start.
+struct Slabs {
+    V near_start[3], far_start[3], inverse[3];
+    std::size_t near[3], far[3];  // rows of RayNode::bounds
+
+    HWY_INLINE explicit Slabs(const RayQuery& q) {
+        const D d;
+        for (int i = 0; i < 3; ++i) {
+            const bool backward = q.direction_f[i] < 0.0f;
+            const float slop = backward ? -q.slop : q.slop;
+            near_start[i] = hn::Set(d, q.start[i] + slop);
+            far_start[i] = hn::Set(d, q.start[i] - slop);
+            inverse[i] = hn::Set(d, q.inverse[i]);
+            near[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
+            far[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);
+        }
+    }
+};
+
+// The lanes that are met before `limit`, and where.
+HWY_INLINE std::uint32_t box_entries(const mesh::RayNode& node, const Slabs& slabs, float limit, float* entry) {
     const D d;
     std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < mesh::kMeshNodeWidth; l += hn::Lanes(d)) {
-        V offset[3], first = hn::Zero(d), last = hn::Set(d, limit);
-        for (int i = 0; i < 3; ++i) offset[i] = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, q.start[i]));
-        for (int k = 0; k < 3; ++k) {
-            V along = hn::Zero(d), speed = hn::Zero(d);
-            for (int i = 0; i < 3; ++i) {
-                const V axis = hn::Load(d, node.axes[k][i] + l);
-                along = hn::MulAdd(axis, offset[i], along);
-                speed = hn::MulAdd(axis, hn::Set(d, q.unit[i]), speed);
-            }
-            const V half = hn::Add(hn::Load(d, node.half[k] + l), hn::Set(d, q.slop));
-            // Parallel to the slab: a tiny speed keeps the bounds finite and on the right sides.
-            const V least = hn::Set(d, 1e-18f);
-            speed = hn::IfThenElse(hn::Lt(hn::Abs(speed), least), least, speed);
-            const V inverse = hn::Div(hn::Set(d, 1.0f), speed);
-            const V t0 = hn::Mul(hn::Sub(along, half), inverse), t1 = hn::Mul(hn::Add(along, half), inverse);
-            first = hn::Max(first, hn::Min(t0, t1));
-            last = hn::Min(last, hn::Max(t0, t1));
+    for (std::size_t l = 0; l < mesh::kRayNodeWidth; l += hn::Lanes(d)) {
+        V first = hn::Zero(d), last = hn::Set(d, limit);
+        for (int i = 0; i < 3; ++i) {
+            const V near = hn::Load(d, node.bounds[slabs.near[i]] + l),
+                    far = hn::Load(d, node.bounds[slabs.far[i]] + l);
+            first = hn::Max(first, hn::Mul(hn::Sub(near, slabs.near_start[i]), slabs.inverse[i]));
+            last = hn::Min(last, hn::Mul(hn::Sub(far, slabs.far_start[i]), slabs.inverse[i]));
         }
-        // 2^-20 covers the divisions.
-        first = hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f));
-        last = hn::Mul(last, hn::Set(d, 1.0f + 0x1p-20f));
+        // The differences, the reciprocals and the products are within 3 · 2^-24 each.
         hn::Store(first, d, entry + l);
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(d, hn::Le(first, last), bytes);
-        lanes |= (static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8) << l;
+        const auto met = hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last);
+        lanes |= bits_of(d, met) << l;
     }
-    return lanes & ((1u << node.count) - 1u);
+    return lanes;
+}
+
+// Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
+// passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
+// taken from a point of the ray beside the leaf; all roundings up to there, and of the shear, are within 2 slop. With m
+// the largest plane coordinate, an edge's value is off by at most 8 m slop + 8 slop² + 2^-21 m². No triangle is hit
+// before its nearest vertex along the ray, whose parameter is off by less than the slop: 1 / direction_f[z] is at
+// most 1.
+HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float limit) {
+    const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
+    using VF = hn::Vec<decltype(d)>;
+    const std::uint32_t x = q.axis[0], y = q.axis[1], z = q.axis[2];
+    const float along = (leaf.vertex[0][z][0] - q.start[z]) * q.inverse[z];
+    float beside[3];
+    for (int i = 0; i < 3; ++i) beside[i] = q.start[i] + along * q.direction_f[i];
+    std::uint32_t lanes = 0;
+    for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
+        VF px[3], py[3], nearest = hn::Set(d, 3e38f), m = hn::Zero(d);
+        for (int v = 0; v < 3; ++v) {
+            const VF pz = hn::Sub(hn::Load(d, leaf.vertex[v][z] + l), hn::Set(d, beside[z]));
+            px[v] = hn::NegMulAdd(hn::Set(d, q.shear[0]), pz,
+                                  hn::Sub(hn::Load(d, leaf.vertex[v][x] + l), hn::Set(d, beside[x])));
+            py[v] = hn::NegMulAdd(hn::Set(d, q.shear[1]), pz,
+                                  hn::Sub(hn::Load(d, leaf.vertex[v][y] + l), hn::Set(d, beside[y])));
+            nearest = hn::Min(nearest, hn::Mul(pz, hn::Set(d, q.inverse[z])));
+            m = hn::Max(m, hn::Max(hn::Abs(px[v]), hn::Abs(py[v])));
+        }
+        const VF slop = hn::Set(d, 8.0f * q.slop);
+        const VF error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), slop), m, hn::Mul(slop, hn::Set(d, q.slop)));
+        VF low = hn::Set(d, 3e38f), high = hn::Set(d, -3e38f);
+        for (int v = 0; v < 3; ++v) {
+            const int w = (v + 1) % 3;
+            const VF side = hn::NegMulAdd(py[v], px[w], hn::Mul(px[v], py[w]));
+            low = hn::Min(low, side);
+            high = hn::Max(high, side);
+        }
+        const auto apart = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
+        const auto beyond = hn::Gt(nearest, hn::Set(d, limit - along + q.slop));
+        lanes |= bits_of(d, hn::Or(apart, beyond)) << l;
+    }
+    return ~lanes & ((1u << leaf.count) - 1u);
 }
 
 // Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a
@@ -72,12 +126,14 @@ HWY_INLINE VD parameters(DD d, const VD (&p)[3][3], const VD* direction) {
 }
 
 // The line passes through a triangle iff its three determinants with the edges do not differ in sign. `open`: lanes
-// where a sign is uncertain.
-HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuery& q, double* t, std::uint32_t& open) {
+// where a sign is uncertain. Of the lanes, only those that are wanted, and their neighbours in a vector, are looked at.
+HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuery& q, std::uint32_t wanted, double* t,
+                                       std::uint32_t& open) {
     const DD d;
     const hn::Rebind<float, DD> df;
     std::uint32_t hits = 0;
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
+        if ((wanted >> l & ((1u << hn::Lanes(d)) - 1u)) == 0) continue;
         VD p[3][3], direction[3];
         for (int i = 0; i < 3; ++i) {
             direction[i] = hn::Set(d, q.direction[i]);
@@ -106,53 +162,92 @@ HWY_INLINE std::uint32_t triangle_hits(const mesh::MeshLeaf& leaf, const RayQuer
     return hits;
 }
 
-HWY_INLINE void trace_leaf(const RayQuery& q, std::uint32_t index, LineTest line_meets, RayAnswer& answer) {
+// True if it has changed the answer.
+HWY_INLINE bool trace_leaf(const RayQuery& q, std::uint32_t index, float limit, LineTest line_meets,
+                           RayAnswer& answer) {
     const mesh::MeshLeaf& leaf = q.leaves[index];
+    const std::uint32_t wanted = candidates(leaf, q, limit);
+    if (wanted == 0) return false;
     HWY_ALIGN double t[mesh::kMeshLeafWidth];
     std::uint32_t open = 0;
-    std::uint32_t lanes = triangle_hits(leaf, q, t, open);
-    lanes = (lanes | open) & ((1u << leaf.count) - 1u);
+    bool found = false;
+    std::uint32_t lanes = triangle_hits(leaf, q, wanted, t, open);
+    lanes = (lanes | open) & wanted;
     for (; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
         if (!(t[lane] >= 0.0 && t[lane] <= answer.t)) continue;
         if (answer.hit && t[lane] == answer.t && leaf.triangle[lane] > answer.triangle) continue;
         if ((open >> lane & 1u) && !line_meets(index, lane)) continue;
         answer = {t[lane], leaf.triangle[lane], true};
-        if (q.any) return;
+        found = true;
+        if (q.any) return true;
     }
+    return found;
+}
+
+// A child, and where the ray comes to it.
+struct Step {
+    std::uint32_t child;
+    float entry;
+};
+
+// Not below t, in the kernel's parameters.
+HWY_INLINE float limit_of(const RayQuery& q, double t) {
+    const double reached = t * q.scale;
+    return reached < 1e37 ? static_cast<float>(reached) * (1.0f + 0x1p-20f) : 1e37f;
+}
+
+// The nearest of the children that are met; the others go to the stack, the nearest of them on top. Most nodes have one
+// or two: these take no loop, whose number of rounds could not be predicted.
+HWY_INLINE std::uint32_t descend(const mesh::RayNode& node, std::uint32_t lanes, const float* entry, Step*& top) {
+    const auto next = [&]() HWY_ATTR {
+        const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+        lanes &= lanes - 1;
+        return Step{node.child[lane], entry[lane]};
+    };
+    const Step one = next();
+    if (lanes == 0) return one.child;
+    const Step two = next();
+    const bool ordered = one.entry <= two.entry;
+    Step nearest = ordered ? one : two;
+    Step* const base = top;
+    *top++ = ordered ? two : one;
+    while (lanes != 0) {
+        Step step = next();
+        if (step.entry < nearest.entry) std::swap(step, nearest);
+        Step* place = top++;
+        for (; place > base && place[-1].entry < step.entry; --place) *place = place[-1];
+        *place = step;
+    }
+    return nearest.child;
 }
 
 RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
-    struct Step {
-        std::uint32_t child;
-        float entry;
-    };
-    Step stack[256];
-    std::uint32_t height = 0;
+    Step stack[8 * 64];  // BoxHierarchy::kWidth · kMaxDepth
+    Step* top = stack;
     RayAnswer answer{q.max_t, 0, false};
-    stack[height++] = {0, 0.0f};
-    while (height > 0) {
-        const Step step = stack[--height];
-        const double reached = answer.t * static_cast<double>(q.length) * (1.0 + 1e-6);
-        if (static_cast<double>(step.entry) > reached) continue;
-        if (step.child & mesh::kMeshLeaf) {
-            trace_leaf(q, step.child & ~mesh::kMeshLeaf, line_meets, answer);
-            if (q.any && answer.hit) break;
-            continue;
+    const Slabs slabs(q);
+    float limit = limit_of(q, answer.t);
+    std::uint32_t child = 0;
+    for (;;) {
+        if (!(child & mesh::kMeshLeaf)) {
+            HWY_ALIGN float entry[mesh::kRayNodeWidth];
+            const mesh::RayNode& node = q.nodes[child];
+            const std::uint32_t lanes = box_entries(node, slabs, limit, entry);
+            if (lanes != 0) {
+                child = descend(node, lanes, entry, top);
+                continue;
+            }
+        } else if (trace_leaf(q, child & ~mesh::kMeshLeaf, limit, line_meets, answer)) {
+            if (q.any) return answer;
+            limit = limit_of(q, answer.t);
         }
-        const mesh::MeshNode& node = q.nodes[step.child];
-        HWY_ALIGN float entry[mesh::kMeshNodeWidth];
-        const float limit = reached < 1e37 ? static_cast<float>(reached) * 1.000001f + q.slop : 1e37f;
-        // The nearest child goes on top.
-        const std::uint32_t base = height;
-        for (std::uint32_t lanes = box_entries(node, q, limit, entry); lanes != 0; lanes &= lanes - 1) {
-            const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
-            std::uint32_t place = height++;
-            for (; place > base && stack[place - 1].entry < entry[lane]; --place) stack[place] = stack[place - 1];
-            stack[place] = {node.child[lane], entry[lane]};
-        }
+        do {
+            if (top == stack) return answer;
+            --top;
+        } while (top->entry > limit);
+        child = top->child;
     }
-    return answer;
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE

@@ -8,7 +8,7 @@
 
 namespace crofton::radiosity::detail {
 
-// Eight-way tree over the mesh's triangles, positions relative to `origin`; nodes[0] is the root. The mesh is valid and
+// Eight-way tree over the mesh's triangles, positions relative to `origin`. nodes[0] is the root. The mesh is valid and
 // not empty.
 void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<TracerNode>& nodes,
                   Vector<TracerLeaf>& leaves);

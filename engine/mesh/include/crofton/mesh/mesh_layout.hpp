@@ -28,6 +28,15 @@ struct alignas(64) MeshLeaf {
     std::uint32_t count;
 };
 
+// Aligned boxes side by side, for rays: a slab test of them has a third of the latency of an oriented box's. Unused
+// lanes are empty.
+inline constexpr std::uint32_t kRayNodeWidth = 8;
+struct alignas(64) RayNode {
+    float bounds[6][kRayNodeWidth];  // low x, y, z; high x, y, z
+    static constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+    std::uint32_t child[kRayNodeWidth];  // as MeshNode::child, or kUnused
+};
+
 struct MeshBox {
     float center[3], axes[3][3], half[3];
 };

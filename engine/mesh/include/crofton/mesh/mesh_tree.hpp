@@ -52,6 +52,7 @@ class MeshTree {
 
     [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }  // the root is the first
     [[nodiscard]] std::span<const MeshLeaf> leaves() const { return leaves_; }
+    [[nodiscard]] std::span<const RayNode> ray_nodes() const { return ray_nodes_; }  // likewise
     [[nodiscard]] const MeshBox& root_box() const { return root_box_; }
     [[nodiscard]] std::span<const std::uint32_t> rejected() const { return rejected_; }  // triangles, ascending
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }         // rejected ones not counted
@@ -76,9 +77,12 @@ class MeshTree {
         std::size_t vertex_count = 0;
     };
     [[nodiscard]] Result<void> check_positions(std::span<const glm::vec3> positions) const;
+    void build_ray_nodes();
+    void refit_ray_nodes();
 
     Vector<MeshNode> nodes_;
     Vector<MeshLeaf> leaves_;
+    Vector<RayNode> ray_nodes_;
     Vector<std::uint32_t> rejected_;
     Vector<MeshPiece> pieces_;
     RefitData refit_;

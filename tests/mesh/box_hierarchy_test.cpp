@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/mesh/box_hierarchy.hpp>
+#include <random>
+#include <vector>
+
+using namespace crofton;
+using namespace crofton::mesh;
+
+namespace {
+
+bool holds(const FloatBox& outer, const FloatBox& inner) {
+    for (int i = 0; i < 3; ++i)
+        if (outer.low[i] > inner.low[i] || outer.high[i] < inner.high[i]) return false;
+    return true;
+}
+
+// Nodes on the longest path; checks that every box holds what lies below it, and that each item is in one leaf.
+int check(const BoxHierarchy& tree, std::span<const FloatBox> boxes, std::uint32_t leaf_size) {
+    std::vector<int> depth(tree.nodes.size(), 0), seen(boxes.size(), 0);
+    depth[0] = 1;
+    for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+        const BoxHierarchy::Node& node = tree.nodes[n];
+        REQUIRE(node.count >= 1);
+        REQUIRE(node.count <= BoxHierarchy::kWidth);
+        for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+            const std::uint32_t child = node.child[lane];
+            if (child & BoxHierarchy::kLeaf) {
+                const BoxHierarchy::Leaf& leaf = tree.leaves.at(child & ~BoxHierarchy::kLeaf);
+                CHECK(leaf.end - leaf.begin <= leaf_size);
+                for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+                    CHECK(holds(node.box[lane], boxes[tree.order.at(i)]));
+                    ++seen[tree.order[i]];
+                }
+                continue;
+            }
+            REQUIRE(child > n);
+            REQUIRE(depth.at(child) == 0);
+            depth[child] = depth[n] + 1;
+            const BoxHierarchy::Node& below = tree.nodes[child];
+            for (std::uint32_t l = 0; l < below.count; ++l) CHECK(holds(node.box[lane], below.box[l]));
+        }
+    }
+    CHECK(std::count(seen.begin(), seen.end(), 1) == static_cast<std::ptrdiff_t>(boxes.size()));
+    return *std::max_element(depth.begin(), depth.end());
+}
+
+FloatBox around(const glm::vec3& p) {
+    FloatBox box;
+    box.include(p);
+    return box;
+}
+
+}  // namespace
+
+TEST_SUITE("mesh/box_hierarchy") {
+    TEST_CASE("every item is in one leaf, and every box holds what lies below it") {
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+        for (const std::size_t count : {1u, 2u, 8u, 9u, 100u, 5000u})
+            for (const std::uint32_t leaf_size : {1u, 8u}) {
+                std::vector<FloatBox> boxes;
+                for (std::size_t i = 0; i < count; ++i) {
+                    boxes.push_back(around({unit(random), unit(random), unit(random)}));
+                    boxes.back().include({unit(random), unit(random), unit(random)});
+                }
+                CHECK(check(build_box_hierarchy(boxes, leaf_size), boxes, leaf_size) <= 8);
+            }
+    }
+
+    TEST_CASE("boxes in one place, and a geometric series of places, make no deep tree") {
+        const std::vector<FloatBox> same(100000, around(glm::vec3(1.0f)));
+        CHECK(check(build_box_hierarchy(same, 1), same, 1) <= 20);
+        std::vector<FloatBox> series;
+        for (float x = 1e-37f; x < 1e37f; x *= 1.001f) series.push_back(around(glm::vec3(x, 0.0f, -x)));
+        CHECK(series.size() > 100000);
+        CHECK(check(build_box_hierarchy(series, 1), series, 1) <= BoxHierarchy::kMaxDepth);
+    }
+}
