@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/valid_boxes.hpp>
 
 #include <hwy/cache_control.h>
 #include <algorithm>

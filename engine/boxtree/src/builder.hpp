@@ -41,6 +41,9 @@ class Builder {
     [[nodiscard]] std::span<const Subtree> subtrees() const { return subtrees_; }
     void build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes);
 
+    // Once the result is ready: gives back all memory but the result's.
+    void release_scratch() { subtree_builder_ = {}; }
+
     // The nodes before the subtrees' first have no subtree.
     [[nodiscard]] const Topology& result() const { return result_; }
 

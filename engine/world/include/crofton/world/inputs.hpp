@@ -28,6 +28,7 @@ class Strided {
         : Strided(std::span<const T>(range).data(), std::span<const T>(range).size()) {}
 
     [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t stride() const { return stride_; }
     [[nodiscard]] const T& operator[](std::size_t i) const { return *reinterpret_cast<const T*>(first_ + i * stride_); }
 
   private:
