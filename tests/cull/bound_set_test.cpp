@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/core/thread_pool.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/list_layout.hpp>
 #include <limits>
 #include <oracle/exact_bounds.hpp>
 #include <oracle/random_boxes.hpp>

@@ -84,6 +84,15 @@ BatchStatistics& BatchStatistics::operator+=(const BatchStatistics& other) {
     return *this;
 }
 
+PackedBoxes::PackedBoxes() = default;
+PackedBoxes::~PackedBoxes() = default;
+PackedBoxes::PackedBoxes(PackedBoxes&&) noexcept = default;
+PackedBoxes& PackedBoxes::operator=(PackedBoxes&&) noexcept = default;
+
+std::span<const BoxBlock> PackedBoxes::blocks() const {
+    return blocks_;
+}
+
 void PackedBoxes::pack(std::span<const Obb> boxes, const glm::dvec3& origin) {
     boxes_ = boxes;
     origin_ = origin;

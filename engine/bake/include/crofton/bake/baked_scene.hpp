@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
 #pragma once
-#include <crofton/bake/container.hpp>
 #include <crofton/bake/mapped_file.hpp>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Many pairs of boxes at once: the exact answers of intersects(Obb, Obb), sixteen pairs to a step.
 #pragma once
-#include <crofton/collide/box_block.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/id_pair.hpp>
 #include <crofton/geometry/obb.hpp>
@@ -9,6 +8,8 @@
 #include <span>
 
 namespace crofton::collide {
+
+struct BoxBlock;
 
 // How the pairs of a batch were decided; the first four sum to the number of pairs.
 struct BatchStatistics {
@@ -25,11 +26,16 @@ struct BatchStatistics {
 // from them, so they are to live, unchanged, as long as queries are made.
 class PackedBoxes {
   public:
+    PackedBoxes();
+    ~PackedBoxes();
+    PackedBoxes(PackedBoxes&&) noexcept;
+    PackedBoxes& operator=(PackedBoxes&&) noexcept;
+
     // Any finite origin near the boxes; the nearer, the fewer pairs are left to the slow path. Answers do not depend on
     // it.
     void pack(std::span<const Obb> boxes, const glm::dvec3& origin);
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
-    [[nodiscard]] std::span<const BoxBlock> blocks() const { return blocks_; }
+    [[nodiscard]] std::span<const BoxBlock> blocks() const;  // for the queries
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
 
   private:

@@ -6,7 +6,6 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/list_layout.hpp>
 #include <crofton/cull/verdict_bits.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +14,12 @@
 
 namespace crofton::cull {
 
+// Laid out for vector kernels (internal).
+struct RowBlock;
+struct ListChunk;
+struct BoxRecord;
+struct AabbRecord;
+struct SphereRecord;
 template <class Bound>
 struct RecordOf;
 template <>
@@ -36,6 +41,13 @@ template <class Bound>
 class BoundSet {
   public:
     using Record = typename RecordOf<Bound>::Type;
+
+    BoundSet();
+    ~BoundSet();
+    BoundSet(const BoundSet&);
+    BoundSet& operator=(const BoundSet&);
+    BoundSet(BoundSet&&) noexcept;
+    BoundSet& operator=(BoundSet&&) noexcept;
 
     // Bounds that are not valid (not finite, beyond 1e30, an empty Aabb, a negative radius) may be among them: they are
     // straddling.
