@@ -2,7 +2,7 @@
 // Boxes into the lanes of leaves, in vectors of sixteen.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <span>
 

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/list_layout.hpp>
 
@@ -62,6 +62,19 @@ template <class Bound>
 BoundSet<Bound>::BoundSet(BoundSet&&) noexcept = default;
 template <class Bound>
 BoundSet<Bound>& BoundSet<Bound>::operator=(BoundSet&&) noexcept = default;
+
+template <class Bound>
+std::span<const RowBlock> BoundSet<Bound>::rows() const {
+    return rows_;
+}
+template <class Bound>
+std::span<const typename BoundSet<Bound>::Record> BoundSet<Bound>::records() const {
+    return records_;
+}
+template <class Bound>
+std::span<const ListChunk> BoundSet<Bound>::chunks() const {
+    return chunks_;
+}
 
 template <class Bound>
 void BoundSet<Bound>::resize(std::size_t size) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The check of many boxes, in vectors of sixteen.
 #pragma once
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 
 namespace crofton::boxtree {

@@ -6,7 +6,6 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/verdict_bits.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,9 +59,9 @@ class BoundSet {
     std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] std::span<const RowBlock> rows() const { return rows_; }
-    [[nodiscard]] std::span<const Record> records() const { return records_; }
-    [[nodiscard]] std::span<const ListChunk> chunks() const { return chunks_; }
+    [[nodiscard]] std::span<const RowBlock> rows() const;
+    [[nodiscard]] std::span<const Record> records() const;
+    [[nodiscard]] std::span<const ListChunk> chunks() const;
 
   private:
     void assign_chunk(std::size_t c, std::span<const Bound> bounds);
