@@ -7,14 +7,18 @@ get_property(include_dirs GLOBAL PROPERTY CROFTON_INCLUDE_DIRS)
 foreach(dir IN LISTS include_dirs)
     install(DIRECTORY ${dir}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/study/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS crofton crofton_study EXPORT crofton-targets)
+install(TARGETS crofton EXPORT crofton-targets)
 install(EXPORT crofton-targets NAMESPACE crofton:: DESTINATION ${package_dir})
-if(TARGET crofton_render)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/render/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-    install(TARGETS crofton_render EXPORT crofton-render-targets)
-    install(EXPORT crofton-render-targets NAMESPACE crofton:: DESTINATION ${package_dir})
-endif()
+# Each with headers of its own: `cmake --install` takes all, with `--component Unspecified` the library alone.
+foreach(component study render)
+    if(TARGET crofton_${component})
+        install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${component}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+                COMPONENT ${component})
+        install(TARGETS crofton_${component} EXPORT crofton-${component}-targets
+                ARCHIVE COMPONENT ${component} LIBRARY COMPONENT ${component} RUNTIME COMPONENT ${component})
+        install(EXPORT crofton-${component}-targets NAMESPACE crofton:: DESTINATION ${package_dir} COMPONENT ${component})
+    endif()
+endforeach()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in ${PROJECT_BINARY_DIR}/crofton-config.cmake
     INSTALL_DESTINATION ${package_dir})

@@ -1,63 +1,11 @@
 // SPDX-License-Identifier: MIT
-// World in C: what is refused, and structs of older headers. world_agreement_test.cpp compares answers.
+// World in C: what is refused. world_agreement_test.cpp compares answers.
 #include <cstddef>
 #include <cstring>
-#include <limits>
 
-#include "handles.hpp"
+#include "world_fixture.hpp"
 
 using namespace crofton::capi_test;
-
-namespace {
-
-const double kNotANumber = std::numeric_limits<double>::quiet_NaN(), kNoLimit = std::numeric_limits<double>::infinity();
-
-crofton_status try_add(const WorldHandle& world, const crofton_bound& bound, crofton_object& object,
-                       std::uint64_t user = 0) {
-    auto description = sized<crofton_object_description>();
-    description.bound = &bound;
-    description.user = user;
-    return crofton_world_add(world.get(), &description, &object);
-}
-
-crofton_object add_bound(const WorldHandle& world, const crofton_bound& bound, std::uint64_t user = 0) {
-    crofton_object object{};
-    REQUIRE(try_add(world, bound, object, user) == CROFTON_OK);
-    return object;
-}
-
-void update(const WorldHandle& world) {
-    REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
-}
-
-crofton_mesh_data data_of(const Tetrahedron& tetrahedron) {
-    auto data = sized<crofton_mesh_data>();
-    data.positions = tetrahedron.positions.data();
-    data.position_count = tetrahedron.positions.size() / 3;
-    data.indices = tetrahedron.indices.data();
-    data.index_count = tetrahedron.indices.size();
-    return data;
-}
-
-crofton_world_mesh add_tetrahedron(const WorldHandle& world) {
-    const Tetrahedron tetrahedron;
-    const crofton_mesh_data data = data_of(tetrahedron);
-    crofton_world_mesh mesh{};
-    REQUIRE(crofton_world_add_mesh(world.get(), &data, &mesh) == CROFTON_OK);
-    return mesh;
-}
-
-// One object, and results to ask it with.
-struct SmallWorld {
-    WorldHandle world = make_world();
-    VisibleObjectsHandle visible = make_visible_objects();
-    VisibleInViewsHandle in_views = make_visible_in_views();
-    Found found = make_found();
-    crofton_object box = add_bound(world, box_bound(box_at(0, 0, -5)), 7);
-    SmallWorld() { update(world); }
-};
-
-}  // namespace
 
 TEST_SUITE("capi/world") {
     TEST_CASE("NULL is refused wherever it is not documented") {
@@ -120,51 +68,6 @@ TEST_SUITE("capi/world") {
         CHECK(crofton_world_views(world, nullptr, 0, nullptr, s.in_views.get()) == CROFTON_OK);
     }
 
-    TEST_CASE("a struct whose size is larger, none, or within the alignment is refused") {
-        const SmallWorld s;
-        const Tetrahedron tetrahedron;
-        for (const std::size_t size : {std::size_t{0}, std::size_t{4}, std::size_t{9}, std::size_t{4096}, SIZE_MAX}) {
-            CAPTURE(size);
-            auto options = sized<crofton_world_options>();
-            auto statistics = sized<crofton_world_statistics>();
-            auto description = sized<crofton_object_description>();
-            auto closest = sized<crofton_closest_object>();
-            auto contact = sized<crofton_object_contact>();
-            crofton_mesh_data data = data_of(tetrahedron);
-            options.size = statistics.size = description.size = closest.size = contact.size = data.size = size;
-            crofton_world* none = nullptr;
-            crofton_object object{};
-            crofton_world_mesh mesh{};
-            const double center[3] = {};
-            CHECK(crofton_world_create(&options, &none) == CROFTON_WRONG_SIZE);
-            CHECK(none == nullptr);
-            CHECK(crofton_world_get_statistics(s.world.get(), &statistics) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_add(s.world.get(), &description, &object) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_add_mesh(s.world.get(), &data, &mesh) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_closest_to_ball(s.world.get(), center, 1, 1, ~0u, &closest) == CROFTON_WRONG_SIZE);
-            CHECK(crofton_world_contact(s.world.get(), 0, &contact) == CROFTON_WRONG_SIZE);
-        }
-    }
-
-    TEST_CASE("a struct with one member more than this library knows is refused") {
-        const SmallWorld s;
-        struct NewerOptions {
-            crofton_world_options options{};
-            std::uint64_t unknown = 0;
-        } options;
-        struct NewerStatistics {
-            crofton_world_statistics statistics{};
-            std::uint64_t unknown = 5;
-        } statistics;
-        options.options.size = sizeof options;
-        statistics.statistics.size = sizeof statistics;
-        crofton_world* none = nullptr;
-        CHECK(crofton_world_create(&options.options, &none) == CROFTON_WRONG_SIZE);
-        CHECK(crofton_world_get_statistics(s.world.get(), &statistics.statistics) == CROFTON_WRONG_SIZE);
-        CHECK(statistics.statistics.objects == 0);
-        CHECK(statistics.unknown == 5);
-    }
-
     TEST_CASE("each option does what it says, and 0 is its default") {
         const crofton_bound bound = box_bound(box_at(0, 0, 0));
         const auto count_in = [&](const crofton_world_options& options, crofton_status expected, std::size_t& pairs,
@@ -213,49 +116,6 @@ TEST_SUITE("capi/world") {
         };
         CHECK(updates_to_rest(0) == updates_to_rest(16));
         CHECK(updates_to_rest(16) - updates_to_rest(4) == 12);
-    }
-
-    TEST_CASE("an older, smaller struct is read and written as far as it goes") {
-        // Options that ended before `max_pairs`: the byte pattern behind them is not theirs.
-        crofton_world_options options;
-        std::memset(static_cast<void*>(&options), 0x01, sizeof options);
-        options.size = offsetof(crofton_world_options, max_pairs);
-        options.without_pairs = options.without_contacts = options.without_containment = options.with_mesh_depth = 0;
-        const WorldHandle world = make_world(&options);
-        // A description that ended before `hidden_layers`.
-        const crofton_bound bound = box_bound(box_at(0, 0, -5));
-        crofton_object_description description;
-        std::memset(static_cast<void*>(&description), 0xff, sizeof description);
-        description.size = offsetof(crofton_object_description, hidden_layers);
-        description.user = 3;
-        description.bound = &bound;
-        description.transform = nullptr;
-        description.has_mesh = description.has_node = 0;
-        crofton_object objects[2] = {};
-        for (crofton_object& object : objects)
-            REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
-        update(world);
-        const crofton_object_pair* pairs = nullptr;
-        std::size_t count = 0;
-        REQUIRE(crofton_world_pairs(world.get(), &pairs, &count) == CROFTON_OK);
-        CHECK(count == 1);  // in all layers, and 2^24 pairs may be found
-        // Results that ended before `resting` and before `point_count`.
-        crofton_world_statistics statistics;
-        std::memset(static_cast<void*>(&statistics), 0x5a, sizeof statistics);
-        const crofton_world_statistics before = statistics;
-        statistics.size = offsetof(crofton_world_statistics, resting);
-        REQUIRE(crofton_world_get_statistics(world.get(), &statistics) == CROFTON_OK);
-        CHECK(statistics.size == offsetof(crofton_world_statistics, resting));
-        CHECK(statistics.objects == 2);
-        CHECK(std::memcmp(&statistics.resting, &before.resting,
-                          sizeof statistics - offsetof(crofton_world_statistics, resting)) == 0);
-        crofton_object_contact contact;
-        std::memset(static_cast<void*>(&contact), 0x5a, sizeof contact);
-        const std::size_t untouched = contact.point_count;
-        contact.size = offsetof(crofton_object_contact, point_count);
-        REQUIRE(crofton_world_contact(world.get(), 0, &contact) == CROFTON_OK);
-        CHECK(contact.first.user == 3);
-        CHECK(contact.point_count == untouched);
     }
 
     TEST_CASE("every call refuses a stale handle") {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/valid_boxes.hpp>
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 
 #include "bounds.hpp"
 #include "leaf_writer.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <span>
 
@@ -40,6 +40,9 @@ class Builder {
     bool prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     [[nodiscard]] std::span<const Subtree> subtrees() const { return subtrees_; }
     void build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes);
+
+    // Once the result is ready: gives back all memory but the result's.
+    void release_scratch() { subtree_builder_ = {}; }
 
     // The nodes before the subtrees' first have no subtree.
     [[nodiscard]] const Topology& result() const { return result_; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/valid_boxes.hpp>
 
 #include "bounds.hpp"
 #include "leaf_writer.hpp"
@@ -166,7 +167,7 @@ Result<ItemId> BoxTree::insert(const Obb& box, std::uint32_t layer_mask) {
         return tl::unexpected(valid.error());
     auto item = new_item(box, layer_mask);
     if (!item) return item;
-    mark_changed(*item);
+    mark_changed(*item, true);
     place(*item);
     return item;
 }

@@ -24,7 +24,7 @@ Result<void> BoxTree::attach(ItemId item, const Obb& box) {
     if (auto valid = crofton::validate(box, item); !valid) return valid;
     set_detached(item, false);
     boxes_[item] = box;
-    mark_changed(item);
+    mark_changed(item, true);
     place(item);
     return {};
 }

@@ -3,6 +3,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <crofton/boxtree/valid_boxes.hpp>
 #include <cstddef>
 #include <cstring>
 

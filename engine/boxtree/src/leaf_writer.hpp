@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Boxes into the lanes of leaves, and the check that they may go there: in vectors, sixteen at a time.
+// Boxes into the lanes of leaves, in vectors of sixteen.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <span>
 
@@ -14,9 +14,5 @@ namespace crofton::boxtree {
 // nothing.
 [[nodiscard]] std::size_t write_lanes(Leaf* leaves, std::span<const LeafId> ids, const ItemId* slot_items,
                                       const Obb* boxes);
-
-// How many boxes from the first on certainly pass validate(Obb). Where a box is within float rounding of what is
-// allowed, or a share of 15 others beside one, the answer may be too small.
-[[nodiscard]] std::size_t count_certainly_valid(const Obb* boxes, std::size_t count);
 
 }  // namespace crofton::boxtree

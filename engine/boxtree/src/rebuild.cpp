@@ -14,7 +14,7 @@ namespace {
 // What things cost, in items' worth: adding one to a builder is worth 1.
 constexpr std::size_t kSlotsPerItem = 16;  // cleared
 constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
-constexpr std::size_t kItemMoved = 2, kItemPlaced = 64, kWordsPerItem = 16;
+constexpr std::size_t kWordsPerItem = 16;
 
 std::size_t steps(std::size_t budget, std::size_t cost) {
     return std::max<std::size_t>(budget / cost, 1);
@@ -29,10 +29,11 @@ bool BoxTree::rebuild_step(std::size_t budget) {
         rebuild_ = std::make_unique<Rebuild>();
         rebuild_->builder.emplace(bounds_of(structure_.nodes[0]), item_count(), criterion_);
         rebuild_->changed.assign((boxes_.size() + 63) / 64, 0);
+        rebuild_->placed.assign(rebuild_->changed.size(), 0);
     }
     Rebuild& work = *rebuild_;
-    if (work.stage == Rebuild::Stage::apply_changes) budget += kItemMoved * work.new_changes;
-    work.new_changes = 0;
+    if (work.stage == Rebuild::Stage::apply_changes) budget += work.new_work;
+    work.new_work = 0;
     while (budget > 0 && work.stage != Rebuild::Stage::done) budget -= std::min(budget, run_stage(work, budget));
     if (work.stage != Rebuild::Stage::done) return false;
     structure_ = std::move(work.structure);
@@ -66,6 +67,7 @@ std::size_t BoxTree::run_stage(Rebuild& work, std::size_t budget) {
             };
             ++last_step_.divisions;
             if (!work.builder->step(budget, boxes_, {moves, this})) return budget;
+            work.builder->release_scratch();
             structure.height = topology.height;
             structure.item_slots.reserve(boxes_.size());
             enter_stage(Stage::clear_slots);
@@ -148,12 +150,13 @@ std::size_t BoxTree::apply_changes(Rebuild& work, std::size_t budget) {
     for (; work.changed_count > 0 && spent < budget; ++work.next) {
         if (work.next >= work.changed.size()) work.next = 0;
         std::uint64_t& word = work.changed[work.next];
+        const std::uint64_t placed_word = std::exchange(work.placed[work.next], 0);
         spent += work.next % kWordsPerItem == 0;
         for (std::uint64_t rest = std::exchange(word, 0); rest; rest &= rest - 1) {
             const auto item = static_cast<ItemId>(64 * work.next + static_cast<unsigned>(std::countr_zero(rest)));
-            const bool present = old.item_slots[item] != kNone;
-            spent += present && structure_.item_slots[item] == kNone ? kItemPlaced : kItemMoved;
-            sync_item(item, present);
+            const bool present = old.item_slots[item] != kNone, placed = (placed_word & rest & (~rest + 1)) != 0;
+            spent += present && (placed || structure_.item_slots[item] == kNone) ? kItemPlaced : kItemMoved;
+            sync_item(item, present, placed);
             ++last_step_.items_synced;
             --work.changed_count;
         }
@@ -166,13 +169,11 @@ std::size_t BoxTree::apply_changes(Rebuild& work, std::size_t budget) {
 }
 
 // The structure agrees with the item's box, layers and presence.
-void BoxTree::sync_item(ItemId item, bool present) {
+void BoxTree::sync_item(ItemId item, bool present, bool placed) {
     const std::uint32_t slot = structure_.item_slots[item];
-    if (!present) {
-        if (slot != kNone) vacate(item);
-        return;
-    }
-    if (slot == kNone) return place(item);
+    if (slot != kNone && (!present || placed)) vacate(item);
+    if (!present) return;
+    if (slot == kNone || placed) return place(item);
     if (structure_.leaves[slot / kWidth].layers[slot % kWidth] != layer_masks_[item]) {
         write_layers(structure_.leaves[slot / kWidth], slot % kWidth, layer_masks_[item]);
         layers_changed_ = true;

@@ -8,6 +8,9 @@
 
 namespace crofton::boxtree {
 
+// What bringing the new structure up to date costs, in items' worth.
+inline constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;
+
 struct BoxTree::Rebuild {
     // One after the other; in `apply_changes` what has changed meanwhile is brought into `structure`.
     enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, apply_changes, done };
@@ -16,10 +19,11 @@ struct BoxTree::Rebuild {
     Stage stage = Stage::add;
     std::size_t next = 0;  // item, slot, leaf, node or word of `changed`
     Structure structure;
-    Vector<std::uint64_t>
-        changed;  // one bit an item: moved, inserted, removed or with new layers since the rebuild began
+    // One bit an item. Since the rebuild began it was moved, inserted, removed or given other layers; it was inserted
+    // or attached, so that it may be far from where the new structure has it.
+    Vector<std::uint64_t> changed, placed;
     std::size_t changed_count = 0;  // of them
-    std::size_t new_changes = 0;    // since the last call
+    std::size_t new_work = 0;       // what the changes since the last call are worth
 };
 
 }  // namespace crofton::boxtree

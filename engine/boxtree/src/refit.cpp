@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 
 #include "bounds.hpp"
 #include "leaf_extents.hpp"
@@ -17,14 +17,18 @@ void BoxTree::mark(std::uint32_t slot) {
     lanes = static_cast<std::uint16_t>(lanes | 1u << slot % kWidth);
 }
 
-void BoxTree::mark_changed(ItemId item) {
+void BoxTree::mark_changed(ItemId item, bool placed) {
     if (!rebuild_) return;
-    if (rebuild_->changed.size() <= item / 64) rebuild_->changed.resize(item / 64 + 1, 0);
+    if (rebuild_->changed.size() <= item / 64) {
+        rebuild_->changed.resize(item / 64 + 1, 0);
+        rebuild_->placed.resize(item / 64 + 1, 0);
+    }
     std::uint64_t& word = rebuild_->changed[item / 64];
     const std::uint64_t bit = std::uint64_t{1} << (item % 64);
     rebuild_->changed_count += (word & bit) == 0;
-    ++rebuild_->new_changes;
+    rebuild_->new_work += placed ? kItemPlaced : kItemMoved;
     word |= bit;
+    if (placed) rebuild_->placed[item / 64] |= bit;
 }
 
 void BoxTree::refit() {

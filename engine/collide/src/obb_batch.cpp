@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 
 #include "block_filter.hpp"
 #include "box_lanes.hpp"
@@ -82,6 +81,15 @@ BatchStatistics& BatchStatistics::operator+=(const BatchStatistics& other) {
     hits += other.hits;
     refined += other.refined;
     return *this;
+}
+
+PackedBoxes::PackedBoxes() = default;
+PackedBoxes::~PackedBoxes() = default;
+PackedBoxes::PackedBoxes(PackedBoxes&&) noexcept = default;
+PackedBoxes& PackedBoxes::operator=(PackedBoxes&&) noexcept = default;
+
+std::span<const BoxBlock> PackedBoxes::blocks() const {
+    return blocks_;
 }
 
 void PackedBoxes::pack(std::span<const Obb> boxes, const glm::dvec3& origin) {

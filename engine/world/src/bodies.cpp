@@ -2,7 +2,7 @@
 #include "bodies.hpp"
 
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
@@ -34,6 +34,19 @@ TriangleMesh box_mesh(const glm::dmat3& linear, const glm::vec3& half) {
     return mesh;
 }
 
+// How large the nodes' boxes are beside the root: what queries cost grows with it.
+double spread_of(const mesh::MeshTree& tree) {
+    double sum = 0.0;
+    for (const mesh::MeshNode& node : tree.nodes())
+        for (std::uint32_t lane = 0; lane < node.count; ++lane)
+            sum += double{node.half[0][lane]} + double{node.half[1][lane]} + double{node.half[2][lane]};
+    const mesh::MeshBox& root = tree.root_box();
+    const double whole = double{root.half[0]} + double{root.half[1]} + double{root.half[2]};
+    return whole > 0.0 ? sum / whole : 0.0;
+}
+
+constexpr double kWornOut = 1.5;  // times the spread at the build: then a tree is built anew
+
 }  // namespace
 
 Bodies::Bodies() {
@@ -45,9 +58,20 @@ Bodies::Bodies() {
     if (built) point_ = std::move(*built);
 }
 
-void Bodies::set_wants_triangles(scene::MeshId mesh, bool wants) {
+void Bodies::set_mesh(scene::MeshId mesh, bool wants_triangles) {
     if (meshes_.size() <= mesh) meshes_.resize(mesh + std::size_t{1});
-    meshes_[mesh].wants_triangles = wants;
+    meshes_[mesh].wants_triangles = wants_triangles;
+    meshes_[mesh].deforms = meshes_[mesh].can_refit = false;
+}
+
+void Bodies::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
+    if (mesh.can_refit && mesh.tree.refit(triangles.positions) && spread_of(mesh.tree) <= kWornOut * mesh.spread)
+        return;
+    auto built = mesh::MeshTree::build(triangles, {.refittable = mesh.deforms});
+    mesh.is_usable = built.has_value();
+    mesh.tree = built ? std::move(*built) : mesh::MeshTree();
+    mesh.can_refit = mesh.is_usable && mesh.deforms;
+    if (mesh.can_refit) mesh.spread = spread_of(mesh.tree);
 }
 
 bool Bodies::update(const scene::Scene& scene, Executor& executor) {
@@ -61,15 +85,10 @@ bool Bodies::update(const scene::Scene& scene, Executor& executor) {
         if (revision != 0 && meshes_[mesh].wants_triangles)
             to_build_.push_back(mesh);
         else
-            meshes_[mesh].tree = {}, meshes_[mesh].is_usable = false;
+            meshes_[mesh].tree = {}, meshes_[mesh].is_usable = meshes_[mesh].can_refit = false;
     }
     executor.parallel_for(to_build_.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Mesh& mesh = meshes_[to_build_[i]];
-            auto built = mesh::MeshTree::build(scene.mesh(to_build_[i]));
-            mesh.is_usable = built.has_value();
-            mesh.tree = built ? std::move(*built) : mesh::MeshTree();
-        }
+        for (std::size_t i = begin; i < end; ++i) update_tree(scene.mesh(to_build_[i]), meshes_[to_build_[i]]);
     });
     return changed;
 }

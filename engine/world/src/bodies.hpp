@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Objects as meshes: the trees over triangles that rays and contacts ask.
 #pragma once
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
 
@@ -22,7 +22,10 @@ class Bodies {
   public:
     Bodies();
 
-    void set_wants_triangles(scene::MeshId mesh, bool wants);
+    // The mesh is new or another.
+    void set_mesh(scene::MeshId mesh, bool wants_triangles);
+    // Its vertices have moved: its tree is refitted from the second time on, and built anew where it has worn out.
+    void note_deformed(scene::MeshId mesh) { meshes_[mesh].deforms = true; }
     // Builds the trees of meshes that are new or changed; true if there were any.
     bool update(const scene::Scene& scene, Executor& executor);
 
@@ -46,7 +49,9 @@ class Bodies {
     struct Mesh {
         mesh::MeshTree tree;
         std::uint64_t revision = 0;
+        double spread = 0.0;  // of the tree's boxes when it was built
         bool wants_triangles = true, is_usable = false;
+        bool deforms = false, can_refit = false;  // the second: the tree is refittable and of this mesh's triangles
     };
     struct Own {
         mesh::MeshTree tree;
@@ -56,6 +61,7 @@ class Bodies {
         std::uint64_t revision = 0;
         bool is_usable = false;
     };
+    static void update_tree(const TriangleMesh& triangles, Mesh& mesh);
     void build_own(const scene::Scene& scene, Own& own) const;
 
     Vector<Mesh> meshes_;

@@ -44,14 +44,26 @@ void ContactFinder::list_colliders(const ObjectTable& table, const SpatialIndex&
     colliders_.clear();
     boxes_.clear();
     filters_.clear();
+    collider_of_.assign(table.objects.size(), kNoIndex);
     for (std::uint32_t i = 0; i < table.objects.size(); ++i) {
         const Object& object = table.objects[i];
         if (!object.alive || object.collides_with == 0 || !index.is_placed(i)) continue;
         const std::uint32_t layers = index.layers(i);
         if (layers == 0) continue;
+        collider_of_[i] = static_cast<std::uint32_t>(colliders_.size());
         colliders_.push_back(i);
         boxes_.push_back(index.box(i));
         filters_.push_back({layers, object.collides_with});
+    }
+}
+
+void ContactFinder::move_colliders(const SpatialIndex& index) {
+    moved_.clear();
+    for (const ItemId item : index.moved_items()) {
+        const std::uint32_t collider = item < collider_of_.size() ? collider_of_[item] : kNoIndex;
+        if (collider == kNoIndex) continue;
+        boxes_[collider] = index.box(item);
+        moved_.push_back(collider);
     }
 }
 
@@ -214,9 +226,15 @@ void ContactFinder::gather() {
 }
 
 Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                   Bodies& bodies, Executor& executor) {
-    list_colliders(table, index);
-    auto found = broadphase_.update(boxes_, filters_, executor);
+                                   Bodies& bodies, bool moved_only, Executor& executor) {
+    Result<void> found;
+    if (moved_only) {
+        move_colliders(index);
+        found = broadphase_.update_moved(boxes_, moved_, filters_, executor);
+    } else {
+        list_colliders(table, index);
+        found = broadphase_.update(boxes_, filters_, executor);
+    }
     list_pairs(table);
     if (options_.contacts) {
         find_contacts(table, index, scene, bodies, executor);

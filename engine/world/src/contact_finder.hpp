@@ -25,9 +25,10 @@ class ContactFinder {
   public:
     explicit ContactFinder(const WorldOptions& options);
 
-    // After the updates of these. Error: as Broadphase::update.
+    // After the updates of these. `moved_only`: since the update before no more has changed than the boxes of the
+    // index's moved_items(). Error: as Broadphase::update.
     Result<void> update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                        Executor& executor);
+                        bool moved_only, Executor& executor);
     // Nothing has changed since the update before.
     void stay();
 
@@ -41,6 +42,7 @@ class ContactFinder {
         Vector<mesh::MeshContact> triangles, found;
     };
     void list_colliders(const ObjectTable& table, const SpatialIndex& index);
+    void move_colliders(const SpatialIndex& index);
     void list_pairs(const ObjectTable& table);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
                        Executor& executor);
@@ -53,8 +55,10 @@ class ContactFinder {
 
     WorldOptions options_;
     collide::Broadphase broadphase_;
-    Vector<std::uint32_t> colliders_;  // ascending
-    Vector<Obb> boxes_;                // of them
+    Vector<std::uint32_t> colliders_;    // ascending
+    Vector<std::uint32_t> collider_of_;  // by object; kNoIndex: it is none
+    Vector<std::uint32_t> moved_;        // colliders
+    Vector<Obb> boxes_;                  // of them
     Vector<collide::CollisionFilter> filters_;
     Vector<ObjectPair> pairs_;
     Vector<Worker> workers_;

@@ -48,7 +48,7 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
     State& s = *state_;
     const auto mesh = s.scene.add_mesh(to_mesh(description));
     if (!mesh) return tl::unexpected(mesh.error());
-    s.bodies.set_wants_triangles(*mesh, description.triangles);
+    s.bodies.set_mesh(*mesh, description.triangles);
     s.meshes.add(*mesh);
     return MeshHandle{*mesh, s.meshes.generations[*mesh]};
 }
@@ -56,7 +56,7 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
 Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& description) {
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     auto replaced = state_->scene.replace_mesh(mesh.index, to_mesh(description));
-    if (replaced) state_->bodies.set_wants_triangles(mesh.index, description.triangles);
+    if (replaced) state_->bodies.set_mesh(mesh.index, description.triangles);
     return replaced;
 }
 
@@ -65,7 +65,9 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
     if (auto known = s.check(mesh, mesh.index); !known) return known;
     s.vertices.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
-    return s.scene.set_vertices(mesh.index, s.vertices);
+    auto set = s.scene.set_vertices(mesh.index, s.vertices);
+    if (set) s.bodies.note_deformed(mesh.index);
+    return set;
 }
 
 Result<void> World::remove(MeshHandle mesh) {
@@ -98,9 +100,15 @@ Result<void> World::remove(NodeHandle node) {
 }
 
 Result<void> World::State::set_transform(NodeHandle node, const scene::Transform& transform, std::uint64_t item) {
-    if (auto known = check(node, item); !known) return known;
-    if (auto valid = scene::validate(transform, item); !valid) return valid;
-    return scene.set_local(node.index, transform);
+    if (!nodes.contains(node)) return check(node, item);
+    return set_local(node.index, transform, item);
+}
+
+// The scene checks the transform; an error names the caller's item.
+Result<void> World::State::set_local(scene::NodeId node, const scene::Transform& transform, std::uint64_t item) {
+    auto set = scene.set_local(node, transform);
+    if (!set) set.error().item = item;
+    return set;
 }
 
 Result<void> World::set_transform(NodeHandle node, const scene::Transform& transform) {

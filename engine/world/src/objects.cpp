@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Objects: adding, changing, removing.
+#include <algorithm>
 #include <cmath>
+#include <crofton/boxtree/valid_boxes.hpp>
 #include <string>
 
 #include "for_each_pair.hpp"
@@ -118,8 +120,7 @@ Result<void> World::State::set_transform(ObjectHandle handle, const scene::Trans
                     object.instance == kNoIndex ? "world: the object is a bound: set_bound moves it"
                                                 : "world: the object has its node's transform: move the node, or add "
                                                   "the object with a transform");
-    if (auto valid = scene::validate(transform, item); !valid) return valid;
-    return scene.set_local(object.own_node, transform);
+    return set_local(object.own_node, transform, item);
 }
 
 Result<void> World::set_transform(ObjectHandle object, const scene::Transform& transform) {
@@ -138,10 +139,19 @@ Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, st
     if (table.objects[object.index].instance != kNoIndex)
         return fail(ErrorCode::invalid_argument, item, "world: the object has a mesh: set_transform moves it");
     if (auto valid = validate(bound, item); !valid) return valid;
+    if (stage_box_of_mover(object.index, bound.kind, bound.box, bound.radius)) return {};
     StagedChange& change = stage(object.index);
     change.has_bound = true;
     change.bound = bound;
     return {};
+}
+
+// The short way, without an entry among the changes. False where it does not lead: the box is staged nowhere then.
+bool World::State::stage_box_of_mover(std::uint32_t id, BoundKind kind, const Obb& box, double radius) {
+    const world::Object& object = table.objects[id];
+    if (object.kind != kind || object.radius != radius) return false;
+    if (object.staged != kNoIndex && staged[object.staged].has_bound) return false;
+    return index.stage_box(id, box);
 }
 
 Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
@@ -149,7 +159,17 @@ Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
 }
 
 Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes) {
-    return for_each_pair(objects, boxes, [&](ObjectHandle object, const Obb& box, std::size_t i) {
+    // Boxes below this are valid: looked at many at a time where they lie side by side.
+    constexpr std::size_t kAtOnce = 64;
+    std::size_t certain = 0, next_check = boxes.stride() == sizeof(Obb) ? 0 : boxes.size();
+    return for_each_pair(objects, boxes, [&](ObjectHandle object, const Obb& box, std::size_t i) -> Result<void> {
+        if (i == next_check) {
+            certain = i + boxtree::count_certainly_valid(&box, std::min(kAtOnce, boxes.size() - i));
+            next_check += kAtOnce;
+        }
+        if (i < certain && state_->table.contains(object) &&
+            state_->stage_box_of_mover(object.index, BoundKind::box, box, 0.0))
+            return {};
         return state_->set_bound(object, box, i);
     });
 }

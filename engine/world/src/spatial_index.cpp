@@ -2,14 +2,15 @@
 #include "spatial_index.hpp"
 
 #include <algorithm>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <utility>
 
 namespace crofton::world {
 namespace {
 
-constexpr std::uint8_t kUpdatesToMove = 2;       // in a row, until an item leaves the tree
-constexpr std::size_t kAttachedPerUpdate = 256;  // one at a time, at about a microsecond each
+constexpr std::uint8_t kUpdatesToMove = 2;  // in a row, until an item leaves the tree
+// Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
+constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.
@@ -45,14 +46,22 @@ void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
     items_[item].entry = static_cast<std::uint32_t>(to.items.size());
     to.items.push_back(item);
     to.boxes.push_back(box);
-    list_changed_ |= place == Place::moving;
 }
 
-// Out of its group, whose last item takes its entry.
+void SpatialIndex::add_mover(ItemId item, const Obb& box, std::uint32_t last_moved) {
+    items_[item].place = Place::moving;
+    items_[item].entry = moving_.add(item, box, last_moved);
+}
+
+// Out of the list or its group, where the last item takes its entry.
 void SpatialIndex::take(ItemId item) {
     const Item& taken = items_[item];
+    if (taken.place == Place::moving) {
+        items_[moving_.item(moving_.size() - 1)].entry = taken.entry;
+        moving_.remove(taken.entry);
+        return;
+    }
     Group& from = group(taken.place);
-    list_changed_ |= taken.place == Place::moving;
     items_[from.items.back()].entry = taken.entry;
     from.items[taken.entry] = from.items.back();
     from.boxes[taken.entry] = from.boxes.back();
@@ -72,21 +81,23 @@ void SpatialIndex::remove(ItemId item) {
         detach(item);
     else if (removed.place != Place::nowhere)
         take(item);
-    if (is_placed(item)) ++boxes_changed_;
+    if (is_placed(item)) ++members_changed_;
     removed = {};
     must(tree_.remove(item));
 }
 
 const Obb& SpatialIndex::box(ItemId item) const {
     const Item& asked = items_[item];
-    return asked.place == Place::resting ? tree_.boxes()[item] : group(asked.place).boxes[asked.entry];
+    if (asked.place == Place::resting) return tree_.boxes()[item];
+    return asked.place == Place::moving ? moving_.box(asked.entry) : group(asked.place).boxes[asked.entry];
 }
 
-void SpatialIndex::note_move(Item& item) {
+void SpatialIndex::note_move(ItemId id) {
+    Item& item = items_[id];
     const bool in_a_row = item.last_moved + 1 == now_;
     item.streak = in_a_row ? std::min<std::uint8_t>(item.streak + 1, kUpdatesToMove) : std::uint8_t{1};
     item.last_moved = now_;
-    ++boxes_changed_;
+    moved_items_.push_back(id);
 }
 
 void SpatialIndex::set_box(ItemId id, const Obb& box) {
@@ -94,25 +105,21 @@ void SpatialIndex::set_box(ItemId id, const Obb& box) {
     switch (item.place) {
         case Place::nowhere:
             put(id, item.shown ? Place::entering : Place::hidden, box);
-            boxes_changed_ += item.shown;
+            members_changed_ += item.shown;
             return;
         case Place::hidden:
         case Place::entering:
             group(item.place).boxes[item.entry] = box;
             return;
-        case Place::moving: {
-            Obb& old = group(Place::moving).boxes[item.entry];
-            if (same(old, box)) return;
-            old = box;
-            list_changed_ = true;
-            return note_move(item);
-        }
+        case Place::moving:
+            if (moving_.set_box(item.entry, box, now_)) moved_items_.push_back(id);
+            return;
         case Place::resting:
             if (same(tree_.boxes()[id], box)) return;
-            note_move(item);
+            note_move(id);
             if (item.streak == kUpdatesToMove) {
                 detach(id);
-                put(id, Place::moving, box);
+                add_mover(id, box, now_);
             } else {
                 moved_.push_back(id);
                 moved_boxes_.push_back(box);
@@ -131,18 +138,18 @@ void SpatialIndex::set_shown(ItemId id, bool shown) {
     else
         take(id);
     put(id, shown ? Place::entering : Place::hidden, last);
-    ++boxes_changed_;
+    ++members_changed_;
 }
 
 void SpatialIndex::set_layers(ItemId item, std::uint32_t layers) {
     if (tree_.layer_masks()[item] == layers) return;
     must(tree_.set_layer_mask(item, layers));
     wants_refit_ = true;
-    ++boxes_changed_;
+    ++members_changed_;
 }
 
 SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& executor) {
-    Changes changes{boxes_changed_, false};
+    Changes changes{static_cast<std::uint32_t>(moved_items_.size()) + members_changed_, false, members_changed_ > 0};
     if (!moved_.empty()) {
         must(tree_.move(moved_, moved_boxes_));
         tree_changes_ += moved_.size();
@@ -155,10 +162,8 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     if (wants_refit_) tree_.refit();
     wants_refit_ = false;
     rebuild_step(settings.rebuild_budget);
-    Group& moving = group(Place::moving);
-    if (list_changed_) must(moving_boxes_.update(tree_, moving.items, moving.boxes, executor));
-    list_changed_ = false;
-    boxes_changed_ = 0;
+    must(moving_.update(tree_, executor));
+    members_changed_ = 0;
     ++now_;
     return changes;
 }
@@ -193,8 +198,7 @@ void SpatialIndex::enter(Changes& changes, Executor& executor) {
         const ItemId item = entering.items.back();
         const Obb box = entering.boxes.back();
         take(item);
-        items_[item].last_moved = now_;
-        put(item, Place::moving, box);
+        add_mover(item, box, now_);
     }
 }
 
@@ -209,14 +213,13 @@ void SpatialIndex::attach(ItemId item) {
 
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
     rested_.clear();
-    for (const ItemId item : group(Place::moving).items)
-        if (now_ - items_[item].last_moved >= settings.updates_to_rest) rested_.push_back(item);
+    moving_.list_rested(now_, settings.updates_to_rest, rested_);
     if (rested_.size() > std::max(kFewItems, tree_.item_count())) {
         build_tree(rested_, executor);
         changes.tree_built = true;
         return;
     }
-    rested_.resize(std::min(rested_.size(), kAttachedPerUpdate));
+    rested_.resize(std::min(rested_.size(), std::max(kAttachedPerUpdate, moving_.size() / kAttachedPart)));
     for (const ItemId item : rested_) attach(item);
 }
 
@@ -243,7 +246,6 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     tree_ = std::move(*built);
     tree_changes_ = changes_before_ = 0;
     rebuilding_ = false;
-    list_changed_ = true;
 }
 
 }  // namespace crofton::world

@@ -3,12 +3,11 @@
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/cull/moving_boxes.hpp>
 #include <crofton/world/world.hpp>
 
-namespace crofton::world {
+#include "moving_list.hpp"
 
-using boxtree::ItemId;
+namespace crofton::world {
 
 // Ids are the tree's. What is asked of the tree and of the list is as of the last update(). Boxes are valid.
 class SpatialIndex {
@@ -20,6 +19,7 @@ class SpatialIndex {
     struct Changes {
         std::uint32_t boxes = 0;
         bool tree_built = false;
+        bool members = false;  // some have come or gone, or have other layers
     };
 
     SpatialIndex();
@@ -31,7 +31,21 @@ class SpatialIndex {
     void set_shown(ItemId item, bool shown);
     void set_layers(ItemId item, std::uint32_t layers);
 
+    // Between updates: a box for commit(), if the item moves. False, and nothing done, if it does not.
+    bool stage_box(ItemId item, const Obb& box) {
+        if (items_[item].place != Place::moving) return false;
+        moving_.stage(items_[item].entry, box, now_);
+        return true;
+    }
+    // Takes over the staged boxes. Before any other change of an update.
+    void commit() {
+        moved_items_.clear();
+        moving_.commit(now_, moved_items_);
+    }
+
     Changes update(const Settings& settings, Executor& executor);
+    // That the last update() found in the tree or the list and with another box. One may be named twice.
+    [[nodiscard]] std::span<const ItemId> moved_items() const { return moved_items_; }
 
     [[nodiscard]] std::size_t size() const { return items_.size(); }  // ids are below it
     [[nodiscard]] bool is_placed(ItemId item) const {                 // in the tree or the list
@@ -41,14 +55,14 @@ class SpatialIndex {
     [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
     [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.layer_masks()[item]; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
-    [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_boxes_; }
+    [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_.boxes(); }
 
   private:
     enum class Place : std::uint8_t { nowhere, hidden, entering, resting, moving };
     struct Item {
-        std::uint32_t entry = 0;  // in the group of its place
-        std::uint32_t last_moved = 0;
-        std::uint8_t streak = 0;  // updates in a row in which it moved, up to kUpdatesToMove
+        std::uint32_t entry = 0;       // in the list or the group of its place
+        std::uint32_t last_moved = 0;  // while it rests
+        std::uint8_t streak = 0;       // updates in a row in which it moved, up to kUpdatesToMove
         Place place = Place::nowhere;
         bool shown = true;
     };
@@ -58,10 +72,12 @@ class SpatialIndex {
     };
     [[nodiscard]] Group& group(Place place) { return groups_[static_cast<std::size_t>(place)]; }
     [[nodiscard]] const Group& group(Place place) const { return groups_[static_cast<std::size_t>(place)]; }
+    // Into a group; into the list with add_mover().
     void put(ItemId item, Place place, const Obb& box);
+    void add_mover(ItemId item, const Obb& box, std::uint32_t last_moved);
     void take(ItemId item);
     void detach(ItemId item);
-    void note_move(Item& item);
+    void note_move(ItemId item);
     void rebuild_step(std::size_t budget);
     void attach(ItemId item);
     void enter(Changes& changes, Executor& executor);
@@ -69,16 +85,17 @@ class SpatialIndex {
     void build_tree(std::span<const ItemId> entering, Executor& executor);
 
     Vector<Item> items_;
-    Group groups_[5];  // by Place; items that rest have theirs in the tree
+    Group groups_[3];  // by Place: nowhere (empty), hidden, entering
     boxtree::BoxTree tree_;
-    cull::MovingBoxes moving_boxes_;
-    Vector<ItemId> moved_, rested_;
+    MovingList moving_;
+    Vector<ItemId> moved_items_;     // in this update
+    Vector<ItemId> moved_, rested_;  // the first: of those the tree's, with
     Vector<Obb> moved_boxes_;
-    std::uint32_t now_ = 1;  // counts updates
-    std::uint32_t boxes_changed_ = 0;
+    std::uint32_t now_ = 1;              // counts updates
+    std::uint32_t members_changed_ = 0;  // in this update
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.
     std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
-    bool rebuilding_ = false, list_changed_ = false, wants_refit_ = false;
+    bool rebuilding_ = false, wants_refit_ = false;
 };
 
 }  // namespace crofton::world

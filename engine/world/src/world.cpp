@@ -93,6 +93,7 @@ void World::State::apply_scene(Executor& executor) {
     const scene::UpdateStatistics updated = scene.update(executor);
     statistics.nodes_updated = updated.nodes_updated;
     statistics.out_of_range = updated.instances_invalid;
+    index.commit();
     apply_changes();
     for (const scene::InstanceId instance : scene.relayered_instances()) {
         const std::uint32_t object = object_of_instance[instance], layers = scene.layer_masks()[instance];
@@ -111,9 +112,9 @@ Result<void> World::update(Executor& executor) {
     const auto changes = s.index.update(
         {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
     Result<void> found;
-    const bool changed = changes.boxes > 0 || s.pairs_changed;
+    const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
     s.pairs_changed = false;
-    if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, s.scene, s.bodies, executor);
+    if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, s.scene, s.bodies, moved_only, executor);
     if (!changed) s.finder.stay();
     if (!found) s.pairs_changed = true;
     s.statistics.objects = s.table.count;

@@ -66,6 +66,8 @@ struct World::State {
     [[nodiscard]] Result<void> set_transform(ObjectHandle object, const scene::Transform& transform,
                                              std::uint64_t item);
     [[nodiscard]] Result<void> set_transform(NodeHandle node, const scene::Transform& transform, std::uint64_t item);
+    [[nodiscard]] Result<void> set_local(scene::NodeId node, const scene::Transform& transform, std::uint64_t item);
+    [[nodiscard]] bool stage_box_of_mover(std::uint32_t object, BoundKind kind, const Obb& box, double radius);
     void mark_removed(std::uint32_t object);
     void apply_changes();
     void apply_scene(Executor& executor);

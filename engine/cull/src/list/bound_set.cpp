@@ -3,8 +3,9 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/list_layout.hpp>
 
 #include "exact/box_constraints.hpp"
 #include "list/box_writer.hpp"
@@ -48,6 +49,32 @@ bool write_row(RowBlock& block, std::size_t lane, const glm::dvec3& offset, doub
 }
 
 }  // namespace
+
+template <class Bound>
+BoundSet<Bound>::BoundSet() = default;
+template <class Bound>
+BoundSet<Bound>::~BoundSet() = default;
+template <class Bound>
+BoundSet<Bound>::BoundSet(const BoundSet&) = default;
+template <class Bound>
+BoundSet<Bound>& BoundSet<Bound>::operator=(const BoundSet&) = default;
+template <class Bound>
+BoundSet<Bound>::BoundSet(BoundSet&&) noexcept = default;
+template <class Bound>
+BoundSet<Bound>& BoundSet<Bound>::operator=(BoundSet&&) noexcept = default;
+
+template <class Bound>
+std::span<const RowBlock> BoundSet<Bound>::rows() const {
+    return rows_;
+}
+template <class Bound>
+std::span<const typename BoundSet<Bound>::Record> BoundSet<Bound>::records() const {
+    return records_;
+}
+template <class Bound>
+std::span<const ListChunk> BoundSet<Bound>::chunks() const {
+    return chunks_;
+}
 
 template <class Bound>
 void BoundSet<Bound>::resize(std::size_t size) {

@@ -4,7 +4,7 @@
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -76,11 +76,11 @@ class BoxTree {
     // Bits that the layer masks of all detached items have, not necessarily every one.
     [[nodiscard]] std::uint32_t detached_layers() const { return detached_layers_; }
 
-    // Rebuilds in the background, about `budget` items' worth of work a call, and while a rebuild is being brought up
-    // to date twice as many items' more as have changed since the call before (a build is worth about 10 per item).
-    // Call it once a frame where items move for long. True when a rebuild has just been completed. Items that moved
-    // before both of the last two refits are taken for such as move all the time (see BuildOptions). Needs refit()
-    // before and leaves nothing to refit.
+    // Rebuilds in the background, about `budget` items' worth of work a call (a build is worth about 10 per item).
+    // While a rebuild is being brought up to date, what has changed since the call before is handled on top: an
+    // insertion is worth 64, another change 2. Call it once a frame where items move for long. True when a rebuild has
+    // just been completed. Items that moved before both of the last two refits are taken for such as move all the time
+    // (see BuildOptions). Needs refit() before and leaves nothing to refit.
     bool rebuild_step(std::size_t budget);
     // What the last call of rebuild_step() has handled, whatever it was worth.
     [[nodiscard]] const RebuildStep& last_rebuild_step() const { return last_step_; }
@@ -165,7 +165,7 @@ class BoxTree {
     void mark(std::uint32_t slot);
     void mark_moved();
     [[nodiscard]] bool has_few_changes(LeafId leaf) const;
-    void mark_changed(ItemId item);
+    void mark_changed(ItemId item, bool placed = false);
     [[nodiscard]] Result<ItemId> new_item(const Obb& box, std::uint32_t layer_mask);
     void place(ItemId item);
     void vacate(ItemId item);
@@ -179,7 +179,7 @@ class BoxTree {
     std::size_t add_items(Rebuild& work, std::size_t budget);
     std::size_t fill_leaves(Rebuild& work, std::size_t budget);
     std::size_t apply_changes(Rebuild& work, std::size_t budget);
-    void sync_item(ItemId item, bool present);
+    void sync_item(ItemId item, bool present, bool placed);
     void set_detached(ItemId item, bool detached);
     void find_detached();
     [[nodiscard]] Result<void> validate(Trust trust) const;

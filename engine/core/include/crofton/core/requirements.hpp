@@ -17,7 +17,7 @@
 #undef CROFTON_CPLUSPLUS
 
 // The library is compiled with quaternions stored as x, y, z, w: with another order objects turn the wrong way.
-// Macros of GLM that pad its types are caught in geometry/obb.hpp. All others change nothing that crosses the API.
+// Macros of GLM that pad its types are caught in geometry/box.hpp. All others change nothing that crosses the API.
 #if defined(GLM_FORCE_QUAT_DATA_WXYZ)
 #error "Crofton is compiled without GLM_FORCE_QUAT_DATA_WXYZ, which changes the layout of quaternions: undefine it"
 #endif

@@ -6,8 +6,6 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/list_layout.hpp>
-#include <crofton/cull/verdict_bits.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,6 +13,12 @@
 
 namespace crofton::cull {
 
+// Laid out for vector kernels (internal).
+struct RowBlock;
+struct ListChunk;
+struct BoxRecord;
+struct AabbRecord;
+struct SphereRecord;
 template <class Bound>
 struct RecordOf;
 template <>
@@ -37,6 +41,13 @@ class BoundSet {
   public:
     using Record = typename RecordOf<Bound>::Type;
 
+    BoundSet();
+    ~BoundSet();
+    BoundSet(const BoundSet&);
+    BoundSet& operator=(const BoundSet&);
+    BoundSet(BoundSet&&) noexcept;
+    BoundSet& operator=(BoundSet&&) noexcept;
+
     // Bounds that are not valid (not finite, beyond 1e30, an empty Aabb, a negative radius) may be among them: they are
     // straddling.
     void assign(std::span<const Bound> bounds, Executor& executor = serial_executor());
@@ -48,9 +59,9 @@ class BoundSet {
     std::size_t update(std::span<const Bound> bounds, Executor& executor = serial_executor());
 
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] std::span<const RowBlock> rows() const { return rows_; }
-    [[nodiscard]] std::span<const Record> records() const { return records_; }
-    [[nodiscard]] std::span<const ListChunk> chunks() const { return chunks_; }
+    [[nodiscard]] std::span<const RowBlock> rows() const;
+    [[nodiscard]] std::span<const Record> records() const;
+    [[nodiscard]] std::span<const ListChunk> chunks() const;
 
   private:
     void assign_chunk(std::size_t c, std::span<const Bound> bounds);

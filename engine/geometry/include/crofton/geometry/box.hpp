@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Boxes: axis-aligned, and oriented.
+#pragma once
+#include <array>
+#include <crofton/core/error.hpp>
+#include <crofton/core/requirements.hpp>
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <span>
+
+namespace crofton {
+
+// Axis-aligned bounding box.
+// The closed box [min, max]; empty where any min > max, as when default-constructed.
+struct Aabb {
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+
+    [[nodiscard]] bool is_empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+    [[nodiscard]] glm::dvec3 center() const { return min + 0.5 * (max - min); }
+    [[nodiscard]] glm::dvec3 half_extents() const { return 0.5 * (max - min); }
+
+    void include(const glm::dvec3& point) {
+        min = (glm::min)(min, point);
+        max = (glm::max)(max, point);
+    }
+    void include(const Aabb& other) {
+        min = (glm::min)(min, other.min);
+        max = (glm::max)(max, other.max);
+    }
+};
+
+// Closed boxes: touching counts.
+[[nodiscard]] inline bool intersects(const Aabb& a, const Aabb& b) {
+    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y && a.min.z <= b.max.z &&
+           b.min.z <= a.max.z;
+}
+
+// Oriented bounding box: the bound that everything here shares.
+// The exact parallelepiped { center + Σ t_k · half_extents[k] · axes[k] : |t_k| ≤ 1 } of the stored numbers, taken as
+// reals. `axes[k]` is column k, unit length up to float rounding and linearly independent; half_extents ≥ 0, zero
+// allowed. The centre is double, so that boxes keep their place at planetary coordinates; the shape is float.
+struct Obb {
+    glm::dvec3 center{0.0};
+    glm::mat3 axes{1.0f};
+    glm::vec3 half_extents{0.0f};
+};
+static_assert(sizeof(Obb) == 72, "a GLM_FORCE_ macro has changed the layout of GLM's types");
+
+// Coordinates beyond this are refused: products of a few of them must stay within double.
+inline constexpr double kMaxCoordinate = 1e30;
+// How far axes may be from orthonormal (|dot(axes[i], axes[j]) − δij|): float rounding of a rotation stays under 1e-6.
+inline constexpr double kMaxAxisDeviation = 1e-4;
+
+// Checks all that the comment above asks; the error's item is `item`.
+[[nodiscard]] Result<void> validate(const Obb& box, std::uint64_t item = kNoItem);
+
+// Corner i is at t_k = −1 where bit k of i is 0, +1 where it is 1; rounded to double.
+[[nodiscard]] std::array<glm::dvec3, 8> corners(const Obb& box);
+
+// True iff `point` lies in the exact parallelepiped, boundary included; decided exactly. `point` is finite.
+[[nodiscard]] bool contains(const Obb& box, const glm::dvec3& point);
+
+// The same for the slab between the two faces across axes[k] alone: the point is in the box iff it is in all three.
+[[nodiscard]] bool contains_along(const Obb& box, const glm::dvec3& point, int k);
+
+// The farthest point of the box along `direction` (any length), rounded to double.
+[[nodiscard]] glm::dvec3 support_point(const Obb& box, const glm::dvec3& direction);
+
+// The smallest axis-aligned box in double that contains the whole parallelepiped, rounded outward.
+[[nodiscard]] Aabb aabb_of(const Obb& box);
+
+[[nodiscard]] Obb obb_of(const Aabb& box);  // contains `box`, grown by at most the rounding of half_extents to float
+
+[[nodiscard]] double volume(const Obb& box);
+[[nodiscard]] double surface_area(const Obb& box);
+[[nodiscard]] double edge_sum(const Obb& box);  // a + b + c for edges a, b, c; M = π · edge_sum
+
+}  // namespace crofton

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "moving_list.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace crofton::world {
+namespace {
+
+bool same(const Obb& a, const Obb& b) {
+    return a.center == b.center && a.axes == b.axes && a.half_extents == b.half_extents;
+}
+
+}  // namespace
+
+std::uint32_t MovingList::add(ItemId item, const Obb& box, std::uint32_t last_moved) {
+    const auto entry = static_cast<std::uint32_t>(items_.size());
+    items_.push_back(item);
+    boxes_.push_back(box);
+    last_moved_.push_back(last_moved);
+    staged_for_.push_back(0);
+    earliest_ = std::min(earliest_, last_moved);
+    changed_ = true;
+    return entry;
+}
+
+void MovingList::remove(std::size_t entry) {
+    const auto fill = [&](auto& values) {
+        values[entry] = values.back();
+        values.pop_back();
+    };
+    fill(items_);
+    fill(boxes_);
+    fill(last_moved_);
+    fill(staged_for_);
+    changed_ = true;
+}
+
+bool MovingList::set_box(std::size_t entry, const Obb& box, std::uint32_t now) {
+    if (same(boxes_[entry], box)) return false;
+    boxes_[entry] = box;
+    last_moved_[entry] = now;
+    changed_ = true;
+    return true;
+}
+
+// Where most boxes are staged, the arrays change places and the others are copied.
+void MovingList::commit(std::uint32_t now, Vector<ItemId>& moved) {
+    if (staged_count_ == 0) return;
+    const bool most = staged_count_ * 2 > items_.size();
+    const std::size_t moved_before = moved.size();
+    for (std::size_t entry = 0; entry < items_.size(); ++entry) {
+        if (staged_for_[entry] != now) {
+            if (most) staged_boxes_[entry] = boxes_[entry];
+            continue;
+        }
+        if (!same(boxes_[entry], staged_boxes_[entry])) {
+            last_moved_[entry] = now;
+            moved.push_back(items_[entry]);
+        }
+        if (!most) boxes_[entry] = staged_boxes_[entry];
+    }
+    staged_count_ = 0;
+    if (moved.size() == moved_before) return;
+    if (most) std::swap(boxes_, staged_boxes_);
+    changed_ = true;
+}
+
+void MovingList::list_rested(std::uint32_t now, std::uint32_t updates, Vector<ItemId>& rested) {
+    if (now - earliest_ < updates) return;
+    earliest_ = now;
+    for (std::size_t entry = 0; entry < items_.size(); ++entry) {
+        earliest_ = std::min(earliest_, last_moved_[entry]);
+        if (now - last_moved_[entry] >= updates) rested.push_back(items_[entry]);
+    }
+}
+
+Result<void> MovingList::update(const boxtree::BoxTree& tree, Executor& executor) {
+    if (!changed_) return {};
+    changed_ = false;
+    if (staged_boxes_.capacity() < items_.size()) staged_boxes_.reserve(boxes_.capacity());
+    staged_boxes_.resize(items_.size());
+    return moving_boxes_.update(tree, items_, boxes_, executor);
+}
+
+}  // namespace crofton::world

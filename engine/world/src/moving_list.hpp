@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// The objects that move: their boxes of the last update, and a second array of those that the next one brings.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/cull/moving_boxes.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::world {
+
+using boxtree::ItemId;
+
+// Items have entries 0, 1, … in all arrays. Times are counts of updates. `now` never falls.
+class MovingList {
+  public:
+    [[nodiscard]] std::size_t size() const { return items_.size(); }
+    [[nodiscard]] ItemId item(std::size_t entry) const { return items_[entry]; }
+    [[nodiscard]] const Obb& box(std::size_t entry) const { return boxes_[entry]; }
+    [[nodiscard]] const cull::MovingBoxes& boxes() const { return moving_boxes_; }  // as of the last update()
+
+    // Returns the entry: the last.
+    std::uint32_t add(ItemId item, const Obb& box, std::uint32_t last_moved);
+    // The last item takes the entry. Requires that nothing is staged.
+    void remove(std::size_t entry);
+    // At once. True if it is another box.
+    bool set_box(std::size_t entry, const Obb& box, std::uint32_t now);
+    // In the commit() of the same `now`. Of several the last counts.
+    void stage(std::size_t entry, const Obb& box, std::uint32_t now) {
+        staged_boxes_[entry] = box;
+        staged_count_ += staged_for_[entry] != now;
+        staged_for_[entry] = now;
+    }
+    // Takes over what has been staged. Appends the items whose boxes have changed.
+    void commit(std::uint32_t now, Vector<ItemId>& moved);
+    // Appends the items that have not moved for so many updates.
+    void list_rested(std::uint32_t now, std::uint32_t updates, Vector<ItemId>& rested);
+
+    // Makes the list's boxes what views see, and room for the next frame's.
+    Result<void> update(const boxtree::BoxTree& tree, Executor& executor);
+
+  private:
+    Vector<ItemId> items_;
+    Vector<Obb> boxes_, staged_boxes_;
+    Vector<std::uint32_t> last_moved_, staged_for_;  // the second: the update that the staged box is for
+    std::size_t staged_count_ = 0;
+    std::uint32_t earliest_ = 0;  // no last_moved_ is below
+    bool changed_ = false;        // since the last update()
+    cull::MovingBoxes moving_boxes_;
+};
+
+}  // namespace crofton::world

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// Objects that move in every frame, and meshes that deform.
+#include <doctest/doctest.h>
+#include <cmath>
+#include <limits>
+#include <oracle/random_boxes.hpp>
+
+#include "model.hpp"
+
+using namespace crofton;
+using oracle::Model;
+using oracle::NearMisses;
+
+namespace {
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const World& world) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const ObjectPair& pair : world.pairs()) pairs.emplace_back(pair.first.object.index, pair.second.object.index);
+    return pairs;
+}
+
+std::vector<std::uint32_t> seen_ids(const World& world, const cull::View& view) {
+    VisibleObjects visible;
+    world.view(view, visible);
+    return {visible.ids().begin(), visible.ids().end()};
+}
+
+cull::View view_of_a_part() {
+    Camera camera;
+    camera.position.z = 40.0;
+    camera.fov_y = 0.5;
+    return {.frustum = frustum_of(camera).value(), .layer_mask = ~0u};
+}
+
+// A sheet of n · n vertices over [0, 1]² that waves.
+TriangleMesh sheet(std::uint32_t n, double time) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < n * n; ++i) {
+        const double x = double(i % n) / (n - 1), y = double(i / n) / (n - 1);
+        mesh.positions.push_back(glm::vec3(x, y, 0.3 * std::sin(7.0 * x + time) * std::cos(5.0 * y - 2.0 * time)));
+    }
+    for (std::uint32_t y = 0; y + 1 < n; ++y)
+        for (std::uint32_t x = 0; x + 1 < n; ++x) {
+            const std::uint32_t a = y * n + x;
+            for (const std::uint32_t i : {a, a + 1, a + n, a + n, a + 1, a + n + 1}) mesh.indices.push_back(i);
+        }
+    return mesh;
+}
+
+}  // namespace
+
+TEST_SUITE("world/movers") {
+    TEST_CASE("boxes that are set many at once count from the next update on, whatever part of them moves") {
+        NearMisses random(31);
+        World world({.updates_to_rest = 4});
+        Model model;
+        std::vector<ObjectHandle> objects;
+        for (int i = 0; i < 300; ++i) {
+            oracle::ModelObject object;
+            object.bound = oracle::random_box(random, {}, 20.0);
+            object.handle = world.add({.bound = object.bound}).value();
+            model.objects[object.handle.index] = object;
+            objects.push_back(object.handle);
+        }
+        const cull::View view = view_of_a_part();
+        std::size_t most_moving = 0, bad_ones = 0;
+        for (int frame = 0; frame < 90; ++frame) {
+            // All, most, a few; some to where they are, a bad one now and then.
+            const unsigned share = frame < 30 ? 1 : frame < 60 ? 2 : 9;
+            std::vector<ObjectHandle> moved;
+            std::vector<Obb> boxes;
+            std::size_t bad = ~std::size_t{0};
+            for (const ObjectHandle object : objects) {
+                if (random.index(share) != 0 && object.index % 3 != 0) continue;
+                Obb& box = model.objects[object.index].bound.box;
+                if (random.index(8) != 0) box.center += 0.3 * random.direction();
+                moved.push_back(object);
+                boxes.push_back(box);
+                if (random.index(400) != 0 || bad != ~std::size_t{0}) continue;
+                bad = boxes.size() - 1;
+                boxes.back().axes[1][0] = std::numeric_limits<float>::quiet_NaN();
+            }
+            const std::vector<std::uint32_t> seen_before = seen_ids(world, view);
+            const auto set = world.set_bounds(moved, boxes);
+            CHECK(set.has_value() == (bad == ~std::size_t{0}));
+            if (!set) {
+                ++bad_ones;
+                CHECK(set.error().item == bad);
+                CHECK(set.error().code == ErrorCode::non_finite);
+                boxes[bad] = model.objects[moved[bad].index].bound.box;
+                REQUIRE(world.set_bounds(moved, boxes).has_value());
+            }
+            CHECK(seen_ids(world, view) == seen_before);  // nothing counts before the update
+            // One that moves gets other layers or another kind of bound in the same frame, or is hidden.
+            oracle::ModelObject& other = model.objects[objects[random.index(300)].index];
+            if (frame % 7 == 0) {
+                other.hidden = !other.hidden;
+                REQUIRE(world.set_hidden(other.handle, other.hidden).has_value());
+                other.bound = oracle::random_box(random, {}, 20.0);
+                REQUIRE(world.set_bound(other.handle, other.bound).has_value());
+            } else if (frame % 7 == 1) {
+                REQUIRE(world.set_bound(other.handle, Sphere{{}, 1.0}).has_value());
+                REQUIRE(world.set_bound(other.handle, other.bound).has_value());
+            }
+            REQUIRE(world.update().has_value());
+            most_moving = std::max(most_moving, world.statistics().moving);
+            for (const auto& [id, object] : model.objects)
+                CHECK(world.box_of(object.handle)->center == object.bound.box.center);
+            CHECK(seen_ids(world, view) == model.visible(view));
+            CHECK(listed_pairs(world) == model.pairs());
+        }
+        CHECK(most_moving > 290);
+        CHECK(bad_ones > 3);
+    }
+
+    TEST_CASE("what is set to where it is comes to rest, also when the others go on") {
+        World world({.updates_to_rest = 3});
+        std::vector<ObjectHandle> objects;
+        std::vector<Obb> boxes(10);
+        for (std::size_t i = 0; i < 10; ++i) {
+            boxes[i].center.x = 3.0 * double(i);
+            objects.push_back(world.add({.bound = boxes[i]}).value());
+        }
+        REQUIRE(world.update().has_value());
+        const auto move_first = [&](std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) boxes[i].center.y += 0.25;
+            REQUIRE(world.set_bounds(objects, boxes).has_value());
+            REQUIRE(world.update().has_value());
+        };
+        for (int frame = 0; frame < 4; ++frame) move_first(10);
+        CHECK(world.statistics().moving == 10);
+        for (int frame = 0; frame < 4; ++frame) {
+            move_first(2);
+            CHECK(world.statistics().boxes_changed == 2);
+        }
+        CHECK(world.statistics().moving == 2);
+        CHECK(world.statistics().resting == 8);
+    }
+
+    TEST_CASE("a mesh that deforms answers like one that has just been loaded") {
+        constexpr std::uint32_t kSide = 40;
+        World world({.mesh_depth = true});
+        const TriangleMesh first = sheet(kSide, 0.0);
+        const auto mesh = world.add_mesh({.positions = first.positions, .indices = first.indices}).value();
+        const auto object = world.add({.mesh = mesh, .transform = scene::Transform()}).value();
+        const auto ball = world.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value();
+        REQUIRE(world.update().has_value());
+        std::size_t hits = 0, touches = 0;
+        for (int frame = 0; frame < 30; ++frame) {
+            TriangleMesh now = sheet(kSide, 0.4 * frame);
+            if (frame % 10 == 9) std::reverse(now.indices.begin(), now.indices.end());  // other triangles
+            if (frame % 13 == 12)
+                for (glm::vec3& p : now.positions) p = {p.y, 4.0f * p.x * p.x, p.z};  // boxes wear out
+            if (frame % 10 == 9 || frame % 10 == 0)
+                REQUIRE(world.replace_mesh(mesh, {.positions = now.positions, .indices = now.indices}).has_value());
+            else
+                REQUIRE(world.set_vertices(mesh, now.positions).has_value());
+            REQUIRE(world.update().has_value());
+
+            World fresh({.mesh_depth = true});
+            const auto copy = fresh.add_mesh({.positions = now.positions, .indices = now.indices}).value();
+            REQUIRE(fresh.add({.mesh = copy, .transform = scene::Transform()}).value().index == object.index);
+            REQUIRE(fresh.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value().index == ball.index);
+            REQUIRE(fresh.update().has_value());
+            NearMisses random(40 + frame);
+            for (int i = 0; i < 200; ++i) {
+                Ray ray;
+                ray.origin = {random.number(0.0, 1.0), random.number(0.0, 1.0), 2.0};
+                ray.direction = {random.number(-0.2, 0.2), random.number(-0.2, 0.2), -1.0};
+                const auto a = world.raycast(ray), b = fresh.raycast(ray);
+                REQUIRE(a.has_value() == b.has_value());
+                if (!a) continue;
+                ++hits;
+                CHECK(a->t == b->t);
+                CHECK(a->triangle == b->triangle);
+            }
+            REQUIRE(world.pairs().size() == fresh.pairs().size());
+            std::size_t met = 0;
+            for (const Contact& contact : world.contacts()) {
+                if (contact.phase == ContactPhase::ended) continue;
+                ++met;
+                REQUIRE(fresh.contacts().size() == 1);
+                CHECK(contact.depth == fresh.contacts()[0].depth);
+            }
+            CHECK(met == fresh.contacts().size());
+            touches += met;
+        }
+        CHECK(hits > 1000);
+        CHECK(touches > 3);
+    }
+}
