@@ -3,10 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 
 #include <deque>
 

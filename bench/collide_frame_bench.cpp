@@ -5,7 +5,7 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What Crofton and the peers are measured on: the same boxes, meshes and poses for all.
 #pragma once
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,7 @@
 #pragma once
 #include <cmath>
 #include <crofton/cull/cull.hpp>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 #include <vector>

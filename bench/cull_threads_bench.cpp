@@ -2,7 +2,7 @@
 // Two threads beside one.
 #include <benchmark/benchmark.h>
 
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
 
 #include "cull_inputs.hpp"

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/cull/bound_set.hpp>
-#include <crofton/cull/many_views.hpp>
+#include <crofton/cull/cull.hpp>
 
 #include "cull_inputs.hpp"
 

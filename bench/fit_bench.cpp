@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/fit/fit_many.hpp>
 #include <map>
 #include <optional>
 #include <string>

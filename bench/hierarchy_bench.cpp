@@ -8,7 +8,7 @@
 #include <crofton/cull/classify.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <crofton/study/bound_given_ancestors.hpp>
 #include <crofton/study/query_sample.hpp>

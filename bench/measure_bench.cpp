@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <crofton/study/spatial_lines.hpp>

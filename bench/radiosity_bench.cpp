@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cmath>
 #include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/form_factors.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/radiosity/patches.hpp>
+#include <crofton/sampling/random.hpp>
 #include <memory>
 #include <string>
 #include <unordered_map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rays through Embree, where it is installed.
 #pragma once
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <memory>
 #include <span>

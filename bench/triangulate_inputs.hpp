@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Polygons to measure with: the shared files, and contours of noise of any size.
 #pragma once
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/bake/checksum.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 
 #include <cstring>
 #include <string>

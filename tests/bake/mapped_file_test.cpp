@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <crofton/bake/mapped_file.hpp>
+#include <crofton/bake/baked_scene.hpp>
 
 #include <vector>
 

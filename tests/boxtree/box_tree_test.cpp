@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <limits>
 #include <oracle/least_cuts.hpp>
 #include <oracle/random_boxes.hpp>

@@ -2,7 +2,7 @@
 // One scene in a World of each interface, C and C++: the same objects, nodes and changes.
 #pragma once
 #include <array>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/crofton.hpp>
 #include <cstring>
 #include <oracle/random_boxes.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <limits>
 
 #include "handles.hpp"

@@ -2,9 +2,8 @@
 #include <crofton/capi/crofton.h>
 
 #include <atomic>
-#include <crofton/core/assert.hpp>
-#include <crofton/core/log.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/executor.hpp>
 #include <cstdlib>
 #include <map>
 #include <mutex>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <limits>
 #include <vector>
 

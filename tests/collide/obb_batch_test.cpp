@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
 #include <limits>
 #include <vector>

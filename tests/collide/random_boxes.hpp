@@ -4,7 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>

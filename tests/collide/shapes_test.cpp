@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/shapes.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

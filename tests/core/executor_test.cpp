@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <atomic>
 #include <crofton/core/executor.hpp>
-#include <crofton/core/thread_pool.hpp>
 #include <vector>
 
 using namespace crofton;

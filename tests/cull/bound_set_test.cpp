@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <limits>
 #include <oracle/exact_bounds.hpp>

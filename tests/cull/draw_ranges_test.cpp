@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
-#include <crofton/cull/draw_ranges.hpp>
+#include <crofton/cull/cull.hpp>
 #include <numeric>
 #include <random>
 #include <vector>

@@ -5,9 +5,9 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <counting_memory.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
-#include <crofton/cull/many_views.hpp>
+#include <crofton/cull/cull.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/many_views.hpp>
 #include <cstdio>
 #include <limits>
 #include <vector>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/cull/many_views.hpp>
-#include <crofton/cull/shadow_volume.hpp>
+#include <crofton/cull/cull.hpp>
 #include <map>
 #include <oracle/random_boxes.hpp>
 #include <vector>

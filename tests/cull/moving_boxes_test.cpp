@@ -3,7 +3,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <counting_memory.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 #include <limits>
 #include <map>

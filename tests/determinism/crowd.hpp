@@ -3,13 +3,11 @@
 // leaves it to the compiler which of two draws comes first.
 #pragma once
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/polygon.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>

@@ -3,8 +3,8 @@
 #pragma once
 #include <bit>
 #include <concepts>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/plane.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <crofton/core/executor.hpp>
-#include <crofton/core/thread_pool.hpp>
 #include <cstdint>
 #include <sstream>
 

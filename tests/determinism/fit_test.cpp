@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Boxes around points, and hulls, in the same bits everywhere.
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/fit/fit_many.hpp>
-#include <crofton/fit/planar.hpp>
-#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/predicates.hpp>
 
 #include "crowd.hpp"

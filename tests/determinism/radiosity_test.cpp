@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Lines and light in the same bits everywhere.
 #include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/form_factors.hpp>
-#include <crofton/radiosity/line_source.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 
 #include "crowd.hpp"

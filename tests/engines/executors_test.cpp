@@ -6,7 +6,7 @@
 
 #include <atomic>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <random>
 #include <vector>

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/core/log.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/core/thread_pool.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 #include <crofton/scene/scene.hpp>

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
 #include <cstdio>
 #include <fstream>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/core/thread_pool.hpp>
-#include <crofton/fit/fit_many.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/fit/fit.hpp>
 #include <limits>
 #include <random>
 #include <vector>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The example of docs/fit.md, compiled and run.
 #include <doctest/doctest.h>
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
 #include <cstdio>
 #include <vector>

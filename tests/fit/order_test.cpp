@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <bit>
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
 #include <random>
 #include <vector>

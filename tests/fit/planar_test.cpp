@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/fit/planar.hpp>
+#include <crofton/fit/fit.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>

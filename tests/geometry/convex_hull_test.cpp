@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>

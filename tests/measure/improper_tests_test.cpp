@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/measure/improper_tests.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
 #include <numbers>
 
 using namespace crofton::measure;

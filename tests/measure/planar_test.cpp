@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/measure/planar.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/sampling/random.hpp>
 #include <numbers>
 #include <vector>
 

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

@@ -3,8 +3,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/mesh/mesh_mesh.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>

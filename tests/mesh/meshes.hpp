@@ -2,8 +2,8 @@
 // Closed meshes with known insides, and poses for them.
 #pragma once
 #include <cmath>
-#include <crofton/geometry/rigid_transform.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <numbers>
 
 #include "collide/random_boxes.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <crofton/mesh/mesh_mesh.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <vector>

@@ -2,7 +2,7 @@
 // Scanned and modelled meshes of the shared data, against brute force.
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <cstdio>
 #include <fstream>
 #include <glm/geometric.hpp>

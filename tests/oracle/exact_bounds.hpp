@@ -2,8 +2,8 @@
 // Oracles for axis-aligned boxes and balls against a frustum, in exact rational arithmetic (GMP), and cases that nearly
 // touch.
 #pragma once
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <oracle/exact_frustum.hpp>
 #include <oracle/near_misses.hpp>
 

@@ -5,8 +5,8 @@
 #include <gmpxx.h>
 
 #include <crofton/cull/classify.hpp>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <vector>
 
 namespace crofton::oracle {

@@ -2,7 +2,7 @@
 // Where a small crowd should be cut: all cuts tried, each part sorted anew.
 #pragma once
 #include <algorithm>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <cstdint>
 #include <limits>

@@ -6,7 +6,7 @@
 #include <gmpxx.h>
 
 #include <cmath>
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <limits>
 #include <vector>
 

@@ -2,8 +2,8 @@
 // Random frusta, and boxes and triangles that barely meet them or barely do not.
 #pragma once
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>

@@ -2,7 +2,7 @@
 // A crowd of boxes of many sizes, turned every way.
 #pragma once
 #include <cmath>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <oracle/near_misses.hpp>
 #include <vector>
 

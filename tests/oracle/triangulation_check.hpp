@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <map>
 #include <set>
 #include <string>

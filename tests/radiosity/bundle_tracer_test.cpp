@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/form_factors.hpp>
+#include <crofton/radiosity/patches.hpp>
 #include <limits>
 
 #include "shapes.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/core/thread_pool.hpp>
-#include <crofton/radiosity/form_factors.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/radiosity/patches.hpp>
 
 #include "shapes.hpp"
 

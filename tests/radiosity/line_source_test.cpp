@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/radiosity/line_source.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
 
 #include "shapes.hpp"
 

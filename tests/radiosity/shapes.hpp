@@ -2,7 +2,7 @@
 // Small scenes with known answers.
 #pragma once
 #include <cmath>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <numbers>

@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/core/thread_pool.hpp>
-#include <crofton/radiosity/form_factors.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <cstring>
 

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <cmath>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstring>
 #include <limits>

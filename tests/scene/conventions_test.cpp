@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <crofton/scene/planar_polygon.hpp>
+#include <crofton/scene/scene.hpp>
 #include <limits>
 
 using namespace crofton;

@@ -2,9 +2,8 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/planar.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

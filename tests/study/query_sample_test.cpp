@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <limits>

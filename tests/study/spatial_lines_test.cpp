@@ -3,7 +3,6 @@
 #include <cmath>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <numbers>
 #include <vector>

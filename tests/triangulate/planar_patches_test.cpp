@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/triangulate/planar_patches.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <limits>
 #include <set>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Polygons for the tests: by hand, at random, and from the shared data.
 #pragma once
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <fstream>
 #include <initializer_list>
 #include <nlohmann/json.hpp>

@@ -2,10 +2,9 @@
 // theory.md (6): the expected number of a polygon's triangles that a random frustum meets is affine in the weight.
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

@@ -2,7 +2,7 @@
 // Objects with meshes, under nodes and by themselves.
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/crofton.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>

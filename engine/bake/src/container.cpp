@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <crofton/bake/checksum.hpp>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <string>
 
 namespace crofton::bake {

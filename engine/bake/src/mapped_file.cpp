@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/bake/mapped_file.hpp>
+#include <crofton/bake/baked_scene.hpp>
 
 #include <cerrno>
 #include <crofton/core/memory.hpp>

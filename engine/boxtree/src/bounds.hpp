@@ -2,7 +2,7 @@
 // Writing boxes into leaves and bounds into nodes, rounded outward.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 
 #include "leaf_extents.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 
 #include "bounds.hpp"
 #include "leaf_writer.hpp"

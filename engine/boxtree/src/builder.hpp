@@ -4,7 +4,7 @@
 #include <array>
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <span>
 

@@ -2,7 +2,7 @@
 // Boxes into the lanes of leaves, and the check that they may go there: in vectors, sixteen at a time.
 #pragma once
 #include <crofton/boxtree/layout.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <span>
 

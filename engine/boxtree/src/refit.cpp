@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 
 #include "bounds.hpp"
 #include "leaf_extents.hpp"

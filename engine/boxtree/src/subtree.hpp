@@ -3,7 +3,7 @@
 #pragma once
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <span>
 
 #include "partition.hpp"

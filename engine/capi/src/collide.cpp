@@ -3,7 +3,7 @@
 
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 
 #include "collider.hpp"
 #include "convert.hpp"

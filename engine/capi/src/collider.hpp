@@ -4,7 +4,7 @@
 #include <crofton/capi/collide.h>
 
 #include <algorithm>
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 
 #include "call.hpp"

@@ -2,7 +2,7 @@
 #include <crofton/capi/contacts.h>
 
 #include <crofton/collide/convex_query.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 
 #include "collider.hpp"
 #include "convert.hpp"

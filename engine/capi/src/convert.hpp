@@ -5,8 +5,8 @@
 #include <crofton/capi/hooks.h>
 
 #include <crofton/core/executor.hpp>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/scene/transform.hpp>
 #include <cstddef>
 #include <cstring>

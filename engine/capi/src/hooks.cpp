@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/capi/hooks.h>
 
-#include <crofton/core/assert.hpp>
-#include <crofton/core/log.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <mutex>
 #include <string>
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <crofton/capi/scene.h>
 
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 
 namespace crofton::capi {
 

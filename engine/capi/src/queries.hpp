@@ -6,8 +6,7 @@
 
 #include <cmath>
 #include <crofton/cull/cull.hpp>
-#include <crofton/geometry/ray.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/geometry/shapes.hpp>
 
 #include "call.hpp"
 #include "convert.hpp"

@@ -3,8 +3,8 @@
 // it.
 #pragma once
 #include <crofton/collide/box_block.hpp>
-#include <crofton/core/function_ref.hpp>
-#include <crofton/geometry/id_pair.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/geometry/shapes.hpp>
 
 namespace crofton::collide {
 

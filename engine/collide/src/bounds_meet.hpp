@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Do the axis-aligned bounds of two boxes meet? Exactly.
 #pragma once
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 
 namespace crofton::collide {
 

@@ -2,7 +2,7 @@
 // Puts boxes into the lanes of a block.
 #pragma once
 #include <crofton/collide/box_block.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 
 namespace crofton::collide {
 

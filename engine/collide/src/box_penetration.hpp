@@ -3,7 +3,7 @@
 #pragma once
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton::collide {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Two boxes in float, in the layout of pair_columns.hpp: gaps along the fifteen axes.
 #pragma once
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <cstring>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The exact answer along a few axes, in integers, for boxes whose numbers are not too unlike in size.
 #pragma once
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstdint>
 
 #include "pair_columns.hpp"

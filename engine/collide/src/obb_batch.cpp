@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 
 #include "block_filter.hpp"
 #include "box_lanes.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/shapes.hpp>
+#include <crofton/collide/convex_query.hpp>
 #include <crofton/geometry/expansion.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/shapes.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 

@@ -2,7 +2,7 @@
 // An order of items in which neighbours in space are neighbours in memory.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <span>
 
 namespace crofton::collide {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <atomic>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <cstdio>
 #include <cstdlib>
 

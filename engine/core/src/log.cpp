@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/core/log.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <cstdio>
 #include <mutex>
 

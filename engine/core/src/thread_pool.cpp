@@ -3,8 +3,8 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <crofton/core/assert.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/executor.hpp>
 #include <mutex>
 #include <thread>
 #include <vector>

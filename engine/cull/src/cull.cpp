@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/cull/cull.hpp>
 
 #include "tree/query.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
-#include <crofton/core/assert.hpp>
-#include <crofton/cull/draw_ranges.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/cull/cull.hpp>
 
 #include "id_bits_kernel.hpp"
 

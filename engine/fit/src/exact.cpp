@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/fit/exact.hpp>
+#include <crofton/fit/fit.hpp>
 
 #include "fitter.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/fit/fit_many.hpp>
+#include <crofton/fit/fit.hpp>
 #include <memory>
 #include <string>
 

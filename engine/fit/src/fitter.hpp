@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Runs the fits of all qualities. Keeps its memory from one fit to the next.
 #pragma once
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
 
 #include "cloud/point_cloud.hpp"

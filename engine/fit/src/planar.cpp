@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/fit/planar.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/measure/planar.hpp>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 

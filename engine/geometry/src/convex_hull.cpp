@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/geometry/convex_hull.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

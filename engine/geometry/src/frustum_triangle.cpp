@@ -2,8 +2,8 @@
 // Does a triangle meet a frustum? Exactly, for any number of planes.
 #include <array>
 #include <cmath>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/dyadic.hpp>
-#include <crofton/geometry/frustum.hpp>
 
 namespace crofton {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/expansion.hpp>
-#include <crofton/geometry/obb.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 

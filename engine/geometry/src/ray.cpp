@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/geometry/ray.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton {

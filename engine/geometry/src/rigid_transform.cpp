@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

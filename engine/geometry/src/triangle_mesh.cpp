@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <string>
 
 namespace crofton {

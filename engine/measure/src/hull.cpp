@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>
 

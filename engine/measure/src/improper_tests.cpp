@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/measure/improper_tests.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
 #include <numbers>
 
 namespace crofton::measure {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>

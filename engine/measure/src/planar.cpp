@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/planar.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

@@ -2,7 +2,7 @@
 // Exact signs of determinants of points, shared by the triangle tests.
 #pragma once
 #include <crofton/geometry/predicates.hpp>
-#include <crofton/geometry/triangle.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <glm/vec3.hpp>
 
 namespace crofton::mesh {

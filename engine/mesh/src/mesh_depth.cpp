@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::mesh {

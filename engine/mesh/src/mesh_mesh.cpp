@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <crofton/core/assert.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

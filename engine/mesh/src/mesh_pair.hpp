@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the SIMD traversals of a pair of mesh trees share with the exact code around them.
 #pragma once
-#include <crofton/core/function_ref.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/mesh/mesh_layout.hpp>
 
 namespace crofton::mesh {

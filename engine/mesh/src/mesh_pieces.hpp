@@ -2,7 +2,7 @@
 // The connected pieces of a mesh, and which of them are closed.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdint>
 #include <span>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Puts a few hundred pairs of triangles in order.
 #pragma once
-#include <crofton/geometry/id_pair.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <span>
 
 namespace crofton::mesh {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A mesh tree's triangles as the exact tests see them.
 #pragma once
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
-#include <crofton/mesh/triangle_triangle.hpp>
 
 namespace crofton::mesh {
 

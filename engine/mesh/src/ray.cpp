@@ -3,7 +3,7 @@
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/plane_filter.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
 #include <crofton/mesh/ray_box.hpp>

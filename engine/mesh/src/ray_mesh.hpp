@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the SIMD traversal of a ray shares with the exact code around it.
 #pragma once
-#include <crofton/core/function_ref.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/mesh/mesh_layout.hpp>
 
 namespace crofton::mesh {

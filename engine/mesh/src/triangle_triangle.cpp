@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/plane_filter.hpp>
-#include <crofton/mesh/triangle_triangle.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

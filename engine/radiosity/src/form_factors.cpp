@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/core/assert.hpp>
-#include <crofton/radiosity/form_factors.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/radiosity/patches.hpp>
 #include <string>
 
 #include "local_lines.hpp"

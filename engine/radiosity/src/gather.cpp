@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What arrives on every patch along one set of lines.
-#include <crofton/radiosity/form_factors.hpp>
+#include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <numeric>
 
 #include "local_lines.hpp"

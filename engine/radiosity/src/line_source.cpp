@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/core/assert.hpp>
-#include <crofton/radiosity/line_source.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <glm/geometric.hpp>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/radiosity/patches.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::radiosity {

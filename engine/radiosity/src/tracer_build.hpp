@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <glm/vec3.hpp>
 
 #include "trace_kernels.hpp"

@@ -2,7 +2,7 @@
 #include "instance.hpp"
 
 #include <algorithm>
-#include <crofton/core/log.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <cstring>
 
 namespace crofton::render {

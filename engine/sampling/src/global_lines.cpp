@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

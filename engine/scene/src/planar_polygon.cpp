@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/scene/planar_polygon.hpp>
+#include <crofton/scene/scene.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 

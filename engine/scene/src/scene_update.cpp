@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <crofton/core/log.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <cstring>
 #include <string>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <glm/geometric.hpp>
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

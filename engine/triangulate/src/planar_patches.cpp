@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <crofton/geometry/predicates.hpp>
-#include <crofton/triangulate/planar_patches.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

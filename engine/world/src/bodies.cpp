@@ -2,7 +2,7 @@
 #include "bodies.hpp"
 
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>

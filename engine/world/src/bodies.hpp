@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Objects as meshes: the trees over triangles that rays and contacts ask.
 #pragma once
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
 

@@ -2,8 +2,8 @@
 // Where a ray enters a ball.
 #pragma once
 #include <cmath>
-#include <crofton/geometry/sphere.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 

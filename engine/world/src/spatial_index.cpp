@@ -2,7 +2,7 @@
 #include "spatial_index.hpp"
 
 #include <algorithm>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <utility>
 
 namespace crofton::world {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One colour per vertex out of glTF materials: factors, textures, vertex colours.
 #pragma once
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <string>

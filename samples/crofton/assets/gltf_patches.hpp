@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A glTF asset's planar patches triangulated anew; everything else about it stays as it is.
 #pragma once
-#include <crofton/triangulate/planar_patches.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <functional>
 #include <optional>
 #include <string>

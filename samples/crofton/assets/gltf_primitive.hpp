@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One primitive of a glTF mesh as a triangle mesh with what its vertices carry.
 #pragma once
-#include <crofton/geometry/triangle_mesh.hpp>
-#include <crofton/triangulate/planar_patches.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <deque>
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shapes that the town is made of, added one by one to a mesh of flat-coloured faces.
 #pragma once
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/scene/transform.hpp>
 #include <glm/vec3.hpp>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assets/retriangulate.hpp"
 
-#include <crofton/triangulate/planar_patches.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 

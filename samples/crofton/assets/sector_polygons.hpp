@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which polygons, with holes, the lines around a sector enclose.
 #pragma once
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <string>
 #include <vector>
 

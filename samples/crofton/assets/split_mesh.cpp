@@ -2,7 +2,7 @@
 #include "assets/split_mesh.hpp"
 
 #include <algorithm>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <numeric>
 #include <unordered_map>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Large meshes into pieces that culling can tell apart.
 #pragma once
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <vector>
 
 namespace crofton::assets {

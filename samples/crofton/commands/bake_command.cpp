@@ -2,7 +2,7 @@
 // `crofton bake`: a scene made ready at build time, and what such a file holds.
 #include <chrono>
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // crofton fit: the best oriented box around each mesh, with the proof that it is.
 #include <chrono>
-#include <crofton/fit/exact.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdio>
 #include <memory>
 

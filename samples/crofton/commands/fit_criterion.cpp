@@ -2,7 +2,7 @@
 #include "fit_criterion.hpp"
 
 #include <charconv>
-#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What `crofton fit` found, as JSON, as text and as a drawing.
 #pragma once
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>

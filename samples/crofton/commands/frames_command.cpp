@@ -2,7 +2,7 @@
 // `crofton frames`: the main job. A scene, a camera path; each frame culled, collided, drawn and counted.
 #include <algorithm>
 #include <chrono>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/render/device.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstdio>

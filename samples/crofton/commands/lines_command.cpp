@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/line_source.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstdio>
 

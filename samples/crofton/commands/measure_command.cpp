@@ -3,10 +3,10 @@
 // says.
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/convex_hull.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/radiosity/line_source.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>

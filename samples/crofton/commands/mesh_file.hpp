@@ -2,7 +2,7 @@
 // One mesh, or one set of points, from any file that scenes come in.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,7 @@
 // Polygons with holes out of files of several formats.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <string>
 #include <vector>
 

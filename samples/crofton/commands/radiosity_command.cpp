@@ -2,7 +2,7 @@
 // `crofton radiosity`: light in a scene, to a target error, baked into vertex colours.
 #include <chrono>
 #include <cmath>
-#include <crofton/core/thread_pool.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <cstdio>
 #include <cstring>

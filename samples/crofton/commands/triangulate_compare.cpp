@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/triangulate/planar_patches.hpp>
+#include <crofton/triangulate/triangulate.hpp>
 #include <cstdio>
 
 #include "assets/gltf_primitive.hpp"

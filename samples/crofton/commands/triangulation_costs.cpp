@@ -5,12 +5,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <crofton/sampling/random.hpp>
-#include <crofton/sampling/random_motion.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

@@ -2,8 +2,8 @@
 // The bound by which an instance is culled: what `crofton frames --bounds` chooses between.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>

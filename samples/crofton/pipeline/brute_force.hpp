@@ -3,8 +3,8 @@
 // tested, in double, sharing no code with the engine's queries.
 #pragma once
 #include <array>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <cstdint>
 #include <span>
 

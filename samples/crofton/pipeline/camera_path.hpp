@@ -2,7 +2,7 @@
 // Where the camera is in each frame: built-in paths around any scene, or one recorded in a file.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #include "draw_list.hpp"
 
 #include <algorithm>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

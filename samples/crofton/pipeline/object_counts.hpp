@@ -2,7 +2,7 @@
 // What the bounds cannot say: how much of the objects themselves the frustum meets.
 #pragma once
 #include <crofton/cull/classify.hpp>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where one could walk in a scene that does not say so itself.
 #pragma once
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/scene/scene.hpp>
 #include <vector>
 

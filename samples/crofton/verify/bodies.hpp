@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/sampling/random.hpp>
 
 namespace crofton::cli {
 

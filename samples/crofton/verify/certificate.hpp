@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Proofs, checked in exact arithmetic, that a bound and a frustum meet or do not: the judge of `crofton verify cull`.
 #pragma once
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <cstdint>
 
 namespace crofton::cli {

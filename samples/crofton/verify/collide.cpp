@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/obb_batch.hpp>
 #include <crofton/collide/obb_obb.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/criterion.hpp>
-#include <crofton/measure/improper_tests.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/sampling/global_lines.hpp>
 #include <crofton/sampling/random.hpp>
 #include <crofton/study/spatial_lines.hpp>

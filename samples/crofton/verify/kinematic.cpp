@@ -2,7 +2,6 @@
 // The kinematic formula (1) and its likes: predicted measures of motions against counted ones.
 #include <crofton/measure/criterion.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/measure/planar.hpp>
 #include <crofton/sampling/random.hpp>
 #include <numbers>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random_motion.hpp>
+#include <crofton/sampling/random.hpp>
 #include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

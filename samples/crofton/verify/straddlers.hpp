@@ -2,10 +2,9 @@
 // Cameras, and bounds that reach a little across the surface of what they see or stop a little short of it.
 #pragma once
 #include <array>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <random>
 
 namespace crofton::cli {

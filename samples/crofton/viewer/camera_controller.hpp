@@ -2,7 +2,7 @@
 // The camera in the user's hand: flying freely, or circling a point.
 #pragma once
 #include <array>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <optional>
 #include <string>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::viewer {

@@ -2,7 +2,7 @@
 // Where bodies touch, and what keeps those apart that nearly do; in world coordinates.
 #pragma once
 #include <array>
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/scene/scene.hpp>
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which colour each visible instance is drawn in.
 #pragma once
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <vector>
 

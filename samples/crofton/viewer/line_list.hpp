@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Boxes, frusta and segments as lines for the rasterizer, relative to the eye.
 #pragma once
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/geometry/obb.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <span>
 #include <vector>

@@ -2,7 +2,7 @@
 #include "loaded_scene.hpp"
 
 #include <chrono>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 
 #include "assets/retriangulate.hpp"

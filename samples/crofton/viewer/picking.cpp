@@ -2,7 +2,7 @@
 #include "picking.hpp"
 
 #include <cmath>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

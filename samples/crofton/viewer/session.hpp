@@ -2,7 +2,7 @@
 // The viewer's state and one frame of it: events, motion, culling, drawing, user interface, picture.
 #pragma once
 #include <chrono>
-#include <crofton/cull/visible_set.hpp>
+#include <crofton/cull/cull.hpp>
 #include <deque>
 #include <memory>
 

@@ -3,9 +3,9 @@
 #pragma once
 #include <cmath>
 #include <crofton/cull/classify.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/dyadic.hpp>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
 
 namespace crofton::cull {
 

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <crofton/cull/bound_set.hpp>
 
 #include "exact/box_constraints.hpp"

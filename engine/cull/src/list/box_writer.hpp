@@ -2,7 +2,7 @@
 // Boxes into the rows and records of a list, in vectors, sixteen at a time.
 #pragma once
 #include <crofton/cull/list_layout.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #include "list/direct_kernel.hpp"
 
 #include <algorithm>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstddef>
 #include <cstring>
 

@@ -2,9 +2,8 @@
 // A bound as a list keeps it.
 #pragma once
 #include <crofton/cull/list_layout.hpp>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 
 namespace crofton::cull {
 

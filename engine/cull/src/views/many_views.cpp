@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
-#include <crofton/core/assert.hpp>
-#include <crofton/cull/many_views.hpp>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 #include <cstring>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/cull/shadow_volume.hpp>
+#include <crofton/cull/cull.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::cull {

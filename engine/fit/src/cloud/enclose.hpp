@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The last step of every fit: a float box with given axes that holds every point, by exact tests.
 #pragma once
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 
 #include "cloud/point_cloud.hpp"
 #include "search/weights.hpp"

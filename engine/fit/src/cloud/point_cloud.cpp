@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <string>

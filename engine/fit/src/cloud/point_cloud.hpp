@@ -3,9 +3,9 @@
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
-#include <crofton/core/function_ref.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The globally best frame around a cloud, by branch and bound over all orientations.
 #pragma once
-#include <crofton/core/function_ref.hpp>
+#include <crofton/core/executor.hpp>
 #include <cstdint>
 #include <limits>
 

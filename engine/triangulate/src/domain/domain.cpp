@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/core/assert.hpp>
+#include <crofton/core/diagnostics.hpp>
 #include <cstdio>
 #include <limits>
 

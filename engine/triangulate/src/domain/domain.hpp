@@ -2,7 +2,7 @@
 // From the caller's rings to a checked subdivision: which vertices there are, which triangles lie inside.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/polygon.hpp>
+#include <crofton/geometry/mesh.hpp>
 
 #include "domain/half_edge_mesh.hpp"
 #include "domain/spatial_order.hpp"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
+// A scene as a file that is used where it lies.
 #pragma once
 #include <crofton/bake/container.hpp>
-#include <crofton/bake/mapped_file.hpp>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/scene/scene.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,6 +13,27 @@
 #include <string_view>
 
 namespace crofton::bake {
+
+// A file as memory, without reading it first.
+
+// Read-only. Where files cannot be mapped it is read into memory instead. Do not shorten the file meanwhile.
+class MappedFile {
+  public:
+    // Errors name the path and the system's reason.
+    [[nodiscard]] static Result<MappedFile> open(const std::string& path);
+    ~MappedFile();
+    MappedFile(MappedFile&& other) noexcept;
+    MappedFile& operator=(MappedFile&& other) noexcept;
+
+    // Aligned to 64 bytes at least.
+    [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+
+  private:
+    explicit MappedFile(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    std::span<const std::byte> bytes_;
+};
+
+// A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
 
 // What the sections hold; `first` and `count` are ranges of the sections positions, colors, indices, names, points
 // (of polygons) and rings.

@@ -4,7 +4,7 @@
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <cstddef>
 #include <cstdint>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Which of many moving boxes meet?
 #pragma once
-#include <crofton/collide/obb_batch.hpp>
+#include <crofton/collide/obb_obb.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/id_pair.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <cstdint>
 #include <memory>
 #include <span>

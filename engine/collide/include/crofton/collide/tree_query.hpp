@@ -2,11 +2,11 @@
 // Which of many boxes does a body or a ray meet? Asked of the tree that culling uses.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/collide/shapes.hpp>
-#include <crofton/core/function_ref.hpp>
+#include <crofton/collide/convex_query.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/mesh/ray.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <cstdint>
 #include <optional>
 

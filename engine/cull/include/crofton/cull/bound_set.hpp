@@ -7,7 +7,6 @@
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/list_layout.hpp>
-#include <crofton/cull/verdict_bits.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>

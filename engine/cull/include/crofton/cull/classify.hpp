@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The one question a renderer asks of a bound: is this worth drawing?
+// One bound, or many, against a view: outside, straddling, inside, exactly.
 #pragma once
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/frustum.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/cull/statistics.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace crofton::cull {
+
+// The one question a renderer asks of a bound: is this worth drawing?
 
 enum class Verdict : std::uint8_t { outside, straddling, inside };
 
@@ -34,5 +38,21 @@ enum class CullMode : std::uint8_t {
 // Requires verdicts.size() == boxes.size().
 void classify(const Frustum& frustum, std::span<const Obb> boxes, std::span<Verdict> verdicts,
               CullMode mode = CullMode::exact);
+
+// What a query of a list answers.
+
+// Bit i % 64 of word i / 64 is bound i's.
+struct VerdictBits {
+    Vector<std::uint64_t> visible;  // not outside
+    Vector<std::uint64_t> inside;
+    Statistics statistics;
+
+    [[nodiscard]] Verdict verdict(std::size_t i) const {
+        if (!(visible[i / 64] >> (i % 64) & 1)) return Verdict::outside;
+        return inside[i / 64] >> (i % 64) & 1 ? Verdict::inside : Verdict::straddling;
+    }
+
+    Vector<Statistics> by_chunk;  // for the query's own use
+};
 
 }  // namespace crofton::cull

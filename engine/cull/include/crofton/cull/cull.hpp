@@ -1,16 +1,55 @@
 // SPDX-License-Identifier: MIT
-// Which items does a view see? From a list of boxes or from a tree of them.
+// What does a view see of a tree: one view, many at once; as lists, bits and runs; with shadow casters.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/layout.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/statistics.hpp>
-#include <crofton/cull/visible_set.hpp>
-#include <crofton/geometry/frustum.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <glm/vec3.hpp>
 #include <span>
 
 namespace crofton::cull {
+
+// The answer to a query, in buffers that are kept from frame to frame.
+
+class VisibleSet {
+  public:
+    // The items seen, each once: in ResultOrder::ascending by id; in ResultOrder::tree in an order that depends on tree
+    // and view alone: those inside first, then those straddling, each part by and large along the tree.
+    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t inside_count() const { return inside_; }
+    // In ResultOrder::ascending the verdict of ids()[i] is verdicts()[i]. In ResultOrder::tree there are none: the
+    // first inside_count() ids are inside, the others straddle.
+    [[nodiscard]] std::span<const Verdict> verdicts() const {
+        return std::span(verdicts_).first(verdicts_.empty() ? 0 : size_);
+    }
+    [[nodiscard]] const Statistics& statistics() const { return statistics_; }
+
+  private:
+    friend class Query;
+    Vector<boxtree::ItemId> ids_;  // as long as its largest use so far
+    Vector<boxtree::ItemId> straddling_;
+    Vector<boxtree::ItemId> part_inside_, part_straddling_;
+    Vector<std::uint32_t> undecided_;
+    Vector<Verdict> verdicts_;
+    Vector<std::uint64_t> bits_;
+    Vector<std::uint64_t> runs_;
+    Vector<std::uint32_t> work_;
+    VerdictBits moving_bits_;
+    Vector<std::uint32_t> listed_;
+    std::size_t size_ = 0, inside_ = 0;
+    Statistics statistics_;
+};
+
+// Which items does a view see? From a list of boxes or from a tree of them.
 
 using boxtree::ItemId;
 
@@ -41,5 +80,66 @@ void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& vi
 // straddling: reported, never lost.
 void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view,
                   VisibleSet& visible, const CullOptions& options = {}, Executor& executor = serial_executor());
+
+// Shadow cascades, cube faces, two eyes: up to 32 views in one walk through the tree.
+
+class ManyVisible {
+  public:
+    // The items that at least one view sees, each once: first those in leaves that each view sees whole or not at all,
+    // then the others, both in the order of the tree's slots.
+    [[nodiscard]] std::span<const ItemId> ids() const { return std::span(ids_).first(size_); }
+    // Bit v: view v sees ids()[i].
+    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const {
+        std::uint32_t mask = 0;
+        std::memcpy(&mask, masks_.data() + i * mask_bytes_, mask_bytes_);
+        return mask;
+    }
+    [[nodiscard]] std::size_t size() const { return size_; }
+
+  private:
+    friend class ManyViewsQuery;
+    Vector<ItemId> ids_;
+    Vector<std::uint8_t> masks_;  // as many bytes a mask as the views need bits
+    std::size_t mask_bytes_ = 4;
+    Vector<std::uint32_t> whole_, open_, listed_;  // by leaf
+    Vector<std::uint16_t> planes_;                 // by view, by leaf
+    Vector<std::uint64_t> touched_, stack_;
+    Vector<std::uint32_t> moving_masks_;
+    std::size_t size_ = 0;
+};
+
+// For each view the items that find_visible() finds for it alone. Requires at most 32 views. Allocates nothing once
+// `visible` has been used for as many views of a tree of this size.
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
+                  CullMode mode = CullMode::exact);
+
+// Visible items as a bit set, or as runs that one draw call takes.
+
+// Items [first, first + count).
+struct ItemRange {
+    boxtree::ItemId first = 0;
+    std::uint32_t count = 0;
+};
+
+// Bit id % 64 of word id / 64 for each id; `bits` is made as long as `items` needs. Requires ids below `items`,
+// each once.
+void to_bits(std::span<const boxtree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits);
+
+// The runs of set bits, ascending; runs that are at most `max_gap` items apart become one (drawing a few items in vain
+// is cheaper than another draw call). Runs are long where ids follow the tree's order: number the instances by
+// BoxTree::slot_items().
+void merge_ranges(std::span<const std::uint64_t> bits, std::uint32_t max_gap, Vector<ItemRange>& ranges);
+
+// Who may throw a shadow into a view? The view volume, drawn out towards the light.
+
+// All points from which going away from a far light one may come into `view`: { x + s · toward_light : x in view, s ≥ 0
+// }. The planes, at most 12 for a camera's 6, come from eliminating s (Fourier, Motzkin): those that look along the
+// light stay, and every pair of one that does and one that does not makes one parallel to the light. Exact up to the
+// rounding of the new planes. Errors: a direction that is zero or not finite; a view of more than 6 planes; a volume
+// that is all of space.
+[[nodiscard]] Result<Frustum> shadow_volume(const Frustum& view, const glm::dvec3& toward_light);
+
+// As above for a light at a point: the convex hull of the view and the light.
+[[nodiscard]] Result<Frustum> shadow_volume_of_point(const Frustum& view, const glm::dvec3& light_position);
 
 }  // namespace crofton::cull

@@ -6,7 +6,6 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/many_views.hpp>
 #include <cstddef>
 #include <span>
 

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Oriented boxes around points, best by a criterion that the user's queries imply.
+// Oriented boxes around points, best for a criterion: quickly, many at once, with a proof, in the plane.
 #pragma once
+#include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace crofton::fit {
+
+// Oriented boxes around points, best by a criterion that the user's queries imply.
 
 enum class Quality : std::uint8_t {
     fast,   // a local search with little effort: within 0.3 % of the optimum on average (docs/notes/fit.md)
@@ -35,5 +40,81 @@ struct FitOptions {
 // A box that contains all the boxes, locally best by the criterion. One box is returned as it is.
 // Errors: no boxes (empty); a box that is not valid, by index.
 [[nodiscard]] Result<Obb> merge(std::span<const Obb> boxes, const measure::Criterion& criterion);
+
+// Boxes around many small clusters at once, as the leaves and nodes of trees need them.
+
+// Cluster i holds the points positions[indices[j]], j in [ends[i − 1], ends[i]); the first begins at 0. An index may
+// occur in several clusters, and several times in one.
+struct Clusters {
+    std::span<const glm::vec3> positions;
+    std::span<const std::uint32_t> indices;
+    std::span<const std::uint32_t> ends;
+};
+
+// As fit_obb for every cluster: writes boxes[i] for cluster i. The same bits with any executor. A cluster that cannot
+// be fitted (no points, a bad index or point) gets a default box; the others get theirs, and the error names the first
+// bad cluster. Requires boxes.size() == clusters.ends.size(), and ends that never decrease and stay within `indices`.
+[[nodiscard]] Result<void> fit_many(const Clusters& clusters, const FitOptions& options, Executor& executor,
+                                    std::span<Obb> boxes);
+
+// The best box there is, with a proof of how good it is.
+
+struct Progress {
+    double value = 0.0;        // criterion of the best box so far
+    double lower_bound = 0.0;  // proved: no box has less
+    std::uint64_t cells = 0;   // sets of orientations bounded so far
+};
+
+struct ExactOptions {
+    measure::Criterion criterion = measure::minimal_perimeter();
+    double gap = 2e-7;  // relative; the search stops when it has proved this much. In [1e-12, 1)
+    // The search also ends when one of these is spent, or when `progress` says so; the result carries the gap reached.
+    double time_budget_seconds = std::numeric_limits<double>::infinity();
+    std::uint64_t max_cells = 1u << 22;
+    // Called some thousand times a second; returning false ends the search. May be null.
+    const FunctionRef<bool(const Progress&)>* progress = nullptr;
+};
+
+struct ExactFit {
+    Obb box;                   // contains every point exactly
+    double value = 0.0;        // the criterion of `box`, its rounding to float included
+    double lower_bound = 0.0;  // proved: no box around the points has less
+    double gap = 0.0;          // (value − lower_bound) / value, 0 for value 0
+    // The part of `gap` due to storing the axes as floats. These are tilted by up to 6e-8, which widens thin boxes. By
+    // volume, gap and rounding of a tilted flat set are 1: its best box has volume 0, its best box of floats has not.
+    // gap − rounding is what the search left unproved.
+    double rounding = 0.0;
+    bool complete = false;  // the search ended by itself
+    std::uint64_t cells = 0;
+    std::size_t subset = 0;  // number of points that the proof used
+};
+
+// The global optimum over all orientations. The same bits for any order and duplication of the points and any
+// instruction set, unless a time budget or the callback ends the search. Errors: as fit_obb, and a gap or a time budget
+// out of range.
+[[nodiscard]] Result<ExactFit> fit_exact(std::span<const glm::vec3> points, const ExactOptions& options = {});
+[[nodiscard]] Result<ExactFit> fit_exact(std::span<const glm::dvec3> points, const ExactOptions& options = {});
+
+// In the plane: the best rectangle and the smallest disc around points.
+
+enum class PlanarCriterion : std::uint8_t {
+    perimeter,  // the measure of the lines that meet the rectangle
+    area,       // the measure of the points in it
+};
+
+// The best of all rectangles, by rotating calipers: one side holds an edge of the hull (theory.md section 3). O(n log
+// n). Contains every point, and is larger than the best by rounding only. Errors: no points; a coordinate that is NaN,
+// infinite or beyond 1e30 in magnitude, by index.
+[[nodiscard]] Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion);
+
+// The same in O(n) around a convex polygon given by its corners in counter-clockwise order, none twice. One or two
+// corners are a point or a segment. If the polygon is not convex, the rectangle contains every point but may not be
+// best.
+[[nodiscard]] Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon,
+                                                            PlanarCriterion criterion);
+
+// The smallest disc. Contains every point, and is larger than the smallest by rounding only. Errors as above.
+// O(n log n) for the hull, then expected linear in its corners (Welzl 1991).
+[[nodiscard]] Result<Disc> minimal_disc(std::span<const glm::dvec2> points);
 
 }  // namespace crofton::fit

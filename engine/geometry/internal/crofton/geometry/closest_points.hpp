@@ -3,7 +3,7 @@
 // too large by rounding but never stands for a point outside.
 #pragma once
 #include <algorithm>
-#include <crofton/geometry/triangle.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Intrinsic volumes: the three numbers that say how often uniformly random queries meet a convex body.
+// Intrinsic volumes of convex bodies and figures: how often uniformly random queries meet them.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <span>
 
 namespace crofton::measure {
+
+// Intrinsic volumes: the three numbers that say how often uniformly random queries meet a convex body.
 
 // Volume V, surface area F, and the integral of mean curvature M = 2π · mean width, in the third, second and first
 // power of the coordinates' unit.
@@ -41,5 +45,51 @@ struct IntrinsicVolumes {
 // The measure of the motions under which B meets K, by the principal kinematic formula, theory.md (1). Rotations have
 // measure 1, translations their volume.
 [[nodiscard]] double kinematic_measure(const IntrinsicVolumes& b, const IntrinsicVolumes& k);
+
+// The plane: area and perimeter say how often uniformly random queries meet a convex figure.
+
+// A segment's perimeter is twice its length: the limit of thin rectangles.
+struct PlanarMeasures {
+    double area = 0.0;
+    double perimeter = 0.0;
+};
+
+[[nodiscard]] PlanarMeasures planar_measures_of_disc(double radius);
+[[nodiscard]] PlanarMeasures planar_measures_of_rectangle(double a, double b);
+[[nodiscard]] PlanarMeasures planar_measures_of_segment(double length);
+// Points in counter-clockwise order; one or two are a point or a segment. Convexity is not checked.
+[[nodiscard]] PlanarMeasures planar_measures_of_convex_polygon(std::span<const glm::dvec2> points);
+
+// The convex hull's corners, counter-clockwise from the lowest of the leftmost points, none within a segment of two
+// others (Andrew's monotone chain). One corner where all points are equal, two where all are collinear. Errors: no
+// points (empty); a NaN or infinite coordinate, by its index.
+[[nodiscard]] Result<Vector<glm::dvec2>> convex_hull(std::span<const glm::dvec2> points);
+
+// The measure of the motions of the plane under which B meets K, by Blaschke's formula: A_B + A_K + L_B·L_K/2π.
+// Rotations have measure 1, translations their area.
+[[nodiscard]] double kinematic_measure(const PlanarMeasures& b, const PlanarMeasures& k);
+
+// The measure of the lines, without direction, that hit a convex figure: its perimeter (Crofton).
+[[nodiscard]] inline double measure_of_lines(const PlanarMeasures& k) {
+    return k.perimeter;
+}
+
+// How often a bound misleads: a query meets the bound but not the object, or contains the object but not the bound.
+
+// m_o: the measure of motions under which `query` hits the bound and misses the object (its hull), exactly, by (1).
+// Rays of length ℓ are intrinsic_volumes_of_segment(ℓ): α = V − V₀ and β = (F − F₀)·ℓ/4. Requires object ⊂ bound, both
+// convex.
+[[nodiscard]] double improper_outside(const IntrinsicVolumes& query, const IntrinsicVolumes& bound,
+                                      const IntrinsicVolumes& object);
+[[nodiscard]] double improper_outside(const PlanarMeasures& query, const PlanarMeasures& bound,
+                                      const PlanarMeasures& object);
+
+// m_i: the measure of motions under which `query` contains the object but not the bound, to first order for queries
+// large beside the bound: F_B·(M − M₀)/4π in space, L_B·(L − L₀)/2π in the plane. What is left out grows with the total
+// length of the query's edges (space) and not at all (plane). Rays contain nothing: 0.
+[[nodiscard]] double improper_inside(const IntrinsicVolumes& query, const IntrinsicVolumes& bound,
+                                     const IntrinsicVolumes& object);
+[[nodiscard]] double improper_inside(const PlanarMeasures& query, const PlanarMeasures& bound,
+                                     const PlanarMeasures& object);
 
 }  // namespace crofton::measure

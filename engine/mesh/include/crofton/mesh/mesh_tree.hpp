@@ -4,8 +4,8 @@
 #include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/mesh/mesh_layout.hpp>
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A ray against a box, both known to be valid.
 #pragma once
-#include <crofton/mesh/ray.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <optional>
 
 namespace crofton::mesh {

@@ -4,8 +4,8 @@
 #include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/sampling/global_lines.hpp>
 #include <cstdint>

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
-// What lines and rays meet among many triangles: every crossing in order, or the first.
+// Global lines for a scene, and what lines and rays meet among many triangles.
 #pragma once
 #include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/sampling/global_lines.hpp>
 #include <cstdint>
 #include <span>
 
 namespace crofton::radiosity {
+
+// What lines and rays meet among many triangles: every crossing in order, or the first.
 
 namespace detail {
 struct TracerNode;
@@ -64,5 +67,58 @@ class LineTracer {
     Vector<detail::TracerNode> nodes_;
     Vector<detail::TracerLeaf> leaves_;
 };
+
+// Global lines for a scene, in blocks that anyone can draw again: the four right ways of theory.md section 6.
+
+enum class LineMethod : std::uint8_t {
+    sphere_points,  // two uniform points of the bounding sphere
+    disc,           // uniform direction, uniform point of the orthogonal disc
+    bundles,        // parallel lines through a jittered grid
+    walls,          // from the bounding box's surface, cosine-weighted
+};
+[[nodiscard]] const char* to_string(LineMethod method);
+
+// Lines in blocks of about kBlock: exactly that many, but for bundles, which hold that many on average.
+class LineSource {
+  public:
+    static constexpr std::size_t kBlock = 1024;
+
+    // Requires bounds of at least two positive extents.
+    LineSource(const Aabb& bounds, LineMethod method, std::uint64_t seed,
+               sampling::Sequence sequence = sampling::Sequence::pseudo_random);
+
+    // Replaces `lines` with block number `block`: the same lines whenever and wherever it is drawn.
+    void draw(std::uint64_t block, Vector<Line>& lines) const;
+
+    // Of the body that the lines fill uniformly. N lines cross a surface of area S inside it 2·N·S/surface_area() times
+    // on average.
+    [[nodiscard]] double surface_area() const;
+    [[nodiscard]] LineMethod method() const { return method_; }
+
+  private:
+    Aabb bounds_;
+    Sphere ball_;
+    LineMethod method_;
+    std::uint64_t seed_;
+    sampling::UnitPoints points_;
+};
+
+// What uniform lines see of a scene. The mean number of crossings is 2·S/F for a surface S in a convex body of surface
+// F, whatever the shape: it is the spread, and the share of lines that meet nothing, that tell open scenes from crowded
+// ones.
+struct VisibilityComplexity {
+    double mean_crossings = 0.0;
+    double deviation = 0.0;  // of the number of crossings, from line to line
+    double wasted = 0.0;     // share of lines without any
+    std::uint64_t lines = 0;
+};
+[[nodiscard]] VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineSource& source,
+                                                         std::uint64_t blocks, Executor& executor = serial_executor());
+
+// The way that wastes fewer lines on this scene: walls or disc, by a trial of 8 blocks each. A box always has
+// less surface than its circumscribed sphere (for a cube 2/π of it, for a flat square box 1/π), and the chance to meet
+// a scene inside goes with the reciprocal: so for boxes as bodies this is walls, and by how much is
+// docs/notes/radiosity.md's.
+[[nodiscard]] LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed);
 
 }  // namespace crofton::radiosity

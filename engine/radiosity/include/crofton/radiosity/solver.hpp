@@ -3,7 +3,6 @@
 #pragma once
 #include <crofton/core/executor.hpp>
 #include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/line_source.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstddef>

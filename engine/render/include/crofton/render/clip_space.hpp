@@ -2,7 +2,7 @@
 // Model coordinates to clip coordinates in float, and how many triangles a software clipper makes of a mesh there.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/aabb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>

@@ -2,7 +2,7 @@
 // What the rasterizer's static buffer holds, and how meshes get there.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 

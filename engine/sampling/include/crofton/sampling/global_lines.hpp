@@ -4,11 +4,9 @@
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/line.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
-#include <crofton/geometry/triangle_mesh.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/sampling/random.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>

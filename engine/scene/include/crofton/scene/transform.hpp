@@ -2,7 +2,7 @@
 // Affine maps in double, and the box of a box after one.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>

@@ -6,7 +6,7 @@
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // The oriented box around an object that fewest queries hit together with all its ancestors' bounds (paper, section 4).
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/geometry/obb.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/measure/criterion.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <cstdint>

@@ -4,8 +4,8 @@
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/geometry/obb.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 

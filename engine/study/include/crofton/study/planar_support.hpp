@@ -3,8 +3,7 @@
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/disc.hpp>
-#include <crofton/geometry/rectangle.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <glm/vec2.hpp>
 #include <span>
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/geometry/obb.hpp>
 #include <crofton/sampling/global_lines.hpp>
 #include <cstdint>
 #include <span>

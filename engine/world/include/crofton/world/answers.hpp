@@ -3,10 +3,9 @@
 #pragma once
 #include <crofton/collide/convex_query.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/cull/many_views.hpp>
-#include <crofton/cull/visible_set.hpp>
-#include <crofton/mesh/mesh_mesh.hpp>
-#include <crofton/world/handle.hpp>
+#include <crofton/cull/cull.hpp>
+#include <crofton/mesh/mesh_query.hpp>
+#include <crofton/world/inputs.hpp>
 #include <cstdint>
 #include <span>
 

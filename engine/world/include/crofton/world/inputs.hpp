@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a World is told: views of the caller's memory, and what an object is.
+// What a World is told: handles, views of the caller's memory, and what an object is.
 #pragma once
 #include <array>
-#include <crofton/geometry/aabb.hpp>
-#include <crofton/geometry/obb.hpp>
-#include <crofton/geometry/sphere.hpp>
+#include <compare>
+#include <crofton/core/requirements.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/scene/transform.hpp>
-#include <crofton/world/handle.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -15,6 +15,28 @@
 #include <type_traits>
 
 namespace crofton {
+
+// Names of things in a World: an index that is used again, and a generation that tells its users apart.
+
+inline constexpr std::uint32_t kNoIndex = ~std::uint32_t{0};
+
+// Indices are dense: below the largest number of things that lived at once, so that they may index the caller's own
+// arrays. A handle whose thing has been removed is stale: calls that take it fail with ErrorCode::stale_handle. A
+// generation comes back after 2^32 removals of one index.
+template <class Tag>
+struct Handle {
+    std::uint32_t index = kNoIndex;
+    std::uint32_t generation = 0;
+
+    [[nodiscard]] bool is_null() const { return index == kNoIndex; }
+    auto operator<=>(const Handle&) const = default;
+};
+
+using ObjectHandle = Handle<struct ObjectTag>;
+using NodeHandle = Handle<struct NodeTag>;
+using MeshHandle = Handle<struct MeshTag>;
+
+// What a World is told: views of the caller's memory, and what an object is.
 
 // `size` values of type T in the caller's memory, `stride` bytes apart: a span, or a member of an array of structs.
 template <class T>

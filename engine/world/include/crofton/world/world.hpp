@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The front door: objects in, what is seen and what touches out.
 #pragma once
-#include <crofton/collide/shapes.hpp>
+#include <crofton/collide/convex_query.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/geometry/ray.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
 #include <memory>

@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
+// Questions asked of triangles and meshes: contacts, distances, rays.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/geometry/id_pair.hpp>
-#include <crofton/geometry/rigid_transform.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
-#include <crofton/mesh/triangle_triangle.hpp>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace crofton::mesh {
+
+// Do two triangles meet? Exactly, whatever their shape.
+
+// True iff the closed convex hulls of the three points of each share a point. Coplanar triangles and those that are
+// segments or points are answered like all others. Signs come from a double filter with a proven bound, then from exact
+// arithmetic. Exact while coordinates are 0 or have magnitudes in [1e-70, 1e70]; NaN meets nothing.
+[[nodiscard]] bool intersects(const Triangle& a, const Triangle& b);
+
+struct SegmentOfContact {
+    glm::dvec3 begin{0.0}, end{0.0};
+};
+// Where two triangles that meet do so: the ends of their common segment (equal for a point; for coplanar triangles the
+// ends of a longest diagonal of their common polygon, at most). Rounded to double.
+[[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
+
+// Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
 
 // All queries take the pose of b in a's frame; it has passed validate(RigidTransform). Triangles are a's own and those
 // of b with each vertex put through transform(RigidTransform); for these the answers are exact. Boxes are only ever
@@ -80,5 +96,24 @@ struct MeshDistance {
 // True iff some point of a is closer than `tolerance` ≥ 0 to some point of b, or they meet.
 [[nodiscard]] bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                double tolerance, MeshStatistics* statistics = nullptr);
+
+// Rays and segments against boxes, triangles and meshes.
+
+// Where a ray enters a box, or 0 where it starts inside. Rounded: a grazing hit within 1e-14 of the coordinates' size
+// may be told either way.
+[[nodiscard]] std::optional<double> raycast(const Ray& ray, const Obb& box);
+
+// Whether the ray's line passes through a triangle, edges and corners included, is decided exactly, so nothing slips
+// through between triangles that share an edge; t is rounded. A ray within the plane of a triangle does not hit that
+// triangle.
+[[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
+
+struct RayHit {
+    double t = 0.0;
+    std::uint32_t triangle = 0;
+};
+// The nearest triangle, decided likewise; of hits with equal t that of the lowest index.
+[[nodiscard]] std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh);
+[[nodiscard]] bool hits_any(const Ray& ray, const mesh::MeshTree& mesh);
 
 }  // namespace crofton::mesh
