@@ -22,6 +22,13 @@ Dyadic::Dyadic(double value) {
     trim();
 }
 
+double Dyadic::scaled(int exponent) const {
+    double top = 0.0;
+    for (std::uint32_t i = count_; i-- > (count_ > 3 ? count_ - 3 : 0);)
+        top += std::ldexp(static_cast<double>(limbs_[i]), 32 * (exponent_ + static_cast<std::int32_t>(i)) - exponent);
+    return sign_ < 0 ? -top : top;
+}
+
 void Dyadic::copy(const Dyadic& other) {
     sign_ = other.sign_;
     exponent_ = other.exponent_;

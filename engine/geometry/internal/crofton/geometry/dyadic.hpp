@@ -22,6 +22,9 @@ class Dyadic {
     }
 
     [[nodiscard]] int sign() const { return sign_; }
+    // value = scaled(e) · 2^e: rounded, off by less than 2^-51 of itself; e ≥ exponent() keeps it below 1.
+    [[nodiscard]] int exponent() const { return 32 * (exponent_ + static_cast<std::int32_t>(count_)); }
+    [[nodiscard]] double scaled(int exponent) const;
     [[nodiscard]] Dyadic operator-() const;
     friend Dyadic operator+(const Dyadic& a, const Dyadic& b);
     friend Dyadic operator-(const Dyadic& a, const Dyadic& b);

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <crofton/convex/body.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <string>
+
+#include "support.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kUp = 1.0 + 0x1p-50;  // outweighs the roundings of a length
+
+Result<void> check_length(float value, const char* name, std::uint64_t item = kNoItem) {
+    if (!std::isfinite(value))
+        return fail(ErrorCode::non_finite, item, std::string("body: ") + name + " is NaN or infinite");
+    if (value < 0.0f)
+        return fail(ErrorCode::invalid_argument, item, std::string("body: ") + name + " is negative (inside out)");
+    if (value > kMaxExtent) return fail(ErrorCode::out_of_range, item, std::string("body: ") + name + " exceeds 1e15");
+    return {};
+}
+
+Result<void> check_lengths(float half_height, float radius) {
+    if (Result<void> good = check_length(half_height, "half height"); !good) return good;
+    return check_length(radius, "radius");
+}
+
+}  // namespace
+
+void Body::set_corners(std::span<const glm::dvec3> corners) {
+    vertex_count_ = static_cast<int>(corners.size());
+    padded_ = vertex_count_ <= 4 ? 4 : 8;
+    for (std::size_t i = 0; i < 8; ++i)
+        for (int k = 0; k < 3; ++k) corners_[k][i] = corners[std::min(i, corners.size() - 1)][k];
+    for (const glm::dvec3& p : corners) reach_ = std::max(reach_, glm::length(p) * kUp);
+}
+
+Result<Body> Body::ball(float radius) {
+    if (Result<void> good = check_length(radius, "radius"); !good) return tl::unexpected(good.error());
+    Body body;
+    body.kind_ = Kind::ball;
+    body.radius_ = static_cast<double>(radius);
+    const glm::dvec3 center(0.0);
+    body.set_corners({&center, 1});
+    return body;
+}
+
+Result<Body> Body::capsule(float half_height, float radius) {
+    if (Result<void> good = check_lengths(half_height, radius); !good) return tl::unexpected(good.error());
+    Body body;
+    body.kind_ = Kind::capsule;
+    body.radius_ = static_cast<double>(radius);
+    const double h = static_cast<double>(half_height);
+    const glm::dvec3 ends[2] = {{0.0, -h, 0.0}, {0.0, h, 0.0}};
+    body.set_corners(ends);
+    return body;
+}
+
+Result<Body> Body::cylinder(float half_height, float radius) {
+    if (Result<void> good = check_lengths(half_height, radius); !good) return tl::unexpected(good.error());
+    Body body;
+    body.kind_ = Kind::cylinder;
+    body.half_ = {static_cast<double>(radius), static_cast<double>(half_height), static_cast<double>(radius)};
+    body.reach_ = std::sqrt(body.half_.x * body.half_.x + body.half_.y * body.half_.y) * kUp;
+    return body;
+}
+
+Result<Body> Body::cone(float half_height, float radius) {
+    Result<Body> body = cylinder(half_height, radius);
+    if (body) body->kind_ = Kind::cone;
+    return body;
+}
+
+Result<Body> Body::box(const glm::vec3& half_extents) {
+    for (int k = 0; k < 3; ++k)
+        if (Result<void> good = check_length(half_extents[k], "half extent", static_cast<std::uint64_t>(k)); !good)
+            return tl::unexpected(good.error());
+    Body body;
+    body.kind_ = Kind::box;
+    body.half_ = glm::dvec3(half_extents);
+    glm::dvec3 corners[8];
+    for (int i = 0; i < 8; ++i)
+        for (int k = 0; k < 3; ++k) corners[i][k] = (i >> k & 1) != 0 ? body.half_[k] : -body.half_[k];
+    body.set_corners(corners);
+    return body;
+}
+
+Result<Body> Body::triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const glm::vec3 corners[3] = {a, b, c};
+    glm::dvec3 wide[3];
+    for (std::uint64_t i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            if (Result<void> good = check_length(std::abs(corners[i][k]), "triangle's corner", i); !good)
+                return tl::unexpected(good.error());
+            wide[i] = glm::dvec3(corners[i]);
+        }
+    Body body;
+    body.kind_ = Kind::triangle;
+    body.set_corners(wide);
+    return body;
+}
+
+Body Body::hull(const Hull& hull) {
+    Body body;
+    body.kind_ = Kind::hull;
+    body.hull_ = &hull;
+    body.vertex_count_ = static_cast<int>(hull.vertices().size());
+    body.reach_ = hull.radius() * kUp;
+    return body;
+}
+
+Result<Body> Body::half_space(const Plane& plane) {
+    for (int k = 0; k < 3; ++k)
+        if (!std::isfinite(plane.normal[k]) || !std::isfinite(plane.offset))
+            return fail(ErrorCode::non_finite, kNoItem, "body: the half-space's plane is NaN or infinite");
+    const glm::dvec3 m = glm::abs(plane.normal);
+    const double most = std::max(m.x, std::max(m.y, m.z)), limit = static_cast<double>(kMaxExtent);
+    if (most == 0.0) return fail(ErrorCode::degenerate, kNoItem, "body: the half-space's normal is 0");
+    if (!(most >= 1.0 / limit && most <= limit && std::abs(plane.offset) <= limit * most))
+        return fail(ErrorCode::out_of_range, kNoItem, "body: the half-space's plane is beyond 1e15");
+    Body body;
+    body.kind_ = Kind::half_space;
+    body.plane_ = plane;
+    body.reach_ = HUGE_VAL;
+    return body;
+}
+
+Result<Body> Body::rounded(const Body& core, float radius) {
+    if (core.kind_ == Kind::half_space)
+        return fail(ErrorCode::unsupported, kNoItem, "body: a half-space is not rounded; move its plane");
+    if (Result<void> good = check_length(radius, "rounding"); !good) return tl::unexpected(good.error());
+    Body body = core;
+    body.radius_ += static_cast<double>(radius);
+    return body;
+}
+
+glm::dvec3 support_point(const Body& body, const glm::dvec3& direction) {
+    const glm::dvec3 core = core_support(body, direction).point;
+    const double length = glm::length(direction);
+    return body.radius() > 0.0 && length > 0.0 ? core + body.radius() / length * direction : core;
+}
+
+}  // namespace crofton::convex

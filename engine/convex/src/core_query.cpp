@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "core_query.hpp"
+
+#include <limits>
+
+#include "exact_gjk.hpp"
+
+namespace crofton::convex {
+
+Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far) {
+    Nearest found = nearest_points(pair, cache, near, far);
+    if (!pair.has_polytope_cores() || found.meeting == Meeting::meeting) return found;
+    const bool cut_short = found.meeting == Meeting::apart && (found.lower > far || found.upper <= near);
+    if (cut_short) return found;
+    const bool close_enough = found.upper - found.lower <= 0.5e-10 * pair.size;
+    if (found.meeting == Meeting::apart && close_enough) return found;
+    const ExactNearest exact = exact_nearest(pair, found.simplex, !close_enough || found.upper > far);
+    found.meeting = exact.meet ? Meeting::meeting : Meeting::apart;
+    if (exact.meet) {
+        found.simplex = exact.simplex;
+        found.lower = found.upper = 0.0;
+        return found;
+    }
+    const double lower = std::max(0.0, -pair.extent(exact.normal) - pair.error);
+    if (lower >= found.lower || found.normal == glm::dvec3(0.0)) found.lower = lower, found.normal = exact.normal;
+    const double upper = glm::length(witness(exact.simplex)) + pair.error;
+    if (upper <= found.upper) found.upper = upper, found.simplex = exact.simplex;
+    return found;
+}
+
+namespace {
+
+// The deepest points: with b moved out of a along the normal and a little farther they are the nearest ones. If those
+// lie along another direction, that one may be less deep.
+void find_face(const Pair& pair, Depth& depth) {
+    const double beyond = 1e-3 * pair.size;
+    for (int round = 0; round < 4; ++round) {
+        const glm::dvec3 shift = (depth.upper + beyond) * depth.normal;
+        RigidTransform moved = pair.pose_b;
+        moved.translation += shift;
+        const Nearest apart = core_distance(Pair({pair.a, pair.pose_a}, {pair.b, moved}), nullptr, 0.0,
+                                            std::numeric_limits<double>::max());
+        depth.face = apart.simplex;
+        for (int i = 0; i < depth.face.count; ++i) {
+            depth.face.corner[i].on_b -= shift;
+            depth.face.corner[i].w += shift;
+        }
+        const glm::dvec3 way = shift + witness(apart.simplex);
+        const double length = glm::length(way);
+        if (!(length > 0.0)) break;
+        const double upper = pair.extent(way / length) + pair.error;
+        if (!(upper < depth.upper - 4.0 * pair.error)) break;
+        depth.upper = upper;
+        depth.normal = way / length;
+    }
+    depth.has_face = true;
+}
+
+}  // namespace
+
+Depth core_depth(const Pair& pair, const Simplex& start) {
+    Depth depth = expand(pair, start);
+    if (pair.has_polytope_cores() && depth.upper - depth.lower > 0.5e-9 * pair.size) {
+        depth = depth_by_axes(pair, depth);
+        depth.has_face = false;
+    }
+    if (!depth.has_face) find_face(pair, depth);
+    return depth;
+}
+
+// The image of { n·x + offset ≥ 0 } under y = R x + t is { (cof(R) n)·(y − t) + det(R) offset ≥ 0 }.
+HalfSpaceGap half_space_gap(const Placed& half_space, const Placed& body) {
+    const glm::dmat3& r = half_space.pose.rotation;
+    const glm::dmat3 cofactor(glm::cross(r[1], r[2]), glm::cross(r[2], r[0]), glm::cross(r[0], r[1]));
+    const Plane& plane = half_space.body.plane();
+    const glm::dvec3 normal = cofactor * plane.normal;
+    const double length = glm::length(normal);
+    HalfSpaceGap result;
+    result.outward = -normal / length;
+    const double level = glm::dot(r[0], cofactor[0]) * plane.offset / length;
+    const glm::dvec3 offset = body.pose.translation - half_space.pose.translation;
+    const Support deepest = core_support(body.body, Pair::local(body.pose.rotation, -result.outward));
+    result.gap = -((deepest.along + glm::dot(-result.outward, offset)) + level);
+    result.error = 0x1p-47 * (body.body.reach() + glm::length(offset) + std::abs(level));
+    result.deepest = body.pose.rotation * deepest.point + body.pose.translation;
+    return result;
+}
+
+bool half_space_meets(const Placed& half_space, const Placed& body) {
+    const HalfSpaceGap gap = half_space_gap(half_space, body);
+    const double apart = gap.gap - body.body.radius();
+    if (apart > gap.error) return false;
+    if (apart < -gap.error) return true;
+    if (std::isnan(apart)) return false;
+    return body.body.is_polytope() ? meets_half_space(body, half_space) : apart <= 0.0;
+}
+
+double gap_of_half_spaces(const Placed& a, const Placed& b, glm::dvec3& normal) {
+    // b's part that lies deepest along a's normal: a plane of points, or all directions.
+    const glm::dmat3 &ra = a.pose.rotation, &rb = b.pose.rotation;
+    const glm::dvec3 na = glm::normalize(ra * a.body.plane().normal), nb = glm::normalize(rb * b.body.plane().normal);
+    if (glm::cross(na, nb) != glm::dvec3(0.0) || glm::dot(na, nb) > 0.0) return 0.0;
+    const glm::dvec3 offset = b.pose.translation - a.pose.translation;
+    const double apart = -(a.body.plane().offset / glm::length(a.body.plane().normal) +
+                           b.body.plane().offset / glm::length(b.body.plane().normal) + glm::dot(na, offset));
+    normal = -na;
+    return std::max(0.0, apart);
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What the queries share: the cores' distance or depth, exact where double is not enough.
+#pragma once
+#include "epa.hpp"
+#include "gjk.hpp"
+
+namespace crofton::convex {
+
+// nearest_points, where needed followed by exact arithmetic: of polytopes `meeting` is never unknown, and unless the
+// search was cut short by `near` or `far` the bounds are closer than 1e-10 of the size.
+[[nodiscard]] Nearest core_distance(const Pair& pair, const PairCache* cache, double near, double far);
+
+// What `distance` tells of it.
+[[nodiscard]] Distance distance_of(const Pair& pair, const Nearest& core);
+
+// Of cores that meet: of polytopes the bounds are closer than 1e-9 of the size.
+[[nodiscard]] Depth core_depth(const Pair& pair, const Simplex& start);
+
+// A half-space and another body.
+struct HalfSpaceGap {
+    double gap = 0.0, error = 0.0;  // of the core from the boundary, negative within; off by at most `error`
+    glm::dvec3 outward{0.0};        // unit normal of the boundary
+    glm::dvec3 deepest{0.0};        // point of the core, in the world
+};
+[[nodiscard]] HalfSpaceGap half_space_gap(const Placed& half_space, const Placed& body);
+
+// Whether they meet: exact for polytopes without rounding.
+[[nodiscard]] bool half_space_meets(const Placed& half_space, const Placed& body);
+// How far apart two half-spaces are, with the normal from the first; nothing if they meet.
+[[nodiscard]] double gap_of_half_spaces(const Placed& a, const Placed& b, glm::dvec3& normal);
+
+[[nodiscard]] inline bool is_half_space(const Placed& body) {
+    return body.body.kind() == Kind::half_space;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "features.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pair.hpp"
+
+namespace crofton::convex {
+namespace {
+
+// Corner numbers of a box's face 2k + s, counter-clockwise from outside, and the edges between them.
+constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+// Edge 4k + j: j numbers the corners with bit k clear, by their other two bits.
+std::uint16_t box_edge(int from, int to) {
+    const int along = from ^ to, k = along == 1 ? 0 : along == 2 ? 1 : 2, low = from & to;
+    const int j = (low >> ((k + 1) % 3) & 1) + 2 * (low >> ((k + 2) % 3) & 1);
+    return static_cast<std::uint16_t>(4 * k + j);
+}
+
+constexpr double kHalf = 0.70710678118654752;
+constexpr double kEighths[8][2] = {{1, 0},  {kHalf, kHalf},   {0, 1},  {-kHalf, kHalf},
+                                   {-1, 0}, {-kHalf, -kHalf}, {0, -1}, {kHalf, -kHalf}};
+
+struct Frame {
+    const glm::dmat3& rotation;
+    glm::dvec3 translation;
+    [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& p) const { return rotation * p + translation; }
+};
+
+void add(Patch& patch, const glm::dvec3& point, int vertex, int edge) {
+    patch.point[patch.count] = point;
+    patch.vertex[patch.count] = static_cast<std::uint16_t>(vertex);
+    patch.edge[patch.count++] = static_cast<std::uint16_t>(edge);
+}
+
+void disc(const Body& body, const Frame& place, bool upper, Patch& patch) {
+    const double radius = body.half_extents().x, height = body.half_extents().y;
+    patch.self = {FeatureKind::face, static_cast<std::uint16_t>(upper ? 1 : 0)};
+    patch.normal = upper ? place.rotation[1] : -place.rotation[1];
+    for (int k = 0; k < 8; ++k) {
+        const int at = upper ? (8 - k) % 8 : k;  // from x towards z is clockwise seen from above
+        const glm::dvec3 p(radius * kEighths[at][0], upper ? height : -height, radius * kEighths[at][1]);
+        add(patch, place(p), (upper ? 8 : 0) + at, (upper ? 8 : 0) + (upper ? (at + 7) % 8 : at));
+    }
+}
+
+// Discs where they look along the direction, else the line of the side that is farthest out.
+void round_patch(const Body& body, const Frame& place, const glm::dvec3& local, Patch& patch) {
+    const double radius = body.half_extents().x, height = body.half_extents().y;
+    const double across = std::sqrt(local.x * local.x + local.z * local.z);
+    const bool cone = body.kind() == Kind::cone;
+    // The side's normal has the components (2 h, r) / length across and along the axis; a cylinder's (1, 0).
+    const double length = std::sqrt(4.0 * height * height + radius * radius);
+    const double side = !cone ? across : length > 0.0 ? (2.0 * height * across + radius * local.y) / length : 0.0;
+    const double cap = cone ? -local.y : std::abs(local.y);
+    if (cap >= side || !(across > 0.0)) {
+        if (!cone || local.y < 0.0) return disc(body, place, local.y > 0.0, patch);
+        patch.self = {FeatureKind::vertex, 17};
+        return add(patch, place({0.0, height, 0.0}), 17, 16);
+    }
+    const glm::dvec3 rim(radius * (local.x / across), 0.0, radius * (local.z / across));
+    patch.self = {FeatureKind::edge, 16};
+    add(patch, place({rim.x, -height, rim.z}), 16, 16);
+    add(patch, place(cone ? glm::dvec3(0.0, height, 0.0) : glm::dvec3(rim.x, height, rim.z)), 17, 16);
+}
+
+}  // namespace
+
+int face_along(const Body& body, const glm::dvec3& d) {
+    if (body.kind() == Kind::box) {
+        const glm::dvec3 m = glm::abs(d);
+        const int k = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
+        return 2 * k + (d[k] > 0.0 ? 1 : 0);
+    }
+    if (body.vertex_count() == 3) return 0;
+    if (body.kind() != Kind::hull) return -1;
+    double along = 0.0;
+    const Hull& hull = *body.hull();
+    return farthest_of(hull.normal_column(0), hull.normal_column(1), hull.normal_column(2), hull.padded_face_count(), d,
+                       along);
+}
+
+void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Patch& patch) {
+    const Body& body = placed.body;
+    const Frame place{placed.pose.rotation, placed.pose.translation - origin};
+    patch.count = 0;
+    patch.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
+    if (body.kind() == Kind::box) {
+        const auto& corners = kBoxFaces[face];
+        patch.normal = (face & 1) != 0 ? place.rotation[face / 2] : -place.rotation[face / 2];
+        for (int k = 0; k < 4; ++k)
+            add(patch, place(body.vertex(corners[k])), corners[k], box_edge(corners[k], corners[(k + 1) % 4]));
+    } else if (body.kind() == Kind::hull) {
+        const auto vertices = body.hull()->face_vertices(face), edges = body.hull()->face_edges(face);
+        patch.normal = place.rotation * body.hull()->face_normal(face);
+        for (std::size_t k = 0; k < vertices.size(); ++k)
+            add(patch, place(body.vertex(vertices[k])), vertices[k], edges[k]);
+    } else {
+        for (int k = 0; k < 3; ++k) add(patch, place(body.vertex(k)), k, k);
+        const glm::dvec3 n = glm::cross(patch.point[1] - patch.point[0], patch.point[2] - patch.point[0]);
+        patch.normal = glm::length(n) > 0.0 ? glm::normalize(n) : glm::dvec3(0.0);
+    }
+}
+
+void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch) {
+    const Body& body = placed.body;
+    const glm::dvec3 local = Pair::local(placed.pose.rotation, direction);
+    if (const int face = face_along(body, local); face >= 0) {
+        patch_of_face(placed, face, origin, patch);
+        if (body.vertex_count() == 3 && glm::dot(patch.normal, direction) < 0.0) {  // from behind
+            std::swap(patch.point[1], patch.point[2]);
+            std::swap(patch.vertex[1], patch.vertex[2]);
+            std::swap(patch.edge[0], patch.edge[2]);
+            patch.normal = -patch.normal;
+        }
+        return;
+    }
+    const Frame place{placed.pose.rotation, placed.pose.translation - origin};
+    patch.count = 0;
+    patch.normal = direction;
+    if (!body.has_polytope_core()) return round_patch(body, place, local, patch);
+    for (int k = 0; k < body.vertex_count(); ++k) add(patch, place(body.vertex(k)), k, 0);
+    patch.self = {patch.count == 1 ? FeatureKind::vertex : FeatureKind::edge, 0};
+}
+
+Feature feature_of(const Body& body, const int* vertices, int count) {
+    int distinct[4], found = 0;
+    for (int i = 0; i < count; ++i)
+        if (std::find(distinct, distinct + found, vertices[i]) == distinct + found) distinct[found++] = vertices[i];
+    if (found == 1) return {FeatureKind::vertex, static_cast<std::uint16_t>(distinct[0])};
+    if (body.kind() == Kind::hull) {
+        const auto edges = body.hull()->edges();
+        for (std::size_t e = 0; found == 2 && e < edges.size(); ++e)
+            if ((edges[e].vertices[0] == distinct[0] && edges[e].vertices[1] == distinct[1]) ||
+                (edges[e].vertices[0] == distinct[1] && edges[e].vertices[1] == distinct[0]))
+                return {FeatureKind::edge, static_cast<std::uint16_t>(e)};
+        for (int f = 0; f < body.hull()->face_count(); ++f) {
+            const auto loop = body.hull()->face_vertices(f);
+            if (std::all_of(distinct, distinct + found,
+                            [&](int v) { return std::find(loop.begin(), loop.end(), v) != loop.end(); }))
+                return {FeatureKind::face, static_cast<std::uint16_t>(f)};
+        }
+    } else if (body.kind() == Kind::box) {
+        const int differing = distinct[0] ^ distinct[1];
+        if (found == 2 && (differing & (differing - 1)) == 0)
+            return {FeatureKind::edge, box_edge(distinct[0], distinct[1])};
+        for (int f = 0; f < 6; ++f)
+            if (std::all_of(distinct, distinct + found, [&](int v) { return (v >> (f / 2) & 1) == (f & 1); }))
+                return {FeatureKind::face, static_cast<std::uint16_t>(f)};
+    } else if (found == 2) {
+        const int low = std::min(distinct[0], distinct[1]);
+        return {FeatureKind::edge, static_cast<std::uint16_t>(low + std::max(distinct[0], distinct[1]) == 2 ? 2 : low)};
+    }
+    return {FeatureKind::face, 0};
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The part of a body's surface that looks along a direction: a polygon, a segment or a point, with ids.
+#pragma once
+#include <crofton/convex/manifold.hpp>
+
+namespace crofton::convex {
+
+inline constexpr int kMaxPatch = kMaxHullVertices;
+
+// Points in the world's axes around the origin given; counter-clockwise seen from outside. Edge k leads from point k to
+// the next.
+struct Patch {
+    int count = 0;
+    glm::dvec3 normal{0.0};  // unit, outward; of segments and points the direction asked for
+    Feature self;            // the face, or of segments the edge, or of points the vertex
+    glm::dvec3 point[kMaxPatch];
+    std::uint16_t vertex[kMaxPatch], edge[kMaxPatch];
+};
+
+// Of the body's core; the face most nearly across `direction` (unit, in the world).
+void patch_along(const Placed& placed, const glm::dvec3& direction, const glm::dvec3& origin, Patch& patch);
+
+// The patch of one face of a hull, box or triangle.
+void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Patch& patch);
+
+// The feature that the given vertices of a core span: a vertex, an edge, a face.
+[[nodiscard]] Feature feature_of(const Body& body, const int* vertices, int count);
+
+// The face of a polytope that looks most along a direction of the body's frame; −1 where it has none.
+[[nodiscard]] int face_along(const Body& body, const glm::dvec3& local);
+
+}  // namespace crofton::convex

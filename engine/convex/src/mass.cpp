@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/convex/body.hpp>
+#include <numbers>
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Symmetric about y: ∫ x² = ∫ z² and ∫ y², both about the center of mass.
+MassProperties turned(double volume, double center_y, double across, double along) {
+    MassProperties mass;
+    mass.volume = volume;
+    mass.center.y = center_y;
+    mass.inertia[0][0] = mass.inertia[2][2] = across + along;
+    mass.inertia[1][1] = 2.0 * across;
+    return mass;
+}
+
+MassProperties of_capsule(double h, double r) {
+    // A cylinder of height 2h and two half balls, whose centers of mass are 3r/8 beyond its ends.
+    const double cylinder = 2.0 * kPi * r * r * h, ball = 4.0 / 3.0 * kPi * r * r * r;
+    const double across = cylinder * r * r / 4.0 + ball * r * r / 5.0;
+    const double along = cylinder * h * h / 3.0 + ball * (r * r / 5.0 + h * h + 0.75 * h * r);
+    return turned(cylinder + ball, 0.0, across, along);
+}
+
+MassProperties of_cylinder(double h, double r) {
+    const double volume = 2.0 * kPi * r * r * h;
+    return turned(volume, 0.0, volume * r * r / 4.0, volume * h * h / 3.0);
+}
+
+MassProperties of_cone(double h, double r) {
+    // Height 2h: the center of mass is a quarter up, ∫ y² about it is 3/80 (2h)² of the volume.
+    const double volume = 2.0 / 3.0 * kPi * r * r * h;
+    return turned(volume, -0.5 * h, volume * 0.15 * r * r, volume * 0.15 * h * h);
+}
+
+MassProperties of_box(const glm::dvec3& h) {
+    MassProperties mass;
+    mass.volume = 8.0 * h.x * h.y * h.z;
+    for (int k = 0; k < 3; ++k) {
+        const double u = h[(k + 1) % 3], v = h[(k + 2) % 3];
+        mass.inertia[k][k] = mass.volume * (u * u + v * v) / 3.0;
+    }
+    return mass;
+}
+
+}  // namespace
+
+Result<MassProperties> mass_properties(const Body& body) {
+    const glm::dvec3& half = body.half_extents();
+    const double radius = body.radius();
+    switch (body.kind()) {
+        case Kind::ball:
+            return of_capsule(0.0, radius);
+        case Kind::capsule:
+            return of_capsule(body.vertex(1).y, radius);
+        case Kind::half_space:
+            return fail(ErrorCode::unsupported, kNoItem, "mass_properties: a half-space has no finite volume");
+        default:
+            break;
+    }
+    if (radius > 0.0)
+        return fail(ErrorCode::unsupported, kNoItem,
+                    "mass_properties: no formula for this rounded body; use its core's");
+    if (body.kind() == Kind::cylinder) return of_cylinder(half.y, half.x);
+    if (body.kind() == Kind::cone) return of_cone(half.y, half.x);
+    if (body.kind() == Kind::box) return of_box(half);
+    if (body.kind() == Kind::hull) return body.hull()->mass();
+    MassProperties flat;
+    flat.center = (body.vertex(0) + body.vertex(1) + body.vertex(2)) / 3.0;
+    return flat;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Two placed bodies, and the corners of their difference body { p − q : p in a, q in b }.
+#pragma once
+#include <crofton/convex/query.hpp>
+
+#include "support.hpp"
+
+namespace crofton::convex {
+
+// A point of the difference body of the cores, in the world's axes around a's origin.
+struct Corner {
+    glm::dvec3 on_a, on_b, w;  // w = on_a − on_b
+    int a, b;                  // vertices, where the cores are polytopes
+};
+
+// Rounding: with u = 2^-53 and size = reach(a) + reach(b) + |offset|, a coordinate of a rotated point is off by 3.1u
+// of the reach; `offset` by u; the sums add 3u: a coordinate of w is off by 6.1u of the size, w by 11u. A rotated
+// direction is off by 5.4u of its length, its product with a point by 3u more: `along` is off by 9u of
+// size · |direction|, the offset's part by 4.1u. All are below `error` / 2 = 16u · size.
+struct Pair {
+    Pair(const Placed& first, const Placed& second)
+        : a(first.body), b(second.body), pose_a(first.pose), pose_b(second.pose) {
+        offset = pose_b.translation - pose_a.translation;
+        size = a.reach() + b.reach() + glm::length(offset);
+        error = 0x1p-48 * size;
+    }
+
+    [[nodiscard]] static glm::dvec3 local(const glm::dmat3& rotation, const glm::dvec3& d) {
+        return {glm::dot(rotation[0], d), glm::dot(rotation[1], d), glm::dot(rotation[2], d)};
+    }
+    [[nodiscard]] Corner corner(const glm::dvec3& p, const glm::dvec3& q, int i, int j) const {
+        const glm::dvec3 on_a = pose_a.rotation * p, on_b = pose_b.rotation * q + offset;
+        return {on_a, on_b, on_a - on_b, i, j};
+    }
+    [[nodiscard]] Corner corner(int i, int j) const { return corner(a.vertex(i), b.vertex(j), i, j); }
+
+    // The farthest corner along d; `along` is the farthest extent dot(d, w), within error / 2 · |d|.
+    [[nodiscard]] Corner support(const glm::dvec3& d, double& along) const {
+        const Support p = core_support(a, local(pose_a.rotation, d)), q = core_support(b, local(pose_b.rotation, -d));
+        along = p.along + (q.along - glm::dot(d, offset));
+        return corner(p.point, q.point, p.vertex, q.vertex);
+    }
+    // As support, without the corner.
+    [[nodiscard]] double extent(const glm::dvec3& d) const {
+        const Support p = core_support(a, local(pose_a.rotation, d)), q = core_support(b, local(pose_b.rotation, -d));
+        return p.along + (q.along - glm::dot(d, offset));
+    }
+    [[nodiscard]] bool has_polytope_cores() const { return a.has_polytope_core() && b.has_polytope_core(); }
+
+    const Body &a, &b;
+    const RigidTransform &pose_a, &pose_b;
+    glm::dvec3 offset{0.0};  // of b's origin from a's
+    double size = 0.0, error = 0.0;
+};
+
+}  // namespace crofton::convex

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <crofton/convex/query.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+
+#include "core_query.hpp"
+#include "exact_gjk.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool finite_pair(const Pair& pair) {
+    return pair.size < kInfinity && std::isfinite(pair.pose_a.rotation[0].x + pair.pose_a.rotation[1].y) &&
+           std::isfinite(pair.pose_b.rotation[0].x + pair.pose_b.rotation[1].y);
+}
+
+Distance flipped(Distance d) {
+    std::swap(d.on_a, d.on_b);
+    d.normal = -d.normal;
+    return d;
+}
+Penetration flipped(Penetration p) {
+    std::swap(p.on_a, p.on_b);
+    p.normal = -p.normal;
+    return p;
+}
+
+Distance half_space_distance(const Placed& a, const Placed& b) {
+    Distance d;
+    if (is_half_space(b)) {
+        d.distance = d.lower = d.upper = gap_of_half_spaces(a, b, d.normal);
+        return d;
+    }
+    const HalfSpaceGap gap = half_space_gap(a, b);
+    const double apart = gap.gap - b.body.radius();
+    d.on_b = d.on_a = gap.deepest - b.body.radius() * gap.outward;
+    if (half_space_meets(a, b)) return d;
+    d.distance = std::max(apart, std::numeric_limits<double>::min());
+    d.lower = std::max(0.0, apart - gap.error);
+    d.upper = std::max(0.0, apart + gap.error);
+    d.normal = gap.outward;
+    d.on_a = d.on_b - d.distance * d.normal;
+    return d;
+}
+
+Penetration half_space_penetration(const Placed& a, const Placed& b) {
+    Penetration p;
+    if (is_half_space(b)) {
+        p.overlapping = intersects(a, b);
+        if (p.overlapping) p.depth = p.lower = p.upper = kInfinity;
+        return p;
+    }
+    p.overlapping = half_space_meets(a, b);
+    if (!p.overlapping) return p;
+    const HalfSpaceGap gap = half_space_gap(a, b);
+    const double depth = b.body.radius() - gap.gap;
+    p.depth = std::max(0.0, depth);
+    p.lower = std::max(0.0, depth - gap.error);
+    p.upper = std::max(0.0, depth + gap.error);
+    p.normal = gap.outward;
+    p.on_b = gap.deepest - b.body.radius() * gap.outward;
+    p.on_a = p.on_b + p.depth * p.normal;
+    return p;
+}
+
+struct CorePoints {
+    glm::dvec3 on_a{0.0}, on_b{0.0};  // around a's origin
+};
+CorePoints core_points(const Simplex& s) {
+    CorePoints points;
+    for (int i = 0; i < s.count; ++i) {
+        points.on_a += s.weight[i] * s.corner[i].on_a;
+        points.on_b += s.weight[i] * s.corner[i].on_b;
+    }
+    return points;
+}
+
+}  // namespace
+
+Result<void> validate_pose(const RigidTransform& pose, std::uint64_t item) {
+    if (Result<void> good = validate(pose, item); !good) return good;
+    if (!(glm::determinant(pose.rotation) > 0.0))
+        return fail(ErrorCode::invalid_argument, item, "pose: the matrix mirrors, which turns bodies inside out");
+    return {};
+}
+
+bool intersects(const Placed& a, const Placed& b, PairCache* cache) {
+    if (is_half_space(a) || is_half_space(b)) {
+        if (!is_half_space(b)) return half_space_meets(a, b);
+        if (!is_half_space(a)) return half_space_meets(b, a);
+        glm::dvec3 normal(0.0);
+        return !(gap_of_half_spaces(a, b, normal) > 0.0);
+    }
+    const Pair pair(a, b);
+    if (!finite_pair(pair)) return false;
+    const double rounding = a.body.radius() + b.body.radius();
+    if (cache != nullptr && cache->count < 4 && cache->axis != glm::dvec3(0.0)) {
+        // A plane that parted them before; its normal's length is 1 within 4u.
+        if (pair.extent(cache->axis) < -rounding * (1.0 + 0x1p-50) - pair.error) return false;
+    }
+    const Nearest core = core_distance(pair, cache, rounding, rounding);
+    remember(core, cache);
+    if (core.meeting == Meeting::meeting) return true;
+    if (rounding == 0.0) return core.meeting != Meeting::apart;
+    if (core.lower > rounding) return false;
+    return core.upper <= rounding || 0.5 * (core.lower + core.upper) <= rounding;
+}
+
+Distance distance(const Placed& a, const Placed& b, PairCache* cache) {
+    if (is_half_space(a)) return half_space_distance(a, b);
+    if (is_half_space(b)) return flipped(half_space_distance(b, a));
+    const Pair pair(a, b);
+    if (!finite_pair(pair)) return {};
+    const Nearest core = core_distance(pair, cache, 0.0, kInfinity);
+    remember(core, cache);
+    return distance_of(pair, core);
+}
+
+Distance distance_of(const Pair& pair, const Nearest& core) {
+    const CorePoints points = core_points(core.simplex);
+    const double ra = pair.a.radius(), rb = pair.b.radius(), rounding = ra + rb;
+    const double between = glm::length(points.on_a - points.on_b);
+    Distance d;
+    d.on_a = pair.pose_a.translation + points.on_a;
+    d.on_b = pair.pose_a.translation + points.on_b;
+    const bool apart = core.meeting == Meeting::apart && (rounding == 0.0 || between > rounding);
+    if (!apart) {
+        if (core.meeting == Meeting::apart) d.on_a += ra / rounding * (d.on_b - d.on_a);
+        d.on_b = d.on_a;
+        return d;
+    }
+    d.normal = core.normal;
+    d.on_a += ra * d.normal;
+    d.on_b -= rb * d.normal;
+    d.distance = std::max(between - rounding, std::numeric_limits<double>::min());
+    d.lower = std::max(0.0, core.lower - rounding - 0x1p-52 * rounding);
+    d.upper = core.upper - rounding + 0x1p-52 * rounding;
+    return d;
+}
+
+Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
+    if (is_half_space(a)) return half_space_penetration(a, b);
+    if (is_half_space(b)) return flipped(half_space_penetration(b, a));
+    const Pair pair(a, b);
+    Penetration p;
+    if (!finite_pair(pair)) return p;
+    const double ra = a.body.radius(), rb = b.body.radius(), rounding = ra + rb;
+    const Nearest core = core_distance(pair, cache, 0.0, rounding);
+    remember(core, cache);
+    CorePoints points;
+    const double slack = 0x1p-52 * rounding;
+    if (core.meeting == Meeting::apart) {
+        points = core_points(core.simplex);
+        const double between = glm::length(points.on_a - points.on_b);
+        if (rounding == 0.0 || core.lower > rounding || between > rounding) return p;
+        p.depth = rounding - between;
+        p.lower = std::max(0.0, rounding - core.upper - slack);
+        p.upper = rounding - core.lower + slack;
+        p.normal = core.normal;
+    } else {
+        const Depth depth = core_depth(pair, core.simplex);
+        points = core_points(depth.face);
+        p.depth = std::max(0.0, depth.upper - pair.error) + rounding;
+        p.lower = depth.lower + rounding - slack;
+        p.upper = depth.upper + rounding + slack;
+        p.normal = depth.normal;
+        if (cache != nullptr) cache->axis = p.normal;
+    }
+    p.overlapping = true;
+    p.on_a = pair.pose_a.translation + points.on_a + ra * p.normal;
+    p.on_b = p.on_a - p.depth * p.normal;
+    return p;
+}
+
+Distance closest_point(const Placed& body, const glm::dvec3& point) {
+    const RigidTransform at{glm::dmat3(1.0), point};
+    static const Body kPoint = *Body::ball(0.0f);
+    return distance({kPoint, at}, body);
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The farthest point of a body's core along a direction, in its own frame.
+#pragma once
+#include <cmath>
+#include <crofton/convex/body.hpp>
+#include <glm/geometric.hpp>
+
+namespace crofton::convex {
+
+// The compilers' own vectors: operations are single roundings on every machine.
+using Lanes2 = double __attribute__((vector_size(16), aligned(8), may_alias));
+
+struct Support {
+    glm::dvec3 point;
+    int vertex;    // of a polytope, else 0
+    double along;  // dot(point, direction)
+};
+
+// The first of the points, given by their coordinates, that is farthest along d. `count` is a multiple of four. NaN
+// directions give 0.
+[[nodiscard]] inline int farthest_of(const double* x, const double* y, const double* z, int count, const glm::dvec3& d,
+                                     double& most) {
+    alignas(16) double along[3 * kMaxHullVertices];
+    const Lanes2 dx{d.x, d.x}, dy{d.y, d.y}, dz{d.z, d.z};
+    const auto value = [&](int i) {
+        const Lanes2 v = (dx * *reinterpret_cast<const Lanes2*>(x + i) + dy * *reinterpret_cast<const Lanes2*>(y + i)) +
+                         dz * *reinterpret_cast<const Lanes2*>(z + i);
+        *reinterpret_cast<Lanes2*>(along + i) = v;
+        return v;
+    };
+    Lanes2 high = value(0), high2 = value(2);
+    for (int i = 4; i < count; i += 4) {
+        const Lanes2 v = value(i), w = value(i + 2);
+        high = v > high ? v : high;
+        high2 = w > high2 ? w : high2;
+    }
+    high = high2 > high ? high2 : high;
+    most = high[1] > high[0] ? high[1] : high[0];
+    for (int i = 0; i < count; ++i)
+        if (along[i] == most) return i;
+    return 0;
+}
+
+[[nodiscard]] inline Support farthest_vertex(const Body& body, const glm::dvec3& d) {
+    double along = 0.0;
+    const int vertex = farthest_of(body.column(0), body.column(1), body.column(2), body.padded_count(), d, along);
+    return {body.vertex(vertex), vertex, along};
+}
+
+[[nodiscard]] inline Support farthest_round(const Body& body, const glm::dvec3& d) {
+    const double radius = body.half_extents().x, height = body.half_extents().y;
+    const double across = std::sqrt(d.x * d.x + d.z * d.z);
+    const glm::dvec3 rim =
+        across > 0.0 ? glm::dvec3(radius * (d.x / across), 0.0, radius * (d.z / across)) : glm::dvec3(radius, 0.0, 0.0);
+    glm::dvec3 point = rim;
+    if (body.kind() == Kind::cylinder)
+        point.y = d.y >= 0.0 ? height : -height;
+    else if (height * d.y > radius * across - height * d.y)
+        point = {0.0, height, 0.0};
+    else
+        point.y = -height;
+    return {point, 0, glm::dot(point, d)};
+}
+
+[[nodiscard]] inline Support core_support(const Body& body, const glm::dvec3& direction) {
+    if (body.kind() == Kind::box) {
+        const glm::dvec3& h = body.half_extents();
+        const int x = direction.x >= 0.0, y = direction.y >= 0.0, z = direction.z >= 0.0;
+        const glm::dvec3 point(x != 0 ? h.x : -h.x, y != 0 ? h.y : -h.y, z != 0 ? h.z : -h.z);
+        return {point, x + 2 * y + 4 * z, glm::dot(point, direction)};
+    }
+    return body.has_polytope_core() ? farthest_vertex(body, direction) : farthest_round(body, direction);
+}
+
+}  // namespace crofton::convex

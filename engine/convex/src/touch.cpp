@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "touch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core_query.hpp"
+
+namespace crofton::convex {
+namespace {
+
+void set_points(const Simplex& s, Touch& touch) {
+    touch.on_a = touch.on_b = glm::dvec3(0.0);
+    touch.vertex_count = 0;
+    for (int i = 0; i < s.count; ++i) {
+        touch.on_a += s.weight[i] * s.corner[i].on_a;
+        touch.on_b += s.weight[i] * s.corner[i].on_b;
+        if (s.weight[i] <= 1e-9) continue;
+        touch.vertices_a[touch.vertex_count] = s.corner[i].a;
+        touch.vertices_b[touch.vertex_count++] = s.corner[i].b;
+    }
+}
+
+// A ball within the core, around a point given from its origin.
+struct InnerBall {
+    glm::dvec3 center;
+    double radius;
+};
+InnerBall inner_ball(const Placed& p) {
+    if (p.body.hull() != nullptr)
+        return {p.pose.rotation * p.body.hull()->mass().center, p.body.hull()->inner_radius()};
+    const glm::dvec3& h = p.body.half_extents();
+    return {glm::dvec3(0.0), p.body.kind() == Kind::box ? 0.999 * std::min(h.x, std::min(h.y, h.z)) : 0.0};
+}
+
+// How far `x` is within the sides of a prism: the least distance, negative outside.
+double distance_within(const Sides& sides, const glm::dvec3& x) {
+    double least = std::numeric_limits<double>::infinity();  // squared, with its sign
+    for (int k = 0; k < sides.count; ++k) {
+        const double along = sides.level[k] - glm::dot(sides.outward[k], x);
+        least = std::min(least, along * std::abs(along) / glm::dot(sides.outward[k], sides.outward[k]));
+    }
+    return least < 0.0 ? -std::sqrt(-least) : std::sqrt(least);
+}
+
+// The same for the clipped polygon and the mean of its corners.
+double inner_distance(const Clipped& clipped, const glm::dvec3& direction) {
+    glm::dvec3 mean(0.0);
+    for (int i = 0; i < clipped.count; ++i) mean += clipped.point[i].on_incident / static_cast<double>(clipped.count);
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < clipped.count; ++i) {
+        const glm::dvec3 &p = clipped.point[i].on_incident,
+                         &q = clipped.point[i + 1 < clipped.count ? i + 1 : 0].on_incident;
+        const glm::dvec3 outward = glm::cross(q - p, direction);
+        const double length = glm::length(outward);
+        if (length > 0.0) least = std::min(least, std::abs(glm::dot(outward, p - mean)) / length);
+    }
+    return least;
+}
+
+// Whether no direction is less deep than `depth`. The difference body has, across the unit vector n at this depth, a
+// disc of radius `inner` around the foot of the origin: at an angle t from n its extent is at least depth · cos t +
+// inner · sin t, which is no less than depth up to t = 2 atan(inner / depth). Beyond, the ball within the difference
+// body, of radius R around c, has extent −c·n cos s − |c across n| sin s + R at the angle s = π − t from −n; that falls
+// with s up to a right angle, so that its value at the last s decides.
+bool least_deep(const Placed& a, const Placed& b, const Pair& pair, const glm::dvec3& n, double depth, double inner) {
+    if (!(inner > depth)) return false;
+    const InnerBall in_a = inner_ball(a), in_b = inner_ball(b);
+    const glm::dvec3 c = in_a.center - in_b.center - pair.offset;
+    const double along = -glm::dot(n, c), across = glm::length(c + along * n);
+    const double t = depth / inner, cosine = (1.0 - t * t) / (1.0 + t * t), sine = 2.0 * t / (1.0 + t * t);
+    return along >= 0.0 && along * cosine - across * sine + (in_a.radius + in_b.radius) >= depth + pair.error;
+}
+
+}  // namespace
+
+bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch) {
+    if (!(pair.size < std::numeric_limits<double>::infinity())) return false;
+    const double rounding = pair.a.radius() + pair.b.radius();
+    const Nearest core = core_distance(pair, cache, 0.0, rounding + margin);
+    remember(core, cache);
+    if (core.meeting == Meeting::apart) {
+        if (core.lower > rounding + margin) return false;
+        set_points(core.simplex, touch);
+        touch.depth = rounding - glm::length(touch.on_a - touch.on_b);
+        touch.normal = core.normal;
+        // Told apart exactly, by less than rounding shows, counts as apart.
+        return touch.depth >= -margin && !(touch.depth >= 0.0 && rounding == 0.0 && margin == 0.0);
+    }
+    const Depth depth = core_depth(pair, core.simplex);
+    set_points(depth.face, touch);
+    touch.depth = std::max(0.0, depth.upper - pair.error) + rounding;
+    touch.normal = depth.normal;
+    if (cache != nullptr) cache->axis = touch.normal;
+    return true;
+}
+
+Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double margin, const PairCache& cache,
+                   Touch& touch, Clipped& clipped) {
+    const bool on_a = cache.reference == 1;
+    const Placed &reference = on_a ? a : b, &incident = on_a ? b : a;
+    const Body& body = reference.body;
+    const bool valid =
+        body.kind() == Kind::box ? cache.face < 6 : body.kind() == Kind::hull && cache.face < body.hull()->face_count();
+    if (!valid || (incident.body.kind() != Kind::box && incident.body.kind() != Kind::hull)) return Warm::unknown;
+    if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
+    Patch face, other;
+    patch_of_face(reference, cache.face, a.pose.translation, face);
+    const glm::dvec3 out = face.normal / glm::length(face.normal);
+    touch.normal = on_a ? out : -out;
+    double depth = 0.0;
+    const Corner deepest = pair.support(touch.normal, depth);
+    const double rounding = pair.a.radius() + pair.b.radius(), kept = kKeptDepth * pair.size;
+    if (-depth - pair.error > rounding + margin) return Warm::apart;
+    // Contacts nearer than rounding tells are decided exactly by the other way.
+    if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;
+    patch_along(incident, -out, a.pose.translation, other);
+    Sides sides;
+    find_sides(face, out, sides);
+    clip(face, sides, other, out, clipped);
+    // The deepest corner itself above the face, else the common part of the two faces.
+    const glm::dvec3 x = on_a ? deepest.on_b : deepest.on_a;
+    double inner = distance_within(sides, x), drop = 0.0;
+    touch.known = true;
+    touch.feature_a = on_a ? face.self : Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.a)};
+    touch.feature_b = on_a ? Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.b)} : face.self;
+    touch.on_a = on_a ? x + depth * touch.normal : x;
+    touch.on_b = on_a ? x : x - depth * touch.normal;
+    if (inner < 0.0 || (depth > 0.0 && !least_deep(a, b, pair, touch.normal, depth, inner))) {
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < clipped.count; ++i) {
+            const ClippedPoint& p = clipped.point[i];
+            const double below = depth - glm::dot(p.on_reference - p.on_incident, out);
+            drop = std::max(drop, below);
+            if (below < least)
+                least = below, touch.on_a = on_a ? p.on_reference : p.on_incident,
+                touch.on_b = on_a ? p.on_incident : p.on_reference;
+        }
+        if (!(least <= kept)) return Warm::unknown;
+        if (depth > 0.0) {
+            if (clipped.count < 3 || drop > kept || depth <= drop) return Warm::unknown;
+            if (!least_deep(a, b, pair, touch.normal, depth - drop, inner_distance(clipped, out))) return Warm::unknown;
+        }
+        depth -= std::max(0.0, least);
+    }
+    touch.depth = depth + rounding;
+    return touch.depth >= -margin ? Warm::touching : Warm::apart;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <crofton/convex/cast.hpp>
+#include <limits>
+#include <numbers>
+
+#include "random_bodies.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+RigidTransform at(const glm::dvec3& p) {
+    return {glm::dmat3(1.0), p};
+}
+
+Motion flying(const glm::dvec3& velocity, const glm::dvec3& spin = glm::dvec3(0.0)) {
+    return {velocity, spin, glm::dvec3(0.0)};
+}
+
+}  // namespace
+
+TEST_SUITE("convex/cast") {
+    TEST_CASE("bad motions and options are named errors") {
+        const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, -1, 0}, 0}).value();
+        const RigidTransform here = at({}), there = at({5, 5, 5});
+        const auto code = [&](const Motion& m, const CastOptions& o) {
+            return cast({box, here}, m, {box, there}, {}, o).error().code;
+        };
+        CHECK(code(flying({NAN, 0, 0}), {}) == ErrorCode::non_finite);
+        CHECK(code(flying({}, {1e6, 0, 0}), {}) == ErrorCode::out_of_range);
+        CHECK(code({}, {.duration = -1.0}) == ErrorCode::invalid_argument);
+        CHECK(code({}, {.tolerance = 0.0}) == ErrorCode::invalid_argument);
+        CHECK(code({}, {.max_steps = 0}) == ErrorCode::invalid_argument);
+        CHECK(cast({box, there}, {}, {floor, here}, flying({}, {1, 0, 0})).error().item == 1);
+    }
+
+    TEST_CASE("a cast of zero length tells whether the bodies are within the tolerance now") {
+        const Body box = Body::box({1, 1, 1}).value();
+        const RigidTransform here = at({}), near = at({2.0 + 1e-9, 0, 0}), far = at({2.1, 0, 0});
+        CHECK(cast({box, here}, {}, {box, near}, {}).value().result == CastResult::hit);
+        CHECK(cast({box, here}, {}, {box, far}, {}).value().result == CastResult::miss);
+        CHECK(cast({box, here}, flying({1, 0, 0}), {box, far}, {}, {.duration = 0.0}).value().result ==
+              CastResult::miss);
+        const Impact inside = cast({box, here}, flying({1, 0, 0}), {box, here}, {}).value();
+        CHECK(inside.result == CastResult::hit);
+        CHECK(inside.time == 0.0);
+    }
+
+    TEST_CASE("times known by hand: boxes, a ball on the floor, a bar that turns into a wall") {
+        const Body box = Body::box({1, 1, 1}).value(), ball = Body::ball(1).value();
+        const Body floor = Body::half_space({{0, -1, 0}, 0}).value(), bar = Body::box({2, 0.01f, 0.01f}).value();
+        const RigidTransform origin = at({}), ten = at({10, 0.5, 0}), high = at({0, 5, 0});
+        CHECK(cast({box, origin}, flying({16, 0, 0}), {box, ten}, {}).value().time == doctest::Approx(0.5));
+        CHECK(cast({box, origin}, {}, {box, ten}, flying({-16, 0, 0})).value().time == doctest::Approx(0.5));
+        CHECK(cast({ball, high}, flying({0, -8, 0}), {floor, origin}, {}).value().time == doctest::Approx(0.5));
+        CHECK(cast({floor, origin}, {}, {ball, high}, flying({0, -8, 0})).value().time == doctest::Approx(0.5));
+        // The bar's end is 2 from the axis and reaches y = 1 at 30 degrees; its upper edge is 0.01 nearer.
+        const RigidTransform wall = at({0, 1.5, 0});
+        const Body slab = Body::box({9, 0.5f, 9}).value();
+        const Impact turn = cast({bar, origin}, flying({}, {0, 0, 1}), {slab, wall}, {}).value();
+        CHECK(turn.result == CastResult::hit);
+        CHECK(turn.time == doctest::Approx(std::asin(1.0 / std::hypot(2.0, 0.01)) - std::atan(0.005)).epsilon(1e-5));
+    }
+
+    TEST_CASE("no wall is too thin and no bullet too fast or small") {
+        const Body wall = Body::triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}).value();
+        const Body bullet = Body::box({1e-4f, 1e-4f, 1e-4f}).value(), point = Body::ball(0).value();
+        RandomBodies random(1);
+        for (int i = 0; i < 200; ++i) {
+            const glm::dvec3 target(random.number(-2, 2), random.number(-2, 2), 0.0);
+            const glm::dvec3 way = random.direction() * 1e3;
+            if (std::abs(way.z) < 10.0) continue;
+            const RigidTransform from = at(target - 0.37 * way), still = at({});
+            const Impact hit = cast({bullet, from}, flying(way, 500.0 * random.direction()), {wall, still}, {}).value();
+            CHECK(hit.result == CastResult::hit);
+            CHECK(hit.time == doctest::Approx(0.37).epsilon(1e-3));
+            CHECK(cast({point, from}, flying(way), {wall, still}, {}).value().time == doctest::Approx(0.37));
+        }
+    }
+
+    TEST_CASE("random spinning bodies: at no sampled time before the impact do they meet, and then they are near") {
+        RandomBodies random(2);
+        int hits = 0, unresolved = 0;
+        for (int i = 0; i < 150; ++i) {
+            const Body a = random.polytope(24), b = i % 5 == 0 ? Body::cylinder(1, 0.3f).value() : random.polytope(24);
+            const RigidTransform pose_a{random.rotation(), glm::dvec3(0.0)};
+            const RigidTransform pose_b{random.rotation(), 4.0 * random.direction()};
+            const Motion ma{0.5 * random.direction(), random.number(0, 30) * random.direction(),
+                            0.2 * random.direction()};
+            const Motion mb{-pose_b.translation + 0.8 * random.direction(), random.number(0, 9) * random.direction(),
+                            glm::dvec3(0.0)};
+            const Impact impact = cast({a, pose_a}, ma, {b, pose_b}, mb, {.duration = 2.0}).value();
+            unresolved += impact.result == CastResult::unresolved;
+            const int samples = 1000;
+            for (int k = 0; k < samples; ++k) {
+                const double t = impact.time * (k + 0.5) / samples;
+                const RigidTransform now_a = moved(pose_a, ma, t), now_b = moved(pose_b, mb, t);
+                if (intersects({a, now_a}, {b, now_b})) {
+                    CHECK(t >= impact.time * (1.0 - 1e-9));
+                    break;
+                }
+            }
+            if (impact.result != CastResult::hit) continue;
+            ++hits;
+            const RigidTransform now_a = moved(pose_a, ma, impact.time), now_b = moved(pose_b, mb, impact.time);
+            CHECK(distance({a, now_a}, {b, now_b}).distance <= 1e-6);
+        }
+        CHECK(hits > 30);
+        CHECK(unresolved == 0);
+    }
+
+    TEST_CASE("a translation's time agrees with bisection on a body grown along the way") {
+        RandomBodies random(3);
+        int hits = 0;
+        for (int i = 0; i < 100; ++i) {
+            const Body a = random.polytope(24), b = random.polytope(24);
+            const RigidTransform pose_a{random.rotation(), glm::dvec3(0.0)};
+            const RigidTransform pose_b{random.rotation(), 4.0 * random.direction()};
+            const glm::dvec3 way = -2.0 * pose_b.translation + random.direction();
+            const Impact impact =
+                cast({a, pose_a}, {}, {b, pose_b}, flying(way), {.tolerance = 1e-9, .max_steps = 2000}).value();
+            // b swept over [0, t] is the hull of b at 0 and at t: it meets a iff they have met by then.
+            const auto met_by = [&](double t) {
+                std::vector<glm::vec3> p;
+                for (int k = 0; k < b.vertex_count(); ++k) {
+                    const glm::dvec3 v = pose_b.rotation * b.vertex(k);
+                    p.emplace_back(v);
+                    p.emplace_back(v + t * way);
+                }
+                const auto hull = Hull::build(p);
+                if (!hull) return false;
+                const RigidTransform place = at(pose_b.translation);
+                return intersects({a, pose_a}, {Body::hull(*hull), place});
+            };
+            if (impact.result == CastResult::miss) {
+                CHECK_FALSE(met_by(1.0 - 1e-6));
+                continue;
+            }
+            ++hits;
+            CHECK_FALSE(met_by(impact.time - 1e-5));
+            CHECK(met_by(impact.time + 1e-2));
+        }
+        CHECK(hits > 20);
+    }
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <crofton/convex/body.hpp>
+#include <crofton/geometry/predicates.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "random_bodies.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+// Every point lies on or below every triangle, exactly; every edge has two triangles; Euler's formula holds.
+void check_hull(const Hull& hull, std::span<const glm::vec3> points) {
+    const auto v = hull.vertices();
+    const auto t = hull.triangles();
+    std::set<std::pair<int, int>> sides;
+    int outside = 0;
+    for (std::size_t i = 0; i < t.size(); i += 3) {
+        const glm::dvec3 a(v[t[i]]), b(v[t[i + 1]]), c(v[t[i + 2]]);
+        for (const glm::vec3& p : points) outside += orientation(a, b, c, glm::dvec3(p)) < 0;
+        for (std::size_t k = 0; k < 3; ++k) sides.insert({t[i + k], t[i + (k + 1) % 3]});
+    }
+    CHECK(outside == 0);
+    CHECK(sides.size() == t.size());
+    for (const auto& [from, to] : sides) CHECK(sides.count({to, from}) == 1);
+    CHECK(v.size() + t.size() / 3 == t.size() / 2 + 2);
+    // Faces, edges and vertices of the merged faces.
+    std::set<int> corners;
+    for (int f = 0; f < hull.face_count(); ++f) {
+        const auto loop = hull.face_vertices(f);
+        const auto edges = hull.face_edges(f);
+        REQUIRE(edges.size() == loop.size());
+        CHECK(loop.size() >= 3);
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            corners.insert(loop[k]);
+            const HullEdge& edge = hull.edges()[edges[k]];
+            const int side = edge.faces[0] == f ? 0 : 1;
+            CHECK(edge.faces[side] == f);
+            CHECK(edge.vertices[side] == loop[k]);
+            CHECK(edge.vertices[1 - side] == loop[(k + 1) % loop.size()]);
+        }
+    }
+    CHECK(corners.size() + static_cast<std::size_t>(hull.face_count()) == hull.edges().size() + 2);
+}
+
+}  // namespace
+
+TEST_SUITE("convex/hull") {
+    TEST_CASE("bad points and options are named errors") {
+        std::vector<glm::vec3> p{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        CHECK(Hull::build(p).error().code == ErrorCode::empty);
+        CHECK(Hull::build({}).error().code == ErrorCode::empty);
+        p.push_back({1, 1, 0});
+        CHECK(Hull::build(p).error().code == ErrorCode::degenerate);
+        p.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 1});
+        CHECK(Hull::build(p).error().code == ErrorCode::non_finite);
+        CHECK(Hull::build(p).error().item == 4);
+        p[4] = {0, 1e16f, 1};
+        CHECK(Hull::build(p).error().code == ErrorCode::out_of_range);
+        CHECK(Hull::build(std::vector<glm::vec3>(100, glm::vec3(1, 2, 3))).error().code == ErrorCode::degenerate);
+        std::vector<glm::vec3> line;
+        for (int i = 0; i < 50; ++i) line.emplace_back(0.1f * static_cast<float>(i));
+        CHECK(Hull::build(line).error().code == ErrorCode::degenerate);
+        p[4] = {0, 0, 1};
+        CHECK(Hull::build(p, {.max_vertices = 3}).error().code == ErrorCode::invalid_argument);
+        CHECK(Hull::build(p, {.face_tolerance = 1.0f}).error().code == ErrorCode::invalid_argument);
+        CHECK(Hull::build(p).has_value());
+    }
+
+    TEST_CASE("bodies inside out, NaN or without bounds are named errors") {
+        CHECK(Body::box({1, -1, 1}).error().item == 1);
+        CHECK(Body::ball(-1).error().code == ErrorCode::invalid_argument);
+        CHECK(Body::capsule(std::numeric_limits<float>::infinity(), 1).error().code == ErrorCode::non_finite);
+        CHECK(Body::cone(1, 1e16f).error().code == ErrorCode::out_of_range);
+        CHECK(Body::half_space({{0, 0, 0}, 1}).error().code == ErrorCode::degenerate);
+        CHECK(Body::triangle({0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}).error().item == 1);
+        CHECK(Body::rounded(Body::half_space({{0, 1, 0}, 1}).value(), 1).error().code == ErrorCode::unsupported);
+    }
+
+    TEST_CASE("a cube of 1,000 grid points with duplicates has 8 vertices, 6 faces, 12 edges") {
+        std::vector<glm::vec3> p;
+        for (int i = 0; i < 1000; ++i) p.emplace_back(i % 10, i / 10 % 10, i / 100);
+        p.insert(p.end(), p.begin(), p.begin() + 500);
+        const Hull cube = Hull::build(p).value();
+        CHECK(cube.vertices().size() == 8);
+        CHECK(cube.face_count() == 6);
+        CHECK(cube.edges().size() == 12);
+        CHECK(cube.excess() == 0.0);
+        CHECK(cube.mass().volume == doctest::Approx(729.0));
+        CHECK(cube.mass().center.x == doctest::Approx(4.5));
+        CHECK(cube.mass().inertia[0][0] == doctest::Approx(729.0 * 81.0 / 6.0));
+        CHECK(cube.mass().inertia[0][1] == doctest::Approx(0.0));
+        check_hull(cube, p);
+    }
+
+    TEST_CASE("a cube turned at random, rounded to float, keeps six faces") {
+        RandomBodies random(3);
+        for (int trial = 0; trial < 50; ++trial) {
+            const glm::dmat3 r = random.rotation();
+            std::vector<glm::vec3> p;
+            for (int i = 0; i < 8; ++i) p.emplace_back(r * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+            const Hull cube = Hull::build(p).value();
+            CHECK(cube.vertices().size() == 8);
+            CHECK(cube.face_count() == 6);
+            check_hull(cube, p);
+        }
+    }
+
+    TEST_CASE("random, thin and nearly flat points: no point outside, no corner lost") {
+        RandomBodies random(4);
+        for (int trial = 0; trial < 60; ++trial) {
+            std::vector<glm::vec3> p = random.points(8 + random.index(120), std::pow(10.0, random.number(-6, 6)));
+            if (trial % 3 == 0)
+                for (glm::vec3& q : p)
+                    q.z = random.index(2) != 0 ? q.x : std::nextafter(q.x, 2e6f);  // off a plane by one ulp
+            const auto hull = Hull::build(p);
+            REQUIRE(hull.has_value());
+            check_hull(*hull, p);
+            // Each vertex is a corner: without it the hull does not hold it. Each is one of the points.
+            for (const glm::vec3& v : hull->vertices()) CHECK(std::count(p.begin(), p.end(), v) >= 1);
+        }
+    }
+
+    TEST_CASE("100,000 points on a ball become 256 vertices that hold them all, and little more") {
+        RandomBodies random(5);
+        std::vector<glm::vec3> p;
+        for (int i = 0; i < 100'000; ++i) p.emplace_back(random.direction());
+        const Hull hull = Hull::build(p).value();
+        CHECK(hull.vertices().size() <= 256);
+        CHECK(hull.vertices().size() >= 200);
+        check_hull(hull, std::span(p).first(5000));
+        CHECK(hull.excess() > 0.0);
+        CHECK(hull.excess() < 0.05);
+        for (const glm::vec3& v : hull.vertices()) CHECK(glm::length(glm::dvec3(v)) < 1.0 + hull.excess() + 1e-6);
+        const Hull coarse = Hull::build(p, {.max_vertices = 16}).value();
+        CHECK(coarse.vertices().size() <= 16);
+        check_hull(coarse, std::span(p).first(5000));
+    }
+
+    TEST_CASE("mass of solids of revolution agrees with hulls of many points") {
+        const auto near = [](const MassProperties& a, const MassProperties& b) {
+            CHECK(a.volume == doctest::Approx(b.volume).epsilon(0.03));
+            CHECK(glm::distance(a.center, b.center) < 0.02);
+            for (int k = 0; k < 3; ++k) CHECK(a.inertia[k][k] == doctest::Approx(b.inertia[k][k]).epsilon(0.05));
+        };
+        std::vector<glm::vec3> cylinder, cone{{0, 1, 0}}, capsule;
+        for (int i = 0; i < 120; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / 120;
+            const glm::dvec3 rim(0.5 * std::cos(angle), 0.0, 0.5 * std::sin(angle));
+            cylinder.emplace_back(rim + glm::dvec3(0, 1, 0));
+            cylinder.emplace_back(rim - glm::dvec3(0, 1, 0));
+            cone.emplace_back(rim - glm::dvec3(0, 1, 0));
+        }
+        for (int i = 0; i < 24; ++i)
+            for (int j = 0; j < 5; ++j)
+                for (const double end : {1.0, -1.0}) {
+                    const double round = 2.0 * std::numbers::pi * i / 24, up = std::numbers::pi / 2 * j / 5;
+                    capsule.emplace_back(0.5 * std::cos(round) * std::cos(up), end * (1.0 + 0.5 * std::sin(up)),
+                                         0.5 * std::sin(round) * std::cos(up));
+                }
+        near(mass_properties(Body::cylinder(1, 0.5f).value()).value(), Hull::build(cylinder).value().mass());
+        near(mass_properties(Body::cone(1, 0.5f).value()).value(), Hull::build(cone).value().mass());
+        near(mass_properties(Body::capsule(1, 0.5f).value()).value(), Hull::build(capsule).value().mass());
+        CHECK(mass_properties(Body::ball(2).value()).value().inertia[1][1] ==
+              doctest::Approx(0.4 * 4.0 * 32.0 / 3.0 * std::numbers::pi));
+    }
+}

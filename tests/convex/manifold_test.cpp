@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/convex/cast.hpp>
+#include <crofton/convex/manifold.hpp>
+#include <limits>
+#include <set>
+
+#include "counting_memory.hpp"
+#include "random_bodies.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+RigidTransform at(const glm::dvec3& p) {
+    return {glm::dmat3(1.0), p};
+}
+
+std::set<std::pair<Feature, Feature>> ids(const Manifold& m) {
+    std::set<std::pair<Feature, Feature>> result;
+    for (int i = 0; i < m.count; ++i) result.insert({m.points[i].on_a, m.points[i].on_b});
+    return result;
+}
+
+}  // namespace
+
+TEST_SUITE("convex/manifold") {
+    TEST_CASE("bodies that are NaN or apart have no points; those within the margin have gaps") {
+        const Body box = Body::box({1, 1, 1}).value();
+        const RigidTransform low = at({}), high = at({0, 2.01, 0}), bad = at({NAN, 0, 0});
+        CHECK(contact_manifold({box, low}, {box, bad}).count == 0);
+        CHECK(contact_manifold({box, low}, {box, high}).count == 0);
+        const Manifold m = contact_manifold({box, low}, {box, high}, {.margin = 0.02});
+        CHECK(m.count == 4);
+        CHECK(m.depth == doctest::Approx(-0.01));
+        CHECK(m.normal.y == doctest::Approx(1.0));
+        for (int i = 0; i < m.count; ++i) CHECK(m.points[i].depth == doctest::Approx(-0.01));
+    }
+
+    TEST_CASE("manifolds known by hand: face on face, turned by 45 degrees, a corner on a face, crossed edges") {
+        const Body box = Body::box({1, 1, 1}).value(), big = Body::box({5, 1, 5}).value();
+        const RigidTransform low = at({}), high = at({0.5, 1.9, 0});
+        Manifold m = contact_manifold({box, low}, {box, high});
+        CHECK(m.count == 4);
+        CHECK(ids(m).size() == 4);
+        for (int i = 0; i < m.count; ++i) {
+            CHECK(m.points[i].depth == doctest::Approx(0.1));
+            CHECK(m.points[i].position.y == doctest::Approx(0.95));
+            CHECK(m.points[i].position.x >= -0.5 - 1e-12);
+        }
+        RigidTransform turned = high;
+        turned.translation.x = 0.0;
+        turned.rotation = glm::mat3_cast(glm::angleAxis(0.785398, glm::dvec3(0, 1, 0)));
+        m = contact_manifold({box, low}, {box, turned}, {.max_points = 8});
+        CHECK(m.count == 8);
+        CHECK(ids(m).size() == 8);
+        CHECK(contact_manifold({box, low}, {box, turned}).count == 4);
+        // A corner down.
+        RigidTransform corner = at({0, 1.0 + std::sqrt(3.0) - 0.01, 0});
+        corner.rotation =
+            glm::mat3_cast(glm::angleAxis(std::acos(1.0 / std::sqrt(3.0)), glm::normalize(glm::dvec3(-1, 0, 1))));
+        m = contact_manifold({big, low}, {box, corner});
+        CHECK(m.count == 1);
+        CHECK(m.depth == doctest::Approx(0.01).epsilon(1e-3));
+        CHECK(m.points[0].on_a == Feature{FeatureKind::face, 3});
+        CHECK(m.points[0].on_b.kind == FeatureKind::vertex);
+        // Two long bars crossed on their edges.
+        const Body bar = Body::box({5, 0.5f, 0.5f}).value();
+        RigidTransform first = at({}), second = at({0, std::sqrt(2.0) - 0.01, 0});
+        const glm::dmat3 tilt = glm::mat3_cast(glm::angleAxis(0.78539816339744831, glm::dvec3(1, 0, 0)));
+        first.rotation = tilt;
+        second.rotation = glm::mat3_cast(glm::angleAxis(1.57079632679489662, glm::dvec3(0, 1, 0))) * tilt;
+        m = contact_manifold({bar, first}, {bar, second});
+        CHECK(m.count == 1);
+        CHECK(m.points[0].on_a.kind == FeatureKind::edge);
+        CHECK(m.points[0].on_b.kind == FeatureKind::edge);
+        CHECK(m.normal.y == doctest::Approx(1.0));
+        CHECK(m.depth == doctest::Approx(0.01));
+    }
+
+    TEST_CASE("round bodies: a capsule and a cylinder lying, standing, on a box and on a half-space") {
+        const Body floor = Body::half_space({{0, -1, 0}, 0}).value(), slab = Body::box({9, 1, 9}).value();
+        const Body capsule = Body::capsule(1, 0.5f).value(), cylinder = Body::cylinder(1, 0.5f).value();
+        const RigidTransform ground = at({}), below = at({0, -1, 0});
+        RigidTransform lying = at({0, 0.49, 0}), standing = at({0, 0.99, 0});
+        lying.rotation = glm::mat3_cast(glm::angleAxis(1.57079632679489662, glm::dvec3(0, 0, 1)));
+        for (const Placed& bottom : {Placed{floor, ground}, Placed{slab, below}}) {
+            Manifold m = contact_manifold(bottom, {capsule, lying});
+            CHECK(m.count == 2);
+            CHECK(m.depth == doctest::Approx(0.01));
+            CHECK(m.normal.y == doctest::Approx(1.0));
+            m = contact_manifold(bottom, {cylinder, lying});
+            CHECK(m.count == 2);
+            CHECK(m.depth == doctest::Approx(0.01));
+            m = contact_manifold(bottom, {cylinder, standing});
+            CHECK(m.count == 4);
+            CHECK(m.depth == doctest::Approx(0.01));
+            CHECK(contact_manifold(bottom, {cylinder, standing}, {.max_points = 8}).count == 8);
+            m = contact_manifold({cylinder, standing}, bottom);
+            CHECK(m.normal.y == doctest::Approx(-1.0));
+            CHECK(m.count == 4);
+        }
+    }
+
+    TEST_CASE("the deepest point is as deep as the penetration; bodies that meet have a point, others none") {
+        RandomBodies random(1);
+        int points = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Body a = random.polytope(32),
+                       b = i % 7 == 0 ? Body::cylinder(0.5f, 0.5f).value() : random.polytope(32);
+            const CasePair where =
+                nearly_touching(random, a, b, -std::pow(10.0, random.number(-8, -0.5)) * (i % 3 - 0.5), 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const Manifold m = contact_manifold(pa, pb, {.max_points = 8});
+            CHECK((m.count > 0) == intersects(pa, pb));
+            if (m.count == 0) continue;
+            points += m.count;
+            const Penetration p = penetration(pa, pb);
+            CHECK(m.depth == doctest::Approx(p.depth).epsilon(1e-6).scale(1e-2));
+            double deepest = -1.0;
+            for (int k = 0; k < m.count; ++k) {
+                CHECK(m.points[k].depth >= 0.0);
+                CHECK(m.points[k].depth <= m.depth);
+                deepest = std::max(deepest, m.points[k].depth);
+                // Midway between the surfaces: within half the depth of either body.
+                CHECK(closest_point(pa, m.points[k].position).distance <= 0.5 * m.points[k].depth + 1e-4);
+                CHECK(closest_point(pb, m.points[k].position).distance <= 0.5 * m.points[k].depth + 1e-4);
+            }
+            CHECK(deepest == m.depth);
+        }
+        CHECK(points > 2000);
+    }
+
+    TEST_CASE("a warm call tells what a cold one does, up to ties, and ids stay while a body slides and rocks") {
+        RandomBodies random(2);
+        int kept = 0, frames = 0;
+        for (int i = 0; i < 60; ++i) {
+            const Body a = Body::box({2, 0.5f, 2}).value(),
+                       b = i % 2 == 0 ? Body::box({0.5f, 0.5f, 0.5f}).value() : random.hull(32);
+            const RigidTransform ground = at({});
+            PairCache cache;
+            std::set<std::pair<Feature, Feature>> last;
+            for (int frame = 0; frame < 60; ++frame) {
+                const double t = frame / 60.0;
+                RigidTransform pose = at({0.05 * t, 0.0, 0.03 * t});
+                pose.rotation = glm::mat3_cast(glm::angleAxis(1e-3 * std::sin(9 * t), glm::dvec3(0.6, 0, 0.8)));
+                const glm::dvec3 low = support_point(b, glm::transpose(pose.rotation) * glm::dvec3(0, -1, 0));
+                pose.translation.y = 0.5 - (pose.rotation * low).y - 1e-3 - 1e-4 * std::sin(20 * t);
+                const Placed pa{a, ground}, pb{b, pose};
+                const Manifold warm = contact_manifold(pa, pb, {.margin = 0.01}, &cache);
+                const Manifold cold = contact_manifold(pa, pb, {.margin = 0.01});
+                CHECK(std::abs(warm.depth - cold.depth) <= 1e-4 * (a.reach() + b.reach() + 1.0));
+                CHECK(glm::dot(warm.normal, cold.normal) == doctest::Approx(1.0).epsilon(1e-6));
+                if (frame > 0) ++frames, kept += ids(warm) == last;
+                last = ids(warm);
+            }
+        }
+        CHECK(kept >= frames * 95 / 100);
+    }
+
+    TEST_CASE("warm calls allocate nothing") {
+        RandomBodies random(4);
+        for (int i = 0; i < 50; ++i) {
+            const Body a = random.hull(32), b = i % 2 == 0 ? random.box() : random.hull(32);
+            const CasePair where = nearly_touching(random, a, b, 0.02 * (i % 3 - 1.5), 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            PairCache cache;
+            (void)contact_manifold(pa, pb, {.margin = 0.1}, &cache);
+            const CountingMemory memory;
+            (void)contact_manifold(pa, pb, {.margin = 0.1}, &cache);
+            (void)intersects(pa, pb, &cache);
+            (void)distance(pa, pb, &cache);
+            (void)cast(pa, {}, pb, {.velocity = -where.normal, .spin = {1, 2, 3}}, {}, &cache);
+            CHECK(memory.allocations() == 0);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <crofton/convex/query.hpp>
+#include <cstdlib>
+#include <limits>
+
+#include "oracle/exact_convex.hpp"
+#include "random_bodies.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+RigidTransform at(const glm::dvec3& p) {
+    return {glm::dmat3(1.0), p};
+}
+
+struct Wrong {
+    int verdicts = 0, cached = 0, brute = 0, meeting = 0;
+};
+
+// Yes or no of pairs that touch up to `gap`, cold and with what a neighbouring pose has left, against exact proofs.
+//
+// 15 pairs a class; CROFTON_CONVEX_PAIRS=14000 makes a million in all.
+int pairs_per_class() {
+    const char* const asked = std::getenv("CROFTON_CONVEX_PAIRS");
+    return asked != nullptr ? std::atoi(asked) : 15;
+}
+Wrong count_wrong(std::uint64_t seed, int pairs, double gap, double offset) {
+    Wrong wrong;
+    RandomBodies random(seed);
+    for (int i = 0; i < pairs; ++i) {
+        const Body a = random.polytope(20), b = random.polytope(20);
+        const CasePair where = nearly_touching(random, a, b, gap * random.number(0.2, 1.0), offset);
+        const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+        const bool answer = intersects(pa, pb);
+        PairCache cache;
+        RigidTransform earlier = where.pose_b;
+        earlier.translation += 0.01 * random.direction();
+        (void)intersects(pa, {b, earlier}, &cache);
+        const bool warm = intersects(pa, pb, &cache);
+        const Distance d = distance(pa, pb);
+        // Guesses from the neighbourhood of a's origin, where coordinates are small.
+        const RigidTransform near_a{where.pose_a.rotation, glm::dvec3(0.0)};
+        const RigidTransform near_b{where.pose_b.rotation, where.pose_b.translation - where.pose_a.translation};
+        const Penetration p = penetration({a, near_a}, {b, near_b});
+        bool brute = false;
+        const bool truth =
+            oracle::meet(oracle::exact_polytope(pa), oracle::exact_polytope(pb), {where.normal, d.normal},
+                         where.pose_a.translation, {0.5 * (p.on_a + p.on_b)}, &brute);
+        wrong.brute += brute;
+        wrong.verdicts += answer != truth;
+        wrong.cached += warm != truth;
+        wrong.meeting += truth;
+        CHECK((d.distance == 0.0) == truth);
+    }
+    return wrong;
+}
+
+}  // namespace
+
+TEST_SUITE("convex/query") {
+    TEST_CASE("a pose with NaN meets nothing, and a pose that mirrors is refused") {
+        const Body box = Body::box({1, 1, 1}).value();
+        RigidTransform bad = at({});
+        bad.translation.x = std::numeric_limits<double>::quiet_NaN();
+        CHECK_FALSE(intersects({box, at({})}, {box, bad}));
+        CHECK_FALSE(penetration({box, at({})}, {box, bad}).overlapping);
+        CHECK(validate_pose(bad).error().code == ErrorCode::non_finite);
+        RigidTransform mirror = at({});
+        mirror.rotation[0].x = -1.0;
+        CHECK(validate_pose(mirror, 7).error().item == 7);
+    }
+
+    TEST_CASE("points, segments, discs and coincident bodies have answers") {
+        const Body point = Body::ball(0).value(), needle = Body::capsule(1, 0).value();
+        const Body disc = Body::cylinder(0, 1).value(), box = Body::box({1, 1, 1}).value();
+        const Body flat = Body::box({1, 0, 1}).value(),
+                   triangle = Body::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).value();
+        for (const Body* a : {&point, &needle, &disc, &box, &flat, &triangle})
+            for (const Body* b : {&point, &needle, &disc, &box, &flat, &triangle}) {
+                CHECK(intersects({*a, at({})}, {*b, at({})}));
+                const Penetration p = penetration({*a, at({})}, {*b, at({})});
+                CHECK(p.overlapping);
+                CHECK(std::isfinite(p.depth));
+                CHECK_FALSE(intersects({*a, at({})}, {*b, at({0, 0, 9})}));
+            }
+        CHECK(penetration({box, at({})}, {box, at({})}).depth == doctest::Approx(2.0));
+        CHECK(penetration({point, at({})}, {point, at({})}).depth == doctest::Approx(0.0));
+    }
+
+    TEST_CASE("distances and depths known by hand, of every kind") {
+        const Body ball = Body::ball(0.5f).value(), capsule = Body::capsule(1, 0.25f).value();
+        const Body cylinder = Body::cylinder(1, 2).value(), cone = Body::cone(1, 2).value();
+        const Body box = Body::box({1, 2, 3}).value();
+        const Body floor = Body::half_space({{0, -1, 0}, 0}).value();  // solid below y = 0
+        CHECK(distance({ball, at({})}, {ball, at({3, 0, 0})}).distance == doctest::Approx(2.0));
+        CHECK(distance({ball, at({0, 3, 0})}, {cylinder, at({})}).distance == doctest::Approx(1.5));
+        CHECK(distance({ball, at({0, -3, 0})}, {cone, at({})}).distance == doctest::Approx(1.5));
+        CHECK(distance({ball, at({0, 3, 0})}, {cone, at({})}).distance == doctest::Approx(1.5));
+        CHECK(distance({capsule, at({5, 0, 0})}, {box, at({})}).distance == doctest::Approx(3.75));
+        CHECK(distance({box, at({0, 5, 0})}, {floor, at({})}).distance == doctest::Approx(3.0));
+        CHECK(distance({floor, at({})}, {box, at({0, 5, 0})}).normal.y == doctest::Approx(1.0));
+        CHECK(penetration({floor, at({})}, {box, at({0, 1.5, 0})}).depth == doctest::Approx(0.5));
+        CHECK(penetration({floor, at({})}, {box, at({0, 1.5, 0})}).normal.y == doctest::Approx(1.0));
+        CHECK(penetration({ball, at({})}, {ball, at({0.75, 0, 0})}).depth == doctest::Approx(0.25));
+        CHECK(penetration({cylinder, at({})}, {cylinder, at({0, 1.75, 0})}).depth == doctest::Approx(0.25));
+        CHECK(penetration({cylinder, at({})}, {cylinder, at({3.75, 0, 0})}).depth == doctest::Approx(0.25));
+        const Body round = Body::rounded(box, 0.5f).value();
+        CHECK(penetration({round, at({})}, {round, at({2.75, 0, 0})}).depth == doctest::Approx(0.25));
+        CHECK(closest_point({box, at({})}, {4, 0, 0}).distance == doctest::Approx(3.0));
+        CHECK(closest_point({box, at({})}, {4, 0, 0}).on_b.x == doctest::Approx(1.0));
+    }
+
+    TEST_CASE("touching exactly counts: kissing boxes, a corner on a face, an edge across an edge") {
+        const Body box = Body::box({1, 1, 1}).value();
+        for (const double far : {0.0, 1e3, 0x1p23}) {
+            const glm::dvec3 o(far, -far, far);
+            CHECK(intersects({box, at(o)}, {box, at(o + glm::dvec3(2, 0.5, 0))}));
+            CHECK(intersects({box, at(o)}, {box, at(o + glm::dvec3(2, 2, 2))}));
+            CHECK_FALSE(intersects({box, at(o)}, {box, at(o + glm::dvec3(2.0 + 0x1p-29, 0, 0))}));
+            CHECK(intersects({box, at(o)}, {box, at(o + glm::dvec3(2.0 - 0x1p-29, 0, 0))}));
+            const Penetration p = penetration({box, at(o)}, {box, at(o + glm::dvec3(2, 0.5, 0))});
+            CHECK(p.overlapping);
+            CHECK(p.upper < 1e-8 * (1.0 + far));
+        }
+    }
+
+    TEST_CASE("yes and no are exact in each decade of gap and overlap, at each offset, cold and warm") {
+        std::uint64_t seed = 1;
+        int pairs = 0, brute = 0, meeting = 0;
+        for (const double offset : {0.0, 1e3, 1e7})
+            for (int decade = 1; decade <= 12; ++decade)
+                for (const double sign : {1.0, -1.0}) {
+                    const Wrong wrong = count_wrong(seed++, pairs_per_class(), sign * std::pow(10.0, -decade), offset);
+                    CHECK(wrong.verdicts == 0);
+                    CHECK(wrong.cached == 0);
+                    brute += wrong.brute;
+                    meeting += wrong.meeting;
+                    pairs += pairs_per_class();
+                }
+        MESSAGE(pairs << " pairs, " << meeting << " of them meet; " << brute << " needed brute force");
+    }
+
+    TEST_CASE("sizes from 1e-6 to 1e6 in one pair") {
+        RandomBodies random(5);
+        for (int i = 0; i < 300; ++i) {
+            const double size_a = std::pow(10.0, random.number(-6, 6)), size_b = std::pow(10.0, random.number(-6, 6));
+            const Body a = random.polytope(12, size_a), b = random.polytope(12, size_b);
+            const double gap = std::min(size_a, size_b) * std::pow(10.0, random.number(-9, -1)) * (i % 2 ? 1 : -1);
+            const CasePair where = nearly_touching(random, a, b, gap, 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const bool truth =
+                oracle::meet(oracle::exact_polytope(pa), oracle::exact_polytope(pb), {where.normal}, {}, {});
+            CHECK(intersects(pa, pb) == truth);
+        }
+    }
+
+    TEST_CASE("distance: the bounds are close, hold in exact arithmetic, and the points lie on the bodies") {
+        RandomBodies random(6);
+        for (int i = 0; i < 400; ++i) {
+            const Body a = random.polytope(32), b = random.polytope(32);
+            const CasePair where = nearly_touching(random, a, b, std::pow(10.0, random.number(-11, 1)), 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const Distance d = distance(pa, pb);
+            const double size =
+                a.reach() + b.reach() + glm::length(where.pose_a.translation - where.pose_b.translation);
+            if (d.distance == 0.0) continue;
+            CHECK(d.upper - d.lower <= 1e-9 * size);
+            CHECK(d.distance >= d.lower);
+            CHECK(d.distance <= d.upper);
+            CHECK(glm::distance(d.on_a, d.on_b) == doctest::Approx(d.distance).epsilon(1e-6));
+            const auto ea = oracle::exact_polytope(pa), eb = oracle::exact_polytope(pb);
+            // The gap along n proves the lower bound: gap ≥ lower · |n|.
+            const oracle::Vec3z n = oracle::scaled(d.normal, 2 * oracle::kBits);
+            const mpz_class gap = oracle::gap_along(ea, eb, n), lower = oracle::scaled(d.lower, 2 * oracle::kBits);
+            CHECK(gap > 0);
+            CHECK(gap * gap >= lower * lower * oracle::dot(n, n));
+            const Distance inside_a = distance({a, where.pose_a}, {Body::ball(0).value(), at(d.on_a)});
+            CHECK(inside_a.distance <= 1e-13 * size);
+        }
+    }
+
+    TEST_CASE("depth: the bounds are close and hold against all faces of the difference body, in rationals") {
+        RandomBodies random(7);
+        for (int i = 0; i < 60; ++i) {
+            const Body a = i % 4 == 0 ? random.box() : random.hull(4 + random.index(4));
+            const Body b = random.hull(4 + random.index(i % 4 == 0 ? 2 : 4));
+            const double overlap = i % 3 == 0 ? 0.3 : std::pow(10.0, random.number(-8, -1));
+            const CasePair where = nearly_touching(random, a, b, -overlap, i % 5 == 0 ? 1e5 : 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const Penetration p = penetration(pa, pb);
+            if (!p.overlapping) continue;
+            const auto ea = oracle::exact_polytope(pa), eb = oracle::exact_polytope(pb);
+            const mpq_class truth = oracle::squared_depth(ea, eb);
+            CHECK(mpq_class(p.lower) * mpq_class(p.lower) <= truth);
+            CHECK(mpq_class(p.upper) * mpq_class(p.upper) >= truth);
+            const double size =
+                a.reach() + b.reach() + glm::length(where.pose_a.translation - where.pose_b.translation);
+            CHECK(p.upper - p.lower <= 1e-9 * size);
+            CHECK(p.depth == doctest::Approx(std::sqrt(truth.get_d())).epsilon(1e-7));
+        }
+    }
+
+    TEST_CASE("moving by the depth parts the bodies, and the bounds are close, for hulls of 32 vertices") {
+        RandomBodies random(8);
+        int overlapping = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const Body a = random.polytope(32), b = random.polytope(32);
+            const CasePair where = nearly_touching(random, a, b, -std::pow(10.0, random.number(-10, 0)), 0.0);
+            const Penetration p = penetration({a, where.pose_a}, {b, where.pose_b});
+            CHECK(p.overlapping == intersects({a, where.pose_a}, {b, where.pose_b}));
+            if (!p.overlapping) continue;
+            ++overlapping;
+            const double size =
+                a.reach() + b.reach() + glm::length(where.pose_a.translation - where.pose_b.translation);
+            CHECK(p.upper - p.lower <= 1e-9 * size);
+            RigidTransform moved = where.pose_b;
+            moved.translation += p.normal * (p.upper + 1e-14 * size);
+            CHECK_FALSE(intersects({a, where.pose_a}, {b, moved}));
+        }
+        CHECK(overlapping > 500);
+    }
+}

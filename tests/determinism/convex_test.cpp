@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Hulls, distances, depths, manifolds and casts, in the same bits everywhere.
+#include <crofton/convex/cast.hpp>
+#include <crofton/convex/manifold.hpp>
+#include <oracle/exact_convex.hpp>
+
+#include "crowd.hpp"
+#include "digest.hpp"
+#include "everywhere.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+
+namespace {
+
+struct ConvexScene {
+    std::vector<convex::Hull> hulls;
+    std::vector<convex::Body> bodies;
+    std::vector<RigidTransform> poses;
+};
+
+// Neighbours in the list overlap or nearly touch.
+ConvexScene convex_scene(std::uint64_t seed) {
+    ConvexScene scene;
+    Random random(seed);
+    for (int i = 0; i < 40; ++i) {
+        std::vector<glm::vec3> points;
+        const std::uint32_t count = 6 + index(random, 40);
+        for (std::uint32_t k = 0; k < count; ++k) points.emplace_back(sampling::direction(random.point<2>()));
+        scene.hulls.push_back(convex::Hull::build(points, {.max_vertices = 32}).value());
+    }
+    for (int i = 0; i < 80; ++i) {
+        const float size = static_cast<float>(0.5 + random.uniform());
+        scene.bodies.push_back(i % 2 == 0   ? convex::Body::hull(scene.hulls[static_cast<std::size_t>(i / 2)])
+                               : i % 8 == 1 ? convex::Body::box({size, 0.5f, 1.0f}).value()
+                               : i % 8 == 3 ? convex::Body::capsule(size, 0.25f).value()
+                               : i % 8 == 5 ? convex::Body::cylinder(size, 0.5f).value()
+                                            : convex::Body::cone(size, 0.5f).value());
+        scene.poses.push_back(
+            {sampling::rotation(random.point<3>()),
+             glm::dvec3(1e5, 0, 0) + random.uniform(0.5, 1.2) * sampling::direction(random.point<2>())});
+    }
+    return scene;
+}
+
+std::uint64_t convex_pairs() {
+    Digest digest;
+    const ConvexScene scene = convex_scene(51);
+    for (const convex::Hull& hull : scene.hulls) {
+        for (const glm::vec3& v : hull.vertices()) digest.add(glm::dvec3(v));
+        for (const std::uint16_t i : hull.triangles()) digest.add(std::uint32_t{i});
+        digest.add(hull.mass().volume).add(hull.mass().center);
+    }
+    for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+        const convex::Placed a{scene.bodies[i - 1], scene.poses[i - 1]}, b{scene.bodies[i], scene.poses[i]};
+        convex::PairCache cache;
+        const auto apart = convex::distance(a, b, &cache);
+        const auto depth = convex::penetration(a, b, &cache);
+        digest.add(apart.distance).add(apart.on_a).add(apart.on_b).add(depth.depth).add(depth.normal);
+        const auto manifold = convex::contact_manifold(a, b, {.margin = 0.05}, &cache);
+        for (int k = 0; k < manifold.count; ++k) digest.add(manifold.points[k].position).add(manifold.points[k].depth);
+        const convex::Motion motion{{-3, 0.5, 0.25}, {0.5, 2.0, -1.0}, {}};
+        RigidTransform away = scene.poses[i];
+        away.translation.x += 4.0;
+        digest.add(convex::cast(a, {}, {b.body, away}, motion)->time);
+    }
+    return digest.value();
+}
+
+}  // namespace
+
+TEST_SUITE("determinism/convex") {
+    TEST_CASE("hulls, distances, depths, manifolds and casts are the same bits everywhere") {
+        check_everywhere(0x72bcf7f5932813c5, [](Executor&) { return convex_pairs(); });
+    }
+
+    TEST_CASE("what was published is what exact integers find") {
+        const ConvexScene scene = convex_scene(51);
+        for (std::size_t i = 2; i < scene.bodies.size(); i += 2) {
+            const convex::Placed a{scene.bodies[i - 2], scene.poses[i - 2]}, b{scene.bodies[i], scene.poses[i]};
+            const auto exact_a = oracle::exact_polytope(a), exact_b = oracle::exact_polytope(b);
+            CHECK(convex::intersects(a, b) == oracle::meet_by_axes(exact_a, exact_b));
+        }
+    }
+}
