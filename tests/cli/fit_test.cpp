@@ -242,4 +242,52 @@ TEST_SUITE("cli/fit") {
             CHECK(number(run.json()["meshes"][0], "volume") > 0.0);
         }
     }
+
+    TEST_CASE("--planar: bad polygons are named, the others done; a square's bounds are the ones one knows") {
+        CHECK(run_cli("fit --planar" + file("cube.obj", turned_box())).status == 2);
+        CHECK(run_cli("fit --planar '" + scratch().file("none.poly") + "'").status == 2);
+        CHECK(run_cli("fit --planar" + file("torn.poly", "P a 1\n3 0 0 1\n")).status == 2);
+        const std::string two = file("two.poly", "P huge 1\n3 0 0 1e300 0 0 1\nP square 1\n4 0 0 2 0 2 2 0 2\n");
+        const CliRun run = run_cli("fit --planar --json -" + two);
+        CHECK(run.status == 2);
+        CHECK(run.err.find("huge") != std::string::npos);
+        const auto document = run.json();
+        CHECK(document.at("refused") == 1);
+        REQUIRE(document.at("polygons").size() == 1);
+        const auto& shapes = document.at("polygons")[0].at("shapes");
+        REQUIRE(shapes.size() == 5);
+        CHECK(number(shapes[0], "value") == doctest::Approx(8.0));
+        CHECK(number(shapes[1], "value") == doctest::Approx(4.0));
+        CHECK(number(shapes[2], "value") == doctest::Approx(std::sqrt(2.0)));
+        CHECK(number(shapes[4], "value") == doctest::Approx(8.0));
+        for (const auto& shape : shapes) CHECK(number(shape, "off") < 1e-7);
+        const CliRun drawn = run_cli("fit --planar --svg -" + two);
+        CHECK(drawn.out.find("<svg") == 0);
+        CHECK(drawn.out.find("square") != std::string::npos);
+    }
+
+    TEST_CASE(
+        "--bounds: six kinds a mesh, none below the hull, one is the best; a far region asks for the cheap test") {
+        const std::string box = file("bounds.obj", turned_box());
+        CHECK(run_cli("fit --bounds some" + box).status == 2);
+        CHECK(run_cli("fit --bounds all --region 0.5" + box).status == 2);
+        CHECK(run_cli("fit --bounds all --svg -" + box).status == 2);
+        const CliRun run = run_cli("fit --bounds all --criterion area --json -" + box);
+        REQUIRE(run.status == 0);
+        const auto mesh = run.json().at("meshes")[0];
+        REQUIRE(mesh.at("bounds").size() == 6);
+        for (const auto& bound : mesh.at("bounds")) {
+            CHECK(number(bound, "over_hull") > -1e-6);
+            CHECK(number(bound, "lower_bound") <= number(bound, "value") * (1.0 + 1e-12));
+            CHECK(number(bound, "test_nanoseconds") > 0.0);
+        }
+        // 4 × 2 × 1: the box itself, and the ball around it.
+        CHECK(number(mesh.at("bounds")[2], "value") == doctest::Approx(28.0).epsilon(1e-5));
+        CHECK(number(mesh.at("bounds")[0], "value") == doctest::Approx(4.0 * 3.14159265 * 21.0 / 4.0).epsilon(1e-6));
+        const CliRun costly =
+            run_cli("fit --bounds best --criterion area --region 1 --triangle-cost 1e9 --json -" + box);
+        const auto best = costly.json().at("meshes")[0].at("best");
+        CHECK(best != "sphere");
+        CHECK(best != "aligned box");
+    }
 }

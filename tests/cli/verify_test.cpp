@@ -69,4 +69,30 @@ TEST_SUITE("cli/verify") {
         CHECK(run.out.rfind("claim", 0) == 0);
         CHECK(run.out.find("cosine-weighted from a box") != std::string::npos);
     }
+
+    TEST_CASE("every formula has a row that sees an error of 1 percent, those by volumes of sums one of 0.1 percent") {
+        for (const char* topic : {"paper", "lines"}) {
+            const CliRun run = run_cli(std::string("verify ") + topic + " --json -");
+            CHECK(run.status == 0);
+            std::map<std::string, double> best;
+            for (const auto& row : run.json()) {
+                REQUIRE(row.contains("resolution"));
+                const std::string claim = row["claim"], source = row["source"];
+                if (claim.rfind("wrong, must be rejected: ", 0) == 0) continue;
+                const double resolution = row["resolution"].is_null() ? HUGE_VAL : row["resolution"].get<double>();
+                const auto found = best.emplace(source, resolution).first;
+                found->second = std::min(found->second, resolution);
+            }
+            for (const auto& [source, resolution] : best) {
+                CAPTURE(source);
+                CHECK(resolution <= 0.01);
+            }
+            if (topic == std::string("lines")) continue;
+            for (const char* formula :
+                 {"theory.md (1)", "theory.md (2)", "theory.md (6)", "theory.md section 2, m_o"}) {
+                CAPTURE(formula);
+                CHECK(best.at(formula) <= 0.001);
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/geometry/predicates.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -57,6 +58,66 @@ double by_brute_force(const Points& points, PlanarCriterion criterion, int steps
         best = std::min(best, criterion == PlanarCriterion::area ? size[0] * size[1] : 2.0 * (size[0] + size[1]));
     }
     return best;
+}
+
+using Corners = std::array<glm::dvec2, 3>;
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+double measure_of(const Corners& t, PlanarCriterion criterion) {
+    return criterion == PlanarCriterion::area
+               ? 0.5 * cross(t[1] - t[0], t[2] - t[0])
+               : glm::distance(t[0], t[1]) + glm::distance(t[1], t[2]) + glm::distance(t[2], t[0]);
+}
+
+bool contains(const Corners& t, const glm::dvec2& p) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (orientation(t[k], t[(k + 1) % 3], p) < 0) return false;
+    return true;
+}
+
+// The triangle with sides across three directions, given by angles; infinite where they do not close.
+double triangle_across(const Points& points, PlanarCriterion criterion, const std::array<double, 3>& angles) {
+    glm::dvec2 normal[3];
+    double support[3];
+    for (int k = 0; k < 3; ++k) {
+        normal[k] = {std::cos(angles[std::size_t(k)]), std::sin(angles[std::size_t(k)])};
+        support[k] = -1e300;
+        for (const glm::dvec2& p : points) support[k] = std::max(support[k], glm::dot(p, normal[k]));
+    }
+    Corners corners;
+    for (int k = 0; k < 3; ++k) {
+        const int j = (k + 1) % 3;
+        const double sine = cross(normal[k], normal[j]);
+        if (sine <= 1e-6) return 1e300;
+        corners[std::size_t(k)] = glm::dvec2(support[k] * normal[j].y - support[j] * normal[k].y,
+                                             support[j] * normal[k].x - support[k] * normal[j].x) /
+                                  sine;
+    }
+    return measure_of(corners, criterion);
+}
+
+// The least of the triangles with sides in three of `steps` directions, then downhill by ever smaller random turns.
+double triangle_by_brute_force(const Points& points, PlanarCriterion criterion, int steps) {
+    std::array<double, 3> best{};
+    double least = 1e300;
+    const auto angle = [&](int i) { return 2.0 * std::numbers::pi * i / steps; };
+    const auto consider = [&](const std::array<double, 3>& angles) {
+        if (const double value = triangle_across(points, criterion, angles); value < least)
+            least = value, best = angles;
+    };
+    for (int i = 0; i < steps; ++i)
+        for (int j = i + 1; j < steps && 2 * (j - i) < steps; ++j)
+            for (int k = j + 1; k < steps && 2 * (k - j) < steps; ++k)
+                if (2 * (k - i) > steps) consider({angle(i), angle(j), angle(k)});
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<double> turn(-1.0, 1.0);
+    for (double size = 0.2; size > 1e-9; size *= 0.97)
+        for (int n = 0; n < 4; ++n)
+            consider({best[0] + size * turn(random), best[1] + size * turn(random), best[2] + size * turn(random)});
+    return least;
 }
 
 }  // namespace
@@ -138,6 +199,82 @@ TEST_SUITE("fit/planar") {
                             needed, obtuse ? 0.5 * sides[2] : sides[0] * sides[1] * sides[2] / (2.0 * twice_area));
                     }
             CHECK(disc.radius == doctest::Approx(needed).epsilon(1e-9));
+        }
+    }
+
+    TEST_CASE("triangles: bad points are refused, a point and a segment have no area, and a triangle is its own best") {
+        CHECK(fit::minimal_triangle({}, PlanarCriterion::area).error().code == ErrorCode::empty);
+        Points points = {{0.0, 0.0}, {4.0, 0.0}, {1.0, 3.0}, {1.5, 1.0}};
+        for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
+            const auto own = fit::minimal_triangle(view(points), criterion);
+            REQUIRE(own.has_value());
+            for (const glm::dvec2& c : *own)
+                CHECK(std::min({glm::distance(c, points[0]), glm::distance(c, points[1]),
+                                glm::distance(c, points[2])}) < 1e-7);
+            const Points line = {{0.0, 0.0}, {2.0, 2.0}, {1.0, 1.0}};
+            CHECK(measure_of(*fit::minimal_triangle(view(line), PlanarCriterion::area), PlanarCriterion::area) == 0.0);
+            const Points point(3, glm::dvec2(7.0));
+            CHECK((*fit::minimal_triangle(view(point), criterion))[1] == glm::dvec2(7.0));
+        }
+        points[3].y = std::numeric_limits<double>::infinity();
+        CHECK(fit::minimal_triangle(view(points), PlanarCriterion::perimeter).error().item == 3);
+        points[3].y = 2e30;
+        CHECK(fit::minimal_triangle(view(points), PlanarCriterion::area).error().code == ErrorCode::out_of_range);
+    }
+
+    TEST_CASE(
+        "triangles around a square have twice its area; around a regular hexagon 3/2 of its area, and its perimeter") {
+        const Points square = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+        CHECK(measure_of(*fit::minimal_triangle(view(square), PlanarCriterion::area), PlanarCriterion::area) ==
+              doctest::Approx(2.0).epsilon(1e-12));
+        Points hexagon;
+        for (int i = 0; i < 6; ++i)
+            hexagon.emplace_back(std::cos(std::numbers::pi * i / 3.0), std::sin(std::numbers::pi * i / 3.0));
+        const double own = 1.5 * std::sqrt(3.0);
+        CHECK(measure_of(*fit::minimal_triangle(view(hexagon), PlanarCriterion::area), PlanarCriterion::area) ==
+              doctest::Approx(1.5 * own).epsilon(1e-12));
+        // Three of its sides prolonged: an equilateral triangle of side 3.
+        CHECK(measure_of(*fit::minimal_triangle(view(hexagon), PlanarCriterion::perimeter),
+                         PlanarCriterion::perimeter) == doctest::Approx(9.0).epsilon(1e-12));
+        Points disc;
+        for (int i = 0; i < 300; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / 300;
+            disc.emplace_back(std::cos(angle), std::sin(angle));
+        }
+        // Around a disc of radius 1: equilateral.
+        CHECK(measure_of(*fit::minimal_triangle(view(disc), PlanarCriterion::area), PlanarCriterion::area) ==
+              doctest::Approx(3.0 * std::sqrt(3.0)).epsilon(1e-3));
+        CHECK(measure_of(*fit::minimal_triangle(view(disc), PlanarCriterion::perimeter), PlanarCriterion::perimeter) ==
+              doctest::Approx(6.0 * std::sqrt(3.0)).epsilon(1e-3));
+    }
+
+    TEST_CASE("triangles contain every point, one side is flush, and no triangle of a fine grid is smaller") {
+        for (int trial = 0; trial < 120; ++trial) {
+            std::mt19937_64 random(static_cast<std::uint64_t>(trial));
+            std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+            const double flat = trial % 4 == 0 ? 0.05 : 1.0;
+            Points points;
+            for (int i = 0; i < 3 + trial % 17; ++i) {
+                glm::dvec2 p(uniform(random), flat * uniform(random));
+                if (trial % 3 == 0) p = glm::normalize(p);
+                if (trial % 5 == 0) p = glm::round(4.0 * p);  // on a grid: parallel sides, equal heights
+                points.push_back(p);
+            }
+            for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
+                const auto best = fit::minimal_triangle(view(points), criterion);
+                REQUIRE(best.has_value());
+                for (const glm::dvec2& p : points) CHECK(contains(*best, p));
+                const double value = measure_of(*best, criterion);
+                const double grid = triangle_by_brute_force(points, criterion, 36);
+                CHECK(value <= grid * (1.0 + 1e-9));
+                // Tight: no side can be moved inward, and a slightly smaller triangle loses a point.
+                for (std::size_t k = 0; k < 3 && measure_of(*best, PlanarCriterion::area) > 1e-9; ++k) {
+                    const glm::dvec2 a = (*best)[k], b = (*best)[(k + 1) % 3], side = glm::normalize(b - a);
+                    double nearest = 1e300;
+                    for (const glm::dvec2& p : points) nearest = std::min(nearest, std::abs(cross(side, p - a)));
+                    CHECK(nearest < 1e-7);
+                }
+            }
         }
     }
 }

@@ -163,4 +163,12 @@ TEST_SUITE("measure/intrinsic_volumes") {
         CHECK(rays(cube) / rays(plate) == doctest::Approx(cube.area / plate.area));
         CHECK(body(cube) / body(plate) == doctest::Approx(cube.mean_curvature / plate.mean_curvature));
     }
+
+    TEST_CASE("triangles met: the kinematic measures of a rectangle's two halves add up to formula (6)") {
+        const IntrinsicVolumes half = intrinsic_volumes_of_flat_polygon(6.0, 12.0);  // sides 3, 4, 5
+        for (const IntrinsicVolumes& b : {intrinsic_volumes_of_box(1.0, 2.0, 0.5), intrinsic_volumes_of_sphere(0.7),
+                                          intrinsic_volumes_of_segment(3.0)})
+            CHECK(triangles_met(b, {2.0, 12.0, 14.0, 5.0}) == doctest::Approx(2.0 * kinematic_measure(b, half)));
+        CHECK(triangles_met({}, {2.0, 12.0, 14.0, 5.0}) == 0.0);
+    }
 }

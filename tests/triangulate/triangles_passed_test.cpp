@@ -7,7 +7,6 @@
 #include <crofton/sampling/random.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <oracle/triangulation_check.hpp>
 
 #include "polygons.hpp"
@@ -90,9 +89,8 @@ TEST_SUITE("triangulate/triangles_passed") {
         const double cell = size.x * size.y * size.z;
         for (const Run& run : runs) {
             const auto k = static_cast<double>(run.result.triangles.size());
-            const double predicted = (k * b->volume + area * b->mean_curvature / (2 * std::numbers::pi) +
-                                      b->area / 8 * (perimeter(polygon) + 2 * run.result.weight)) /
-                                     cell;
+            const double predicted =
+                measure::triangles_met(*b, {k, area, perimeter(polygon), run.result.weight}) / cell;
             const double mean = run.sum / kFrusta;
             const double error = std::sqrt((run.square / kFrusta - mean * mean) / kFrusta);
             MESSAGE("weight " << run.result.weight << ", triangles passed: predicted " << predicted << ", measured "

@@ -7,24 +7,13 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "planar_points.hpp"
 #include "search/calipers.hpp"
 
 namespace crofton::fit {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-
-Result<void> check(std::span<const glm::dvec2> points) {
-    if (points.empty()) return fail(ErrorCode::empty, kNoItem, "fit: no points");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const glm::dvec2 p = points[i];
-        if (!std::isfinite(p.x) || !std::isfinite(p.y))
-            return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
-        if (std::max(std::abs(p.x), std::abs(p.y)) > kMaxCoordinate)
-            return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
-    }
-    return {};
-}
 
 // The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: the
 // error is less than 4 units of Σ|axis_i d_i|, and 5 are added.
@@ -75,22 +64,34 @@ Disc through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
 
 }  // namespace
 
+Result<void> check_planar(std::span<const glm::dvec2> points) {
+    if (points.empty()) return fail(ErrorCode::empty, kNoItem, "fit: no points");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec2 p = points[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y))
+            return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
+        if (std::max(std::abs(p.x), std::abs(p.y)) > kMaxCoordinate)
+            return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
+    }
+    return {};
+}
+
 Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
-    if (auto valid = check(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
     const auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     return minimal_rectangle_of_convex(*hull, criterion);
 }
 
 Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon, PlanarCriterion criterion) {
-    if (auto valid = check(polygon); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check_planar(polygon); !valid) return tl::unexpected(valid.error());
     const bool by_area = criterion == PlanarCriterion::area;
     const Calipers best = minimal_rectangle(polygon, by_area ? 1.0 : 0.0, by_area ? 0.0 : 1.0);
     return around(polygon, best.direction);
 }
 
 Result<Disc> minimal_disc(std::span<const glm::dvec2> points) {
-    if (auto valid = check(points); !valid) return tl::unexpected(valid.error());
+    if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
     auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     Vector<glm::dvec2>& corners = *hull;

@@ -73,4 +73,9 @@ double kinematic_measure(const IntrinsicVolumes& b, const IntrinsicVolumes& k) {
     return b.volume + k.volume + (b.area * k.mean_curvature + k.area * b.mean_curvature) / (4.0 * pi);
 }
 
+double triangles_met(const IntrinsicVolumes& b, const TriangulationMeasures& t) {
+    return t.triangles * b.volume + t.area * b.mean_curvature / (2.0 * pi) +
+           b.area / 8.0 * (t.boundary + 2.0 * t.weight);
+}
+
 }  // namespace crofton::measure

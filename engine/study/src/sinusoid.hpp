@@ -31,9 +31,10 @@ struct Sinusoid {
     }
 };
 
-// Calls visit(from, to, value) for the parts of [begin, end], 0 ≤ begin ≤ end ≤ 2π, between the zeros of f; `value` is
-// f in the part's middle, so it has the sign of f on that part. Parts that rounding misplaces are those where f is 0 up
-// to rounding: an integral of max(0, f) does not see them.
+// Calls visit(from, to, value) for the parts of [begin, end], 0 ≤ begin ≤ end ≤ 2π, between the zeros of f; `value` has
+// the sign of f on that part. It is f in the part's middle, or, where that is 0 up to rounding, f's integral: f may
+// touch 0 just there, as a disc's support does that of a point on its circle. Parts that rounding misplaces are those
+// where f is 0 up to rounding everywhere: an integral of max(0, f) does not see them.
 template <class Visit>
 void for_signs(const Sinusoid& f, double begin, double end, Visit visit) {
     std::array<double, 8> cuts;
@@ -51,7 +52,11 @@ void for_signs(const Sinusoid& f, double begin, double end, Visit visit) {
     }
     cuts[count++] = end;
     for (std::size_t i = 0; i + 1 < count; ++i)
-        if (cuts[i] < cuts[i + 1]) visit(cuts[i], cuts[i + 1], f(0.5 * (cuts[i] + cuts[i + 1])));
+        if (cuts[i] < cuts[i + 1]) {
+            const double middle = f(0.5 * (cuts[i] + cuts[i + 1]));
+            const bool clear = std::abs(middle) > 1e-12 * (amplitude + std::abs(f.r));
+            visit(cuts[i], cuts[i + 1], clear ? middle : f.integral(cuts[i], cuts[i + 1]));
+        }
 }
 
 // Calls visit(p, q, begin, end) for the intervals on which both functions are one piece each: p of a, q of b.

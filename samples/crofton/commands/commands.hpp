@@ -9,6 +9,7 @@ void add_fit_command(CommandLine& line);
 void add_bake_command(CommandLine& line);
 void add_collide_command(CommandLine& line);
 void add_frames_command(CommandLine& line);
+void add_hierarchy_command(CommandLine& line);
 void add_lines_command(CommandLine& line);
 void add_measure_command(CommandLine& line);
 void add_radiosity_command(CommandLine& line);

@@ -7,8 +7,11 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "fit_bounds.hpp"
 #include "fit_criterion.hpp"
 #include "fit_output.hpp"
+#include "fit_planar.hpp"
+#include "fit_views.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
@@ -20,6 +23,9 @@ struct Request {
     std::vector<std::string> files;
     std::string criterion = "perimeter", quality = "exact", json_path, svg_path;
     double budget_seconds = 0.0;  // 0: none
+    bool planar = false;
+    std::string bounds, views;
+    double region = 20.0, triangle_cost = 1.0;
 };
 
 class Stopwatch {
@@ -97,8 +103,23 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
 }
 
 int run(const Request& request) {
+    if (request.planar) {
+        const auto status = run_fit_planar({request.files, request.json_path, request.svg_path});
+        return status ? *status : report_error("", status.error());
+    }
+    if (!request.views.empty()) {
+        const auto status = run_fit_views({request.files, request.views, request.json_path});
+        return status ? *status : report_error("", status.error());
+    }
     const auto criterion = parse_criterion(request.criterion);
     if (!criterion) return report_error("", criterion.error());
+    if (!request.bounds.empty()) {
+        if (!request.svg_path.empty())
+            return report_error("", Error{ErrorCode::invalid_argument, kNoItem, "fit: --bounds draws no --svg"});
+        const auto status = run_fit_bounds({request.files, request.criterion, request.json_path, *criterion,
+                                            request.bounds == "best", request.region, request.triangle_cost});
+        return status ? *status : report_error("", status.error());
+    }
     std::vector<FittedMesh> meshes;
     for (const std::string& file : request.files) {
         auto mesh = fit_mesh(file, *criterion, request);
@@ -137,6 +158,26 @@ void add_fit_command(CommandLine& line) {
         .writable_file();
     command.option("--svg", request->svg_path, "Draw hulls and boxes into this file; - for standard output")
         .writable_file();
+    command
+        .option(
+            "--bounds", request->bounds,
+            "Compare sphere, boxes and k-DOPs by C_v + p C_p, a test's time and what passes it: all of them, or the "
+            "best for each mesh")
+        .one_of({"all", "best"});
+    command.option("--region", request->region, "--bounds: queries hit a ball of so many times the mesh's radius")
+        .between(1.0, 1e9)
+        .show_default();
+    command.option("--triangle-cost", request->triangle_cost, "--bounds: nanoseconds for a triangle that is passed on")
+        .not_negative()
+        .show_default();
+    command.option(
+        "--views", request->views,
+        "Boxes for the directions of a recorded camera path (the JSON of `crofton frames`), beside those for "
+        "uniform ones, and the improper tests of both");
+    command.flag(
+        "--planar", request->planar,
+        "Polygons (.poly, .json, .geojson, .wad): the best rectangles, disc and triangles, by perimeter and by "
+        "area");
     command.footer(
         "The criterion is alpha V + beta F + gamma M of volume, surface area and integral of mean curvature (pi times "
         "the edge sum).\n"
@@ -144,7 +185,9 @@ void add_fit_command(CommandLine& line) {
         "Examples:\n"
         "  crofton fit bunny.obj\n"
         "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"
-        "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg");
+        "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg\n"
+        "  crofton fit *.obj --bounds best --criterion frustum:1.0472,1.7778,0.1,1000\n"
+        "  crofton fit --planar counties.poly --svg bounds.svg");
     command.action([request] { return run(*request); });
 }
 

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     add_bake_command(line);
     add_collide_command(line);
     add_frames_command(line);
+    add_hierarchy_command(line);
     add_lines_command(line);
     add_measure_command(line);
     add_radiosity_command(line);

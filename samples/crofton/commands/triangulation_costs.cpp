@@ -53,18 +53,13 @@ double perimeter_of(const Corners& c) {
     return glm::distance(c[0], c[1]) + glm::distance(c[1], c[2]) + glm::distance(c[2], c[0]);
 }
 
-// Sums over the triangles of one triangulation.
-struct Sums {
-    double count = 0.0, area = 0.0, perimeter = 0.0;
-};
-
-Sums sums_of(const TriangulatedPolygon& p, std::size_t method) {
-    Sums sums;
+measure::TriangulationMeasures measures_of(const TriangulatedPolygon& p, std::size_t method) {
+    measure::TriangulationMeasures sums;
     for (const auto& t : p.results[method].triangles) {
         const Corners c = corners_of(p, t);
-        sums.count += 1.0;
+        sums.triangles += 1.0;
         sums.area += area_of(c);
-        sums.perimeter += perimeter_of(c);
+        sums.boundary += perimeter_of(c);
     }
     return sums;
 }
@@ -127,10 +122,11 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
     const sampling::UnitPoints points(6);
     const std::size_t methods = polygons[0].results.size();
     std::vector<Mean> means(methods);
-    std::vector<std::vector<Sums>> sums;
+    std::vector<std::vector<double>> expected;
     for (const auto& p : polygons) {
-        sums.emplace_back();
-        for (std::size_t m = 0; m < methods; ++m) sums.back().push_back(sums_of(p, m));
+        expected.emplace_back();
+        for (std::size_t m = 0; m < methods; ++m)
+            expected.back().push_back(measure::triangles_met(b, measures_of(p, m)) / cell);
     }
     for (std::uint64_t i = 0; i < trials; ++i) {
         const std::size_t index = i % polygons.size();
@@ -143,16 +139,12 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
         const auto frustum = frustum_of(camera);
         if (!frustum) continue;
         for (std::size_t m = 0; m < methods; ++m) {
-            const Sums& s = sums[index][m];
-            const double expected = (s.count * b.volume + s.area * b.mean_curvature / (2.0 * std::numbers::pi) +
-                                     b.area / 8.0 * s.perimeter) /
-                                    cell;
             double passed = 0.0;
             for (const auto& t : p.results[m].triangles) {
                 const Corners c = corners_of(p, t);
                 passed += intersects(*frustum, glm::dvec3(c[0], 0.0), glm::dvec3(c[1], 0.0), glm::dvec3(c[2], 0.0));
             }
-            means[m].add(expected, passed);
+            means[m].add(expected[index][m], passed);
         }
     }
     return comparison_of(means, trials);

@@ -245,8 +245,8 @@ void triangulation_rows(const VerifyOptions& options, std::vector<VerifyRow>& ro
                 for (const Body& t : parts) count += meet(view, t);
                 passed.add(count);
             }
-            const double predicted = static_cast<double>(triangles.size()) * b.volume +
-                                     area * b.mean_curvature / (2.0 * pi) + b.area / 8.0 * (boundary + 2.0 * weight);
+            const double predicted =
+                measure::triangles_met(b, {static_cast<double>(triangles.size()), area, boundary, weight});
             rows.push_back(measured_row(std::string(lens.name) + " frusta: triangles passed, " +
                                             (heavier ? "heavier" : "lighter") + " triangulation of an L",
                                         "theory.md (6)", predicted, placements.measure() * passed.value(),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The kinematic formula (1) and its likes: predicted measures of motions against counted ones.
-#include <crofton/measure/criterion.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <crofton/sampling/random.hpp>
 #include <numbers>
@@ -102,13 +101,6 @@ std::vector<VerifyRow> kinematic_rows(const VerifyOptions& options) {
     rows.push_back(
         counted("motions of a segment that hit a segment (Buffon)", segment, segment, options.trials, seed++));
 
-    // (2): what a criterion's difference predicts is the difference of the measures.
-    const IntrinsicVolumes b = frusta()[0].volumes, cube = measure::intrinsic_volumes_of_box(1.0, 1.0, 1.0),
-                           plate = measure::intrinsic_volumes_of_box(2.4, 0.7, 0.05);
-    const measure::Criterion criterion = measure::for_partner(b);
-    const double difference = measure::kinematic_measure(b, cube) - measure::kinematic_measure(b, plate);
-    rows.push_back(computed_row("the criterion of a frustum ranks bounds by how often it hits them", "theory.md (2)",
-                                difference, criterion(cube) - criterion(plate), 1e-9 * std::abs(difference)));
     return rows;
 }
 

@@ -223,6 +223,7 @@ std::vector<VerifyRow> verify_lines(const VerifyOptions& options) {
     uniformity_rows(options, rows);
     plane_rows(options, rows);
     patch_rows(options, rows);
+    for (VerifyRow& row : factor_rows(options)) rows.push_back(std::move(row));
     return rows;
 }
 

@@ -21,12 +21,21 @@ double score(double difference, double standard_error) {
 
 VerifyRow row(std::string claim, std::string source, double predicted, double measured, double standard_error,
               double z) {
-    return {std::move(claim), std::move(source), predicted, measured, standard_error, z, std::abs(z) <= kMaxZ, 0};
+    VerifyRow result{std::move(claim), std::move(source), predicted, measured, standard_error, z, std::abs(z) <= kMaxZ};
+    if (predicted != 0.0) result.resolution = (kMaxZ + 2.0) * standard_error / std::abs(predicted);
+    return result;
 }
 
 std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string percent(double part, std::uint64_t cases) {
+    if (!(part < 10.0)) return cases > 0 ? "1 of " + std::to_string(cases) : "-";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100.0 * part);
     return text;
 }
 
@@ -39,18 +48,25 @@ VerifyRow measured_row(std::string claim, std::string source, double predicted, 
 }
 
 VerifyRow computed_row(std::string claim, std::string source, double predicted, double measured, double tolerance) {
-    return measured_row(std::move(claim), std::move(source), predicted, measured, tolerance / kMaxZ);
+    VerifyRow result = measured_row(std::move(claim), std::move(source), predicted, measured, tolerance / kMaxZ);
+    if (predicted != 0.0) result.resolution = tolerance / std::abs(predicted);
+    return result;
 }
 
 VerifyRow at_most_row(std::string claim, std::string source, double bound, double measured, double standard_error) {
     const double excess = measured <= bound ? 0.0 : measured - bound;  // a NaN stays one
-    return row(std::move(claim), std::move(source), bound, measured, standard_error, score(excess, standard_error));
+    VerifyRow result =
+        row(std::move(claim), std::move(source), bound, measured, standard_error, score(excess, standard_error));
+    if (bound != 0.0)
+        result.resolution = (std::max(0.0, bound - measured) + (kMaxZ + 2.0) * standard_error) / std::abs(bound);
+    return result;
 }
 
 VerifyRow wrong_row(std::string claim, std::string source, double predicted, double measured, double standard_error) {
     VerifyRow result =
         measured_row("wrong, must be rejected: " + claim, std::move(source), predicted, measured, standard_error);
     result.holds = std::abs(result.z) > kMaxZ;
+    result.resolution = std::numeric_limits<double>::infinity();
     return result;
 }
 
@@ -78,11 +94,11 @@ std::string table_of(const std::vector<VerifyRow>& rows) {
         return std::string(text.size() < 14 ? 14 - text.size() : 1, ' ') + text;
     };
     std::string table = padded("claim", claim_width) + padded("source", source_width) + right("predicted") +
-                        right("measured") + right("std. error") + right("z") + "  holds\n";
+                        right("measured") + right("std. error") + right("z") + right("resolves") + "  holds\n";
     for (const VerifyRow& r : rows)
         table += padded(r.claim, claim_width) + padded(r.source, source_width) + right(number(r.predicted)) +
                  right(number(r.measured)) + right(number(r.standard_error)) + right(number(r.z)) +
-                 (r.holds ? "  yes\n" : "  NO\n");
+                 right(percent(r.resolution, r.cases)) + (r.holds ? "  yes\n" : "  NO\n");
     return table;
 }
 
@@ -91,12 +107,15 @@ Json json_of(const std::vector<VerifyRow>& rows) {
     for (const VerifyRow& r : rows) {
         Json z = nullptr;
         if (std::isfinite(r.z)) z = r.z;
+        Json resolution = nullptr;
+        if (std::isfinite(r.resolution)) resolution = r.resolution;
         result.push_back({{"claim", r.claim},
                           {"source", r.source},
                           {"predicted", r.predicted},
                           {"measured", r.measured},
                           {"standard_error", r.standard_error},
                           {"z", z},
+                          {"resolution", resolution},
                           {"holds", r.holds}});
         if (r.cases > 0) result.back()["cases"] = r.cases;
     }

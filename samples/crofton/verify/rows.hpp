@@ -2,6 +2,7 @@
 // What `crofton verify` is made of: one row a claim, with what was predicted, what was measured, and the verdict.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct VerifyRow {
     double z = 0.0;
     bool holds = false;       // is `claim` borne out? For a wrong claim: was it rejected?
     std::uint64_t cases = 0;  // that the claim was tried on, where they were counted
+    // The smallest relative error of `predicted` that this row would see: kMaxZ + 2 standard errors, so that 39 of 40
+    // seeds reject it; of a computed row the tolerance; of a bound how far `measured` would have to rise. Infinite
+    // where the prediction is 0 or the claim is wrong on purpose.
+    double resolution = std::numeric_limits<double>::infinity();
 };
 
 struct VerifyOptions {
@@ -53,8 +58,8 @@ struct Share {
 };
 [[nodiscard]] Share share_of(std::uint64_t hits, std::uint64_t trials);
 
-// An aligned table for people, and an array of {claim, source, predicted, measured, standard_error, z, holds}, and
-// cases where they were counted; z is null where it is not finite.
+// An aligned table for people, and an array of {claim, source, predicted, measured, standard_error, z, resolution,
+// holds}, and cases where they were counted; z and resolution are null where they are not finite.
 [[nodiscard]] std::string table_of(const std::vector<VerifyRow>& rows);
 [[nodiscard]] Json json_of(const std::vector<VerifyRow>& rows);
 

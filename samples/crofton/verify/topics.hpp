@@ -16,5 +16,13 @@ namespace crofton::cli {
 [[nodiscard]] std::vector<VerifyRow> kinematic_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> planar_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> criterion_rows(const VerifyOptions& options);
+// The sharp rows: mostly without chance, at a cost that does not depend on the trials.
+[[nodiscard]] std::vector<VerifyRow> volume_rows(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> common_rows(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> bound_rows(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> triangulation_rows(const VerifyOptions& options);
+
+// Part of verify_lines.
+[[nodiscard]] std::vector<VerifyRow> factor_rows(const VerifyOptions& options);
 
 }  // namespace crofton::cli

@@ -46,6 +46,20 @@ struct IntrinsicVolumes {
 // measure 1, translations their volume.
 [[nodiscard]] double kinematic_measure(const IntrinsicVolumes& b, const IntrinsicVolumes& k);
 
+// A triangulated flat polygon, as far as random queries see it. `boundary`: the length of all its rings; `weight`: of
+// the diagonals, each counted once. Any flat triangles fit: put the sum of their perimeters into `boundary`, weight 0.
+struct TriangulationMeasures {
+    double triangles = 0.0;  // how many
+    double area = 0.0;
+    double boundary = 0.0;
+    double weight = 0.0;
+};
+
+// Σ over the triangles of the measure of the motions under which B meets the triangle, theory.md (6). Divided by the
+// measure of all motions drawn from, it is the mean number of triangles passed. Exact for convex B: perspective,
+// orthographic, near and far plane included.
+[[nodiscard]] double triangles_met(const IntrinsicVolumes& b, const TriangulationMeasures& triangulation);
+
 // The plane: area and perimeter say how often uniformly random queries meet a convex figure.
 
 // A segment's perimeter is twice its length: the limit of thin rectangles.

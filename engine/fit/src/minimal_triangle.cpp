@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <crofton/core/memory.hpp>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/predicates.hpp>
+#include <crofton/geometry/trigonometry.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "planar_points.hpp"
+
+namespace crofton::fit {
+namespace {
+
+using std::numbers::pi;
+using Triangle2 = std::array<glm::dvec2, 3>;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A convex polygon with one side on the x axis from 0 to (length, 0) and the rest above. `corners` go on
+// counter-clockwise and end with 0 again; `top` is the first of the highest. The right chain is [1, top], the left one
+// [top, end].
+struct Standing {
+    Vector<glm::dvec2> corners;
+    std::size_t top = 0;
+    double nearly = 0.0;  // heights that differ by no more count as equal
+
+    // The polygon's left and right ends at height y in (0, height], and the inverse slopes dx/dy there.
+    struct Cut {
+        double left, right;
+        double left_below, left_above, right_below, right_above;  // slopes just below and above y; ±∞ at the top
+        double corner_height;                                     // of a corner that lies nearly at y, or y
+    };
+
+    void stand(std::span<const glm::dvec2> hull, std::size_t side) {
+        const std::size_t n = hull.size();
+        const glm::dvec2 origin = hull[side], x = glm::normalize(hull[(side + 1) % n] - origin), y(-x.y, x.x);
+        corners.resize(n + 1);
+        top = 1;
+        for (std::size_t k = 0; k < n; ++k) {
+            const glm::dvec2 d = hull[(side + k) % n] - origin;
+            corners[k] = k < 2 ? glm::dvec2(glm::dot(d, x), 0.0) : glm::dvec2(glm::dot(d, x), glm::dot(d, y));
+            if (corners[k].y > corners[top].y) top = k;
+        }
+        corners[n] = glm::dvec2(0.0);
+        nearly = 1e-12 * height();
+    }
+    [[nodiscard]] double height() const { return corners[top].y; }
+
+    [[nodiscard]] Cut cut(double y) const {
+        // The first right corner that is not below y, and the first left one that is not above it.
+        const auto at = [&](std::size_t k) { return corners.begin() + static_cast<std::ptrdiff_t>(k); };
+        const std::size_t end = corners.size() - 1;
+        const auto right = static_cast<std::size_t>(
+            std::lower_bound(at(2), at(top), y - nearly, [](const glm::dvec2& c, double h) { return c.y < h; }) -
+            corners.begin());
+        const auto left = static_cast<std::size_t>(
+            std::lower_bound(at(top + 1), at(end), y + nearly, [](const glm::dvec2& c, double h) { return c.y > h; }) -
+            corners.begin());
+        Cut result{};
+        result.right_below = result.right_above = slope(right - 1, right);
+        result.left_below = result.left_above = slope(left, left - 1);
+        result.corner_height = y;
+        for (const std::size_t k : {left, right})
+            if (std::abs(corners[k].y - y) <= nearly) result.corner_height = corners[k].y;
+        if (corners[right].y <= y + nearly && right < top) result.right_above = slope(right, right + 1);
+        if (corners[left].y >= y - nearly && left < end) result.left_below = slope(left + 1, left);
+        result.right = corners[right].x - (corners[right].y - y) * result.right_below;
+        result.left = corners[left].x + (y - corners[left].y) * result.left_below;
+        if (corners[left].y < y - nearly) result.left = corners[left].x + (y - corners[left].y) * result.left_above;
+        if (corners[top].y <= y + nearly) result.left_above = kInfinity, result.right_above = -kInfinity;
+        return result;
+    }
+
+    // max of dot(corner, n): n points to the right (to the left), at any height.
+    [[nodiscard]] double right_support(const glm::dvec2& n) const { return support(1, top, n); }
+    [[nodiscard]] double left_support(const glm::dvec2& n) const { return support(top, corners.size() - 1, n); }
+
+  private:
+    [[nodiscard]] double slope(std::size_t lower, std::size_t upper) const {
+        const glm::dvec2 d = corners[upper] - corners[lower];
+        return d.y > 0.0 ? d.x / d.y : d.x > 0.0 ? kInfinity : d.x < 0.0 ? -kInfinity : 0.0;
+    }
+    // Along the chain the product rises, then falls.
+    [[nodiscard]] double support(std::size_t first, std::size_t last, const glm::dvec2& n) const {
+        while (first < last) {
+            const std::size_t middle = first + (last - first) / 2;
+            if (glm::dot(corners[middle + 1] - corners[middle], n) > 0.0)
+                first = middle + 1;
+            else
+                last = middle;
+        }
+        return glm::dot(corners[first], n);
+    }
+};
+
+struct Found {
+    double value = kInfinity;
+    Triangle2 corners{};  // of the standing polygon
+};
+
+// Let w be the polygon's width at height y. A triangle on the same base, of height H, is w wide at y at least, so its
+// area is at least w·H²/(2(H − y)) ≥ 2·y·w. Equality holds for H = 2y and sides that touch at y. Where y·w is largest
+// (it is log-concave) such sides exist: there w falls by w/y a unit of height, or could.
+Found least_area(const Standing& polygon) {
+    double low = 0.0, high = polygon.height();
+    for (int i = 0; i < 64 && low < high; ++i) {
+        const double y = 0.5 * (low + high);
+        const auto c = polygon.cut(y);
+        (c.right - c.left + y * (c.right_above - c.left_above) > 0.0 ? low : high) = y;
+    }
+    const double y = polygon.cut(high).corner_height;
+    const auto c = polygon.cut(y);
+    const double width = c.right - c.left, closing = width / y;  // what left slope − right slope must be
+    const double below = c.left_below - c.right_below, above = c.left_above - c.right_above;
+    double left = c.left_below, right = c.right_below;
+    if (above == kInfinity) {  // on top: sides may lean in as far as they like
+        left += std::max(0.0, closing - below);
+    } else if (above > below) {
+        const double part = std::clamp((closing - below) / (above - below), 0.0, 1.0);
+        left += part * (c.left_above - c.left_below);
+        right += part * (c.right_above - c.right_below);
+    }
+    // Both sides through the middle of them both, so that neither rounding nor a flat optimum opens the triangle.
+    const double apex = 0.5 * (c.left + left * y + c.right + right * y);
+    const glm::dvec2 tip(apex, 2.0 * y);
+    return {2.0 * y * width, {glm::dvec2(2.0 * c.left - apex, 0.0), glm::dvec2(2.0 * c.right - apex, 0.0), tip}};
+}
+
+// The triangle whose angles at the base are A and B: with h the support values of its other sides and C = π − A − B,
+// Σ sin(opposite angle)·h is the inradius times Σ sin, and the perimeter 2·inradius·Σ cot(angle/2). Their product is
+//     (sin B · h_left + sin A · h_right) / (2 sin(A/2) sin(B/2) sin(C/2)).
+struct Angle {
+    double half_sine, sine, cosine;
+    explicit Angle(double angle) {
+        const glm::dvec2 h = cosine_sine(0.5 * angle);
+        half_sine = h.y;
+        sine = 2.0 * h.x * h.y;
+        cosine = (h.x - h.y) * (h.x + h.y);
+    }
+};
+
+class LeastPerimeter {
+  public:
+    explicit LeastPerimeter(const Standing& polygon) : polygon_(polygon) {}
+
+    // For fixed A the directions of a third side that make the perimeter at most 2t are those that separate the polygon
+    // from a circle, an interval: the perimeter has one minimum in B. The minimum over B is searched for in A likewise,
+    // from the best of a few places.
+    Found run() {
+        constexpr int kPlaces = 12;
+        int best = 1;
+        double least = kInfinity;
+        for (int i = 1; i < kPlaces; ++i)
+            if (const double value = best_right(pi * i / kPlaces); value < least) least = value, best = i;
+        const double left =
+            minimise(pi * (best - 1) / kPlaces, pi * (best + 1) / kPlaces, [&](double a) { return best_right(a); });
+        const double value = best_right(left);
+        return {value, triangle(left, right_)};
+    }
+
+  private:
+    template <class Function>
+    static double minimise(double low, double high, Function f) {
+        constexpr double kGolden = 0.61803398874989485;
+        double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+        double at_a = f(a), at_b = f(b);
+        for (int i = 0; i < 72; ++i) {
+            if (at_a < at_b) {
+                high = b, b = a, at_b = at_a;
+                a = high - kGolden * (high - low), at_a = f(a);
+            } else {
+                low = a, a = b, at_a = at_b;
+                b = low + kGolden * (high - low), at_b = f(b);
+            }
+        }
+        return at_a < at_b ? a : b;
+    }
+
+    double best_right(double left) {
+        const Angle a(left);
+        const double support = polygon_.left_support({-a.sine, a.cosine});
+        const auto perimeter = [&](double right) {
+            const Angle b(right);
+            const Angle c(pi - left - right);
+            const double h = b.sine * support + a.sine * polygon_.right_support({b.sine, b.cosine});
+            const double divisor = 2.0 * a.half_sine * b.half_sine * c.half_sine;
+            return divisor > 0.0 ? h / divisor : kInfinity;
+        };
+        right_ = minimise(0.0, pi - left, perimeter);
+        return perimeter(right_);
+    }
+
+    [[nodiscard]] Triangle2 triangle(double left, double right) const {
+        const Angle a(left), b(right), c(pi - left - right);
+        // On the base the sides meet it at −h_left/sin A and h_right/sin B.
+        const double begin = -polygon_.left_support({-a.sine, a.cosine}) / a.sine,
+                     end = polygon_.right_support({b.sine, b.cosine}) / b.sine, side = (end - begin) * b.sine / c.sine;
+        return {glm::dvec2(begin, 0.0), glm::dvec2(end, 0.0), glm::dvec2(begin + side * a.cosine, side * a.sine)};
+    }
+
+    const Standing& polygon_;
+    double right_ = 0.0;
+};
+
+bool holds(const Triangle2& triangle, std::span<const glm::dvec2> points) {
+    return std::all_of(points.begin(), points.end(), [&](const glm::dvec2& p) {
+        return orientation(triangle[0], triangle[1], p) >= 0 && orientation(triangle[1], triangle[2], p) >= 0 &&
+               orientation(triangle[2], triangle[0], p) >= 0;
+    });
+}
+
+}  // namespace
+
+Result<std::array<glm::dvec2, 3>> minimal_triangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
+    if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
+    const auto found_hull = measure::convex_hull(points);
+    if (!found_hull) return tl::unexpected(found_hull.error());
+    const Vector<glm::dvec2>& hull = *found_hull;
+    if (hull.size() < 3) return Triangle2{hull[0], hull.back(), hull.back()};
+    Standing polygon;
+    Found best;
+    std::size_t base = 0;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+        polygon.stand(hull, i);
+        if (!(polygon.height() > 0.0)) continue;
+        const Found found = criterion == PlanarCriterion::area ? least_area(polygon) : LeastPerimeter(polygon).run();
+        if (found.value < best.value) best = found, base = i;
+    }
+    if (!(best.value < kInfinity))
+        return fail(ErrorCode::degenerate, kNoItem, "minimal_triangle: the points are flat to within rounding");
+    const glm::dvec2 x = glm::normalize(hull[(base + 1) % hull.size()] - hull[base]), y(-x.y, x.x);
+    const glm::dvec2 middle = (best.corners[0] + best.corners[1] + best.corners[2]) / 3.0;
+    Triangle2 result;
+    for (double grown = 1.0, step = 0x1p-52;; grown = 1.0 + step, step *= 2.0) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec2 c = middle + grown * (best.corners[k] - middle);
+            result[k] = hull[base] + c.x * x + c.y * y;
+        }
+        if (holds(result, hull) || step > 1.0) return result;
+    }
+}
+
+}  // namespace crofton::fit

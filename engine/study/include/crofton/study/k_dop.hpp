@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// k-DOPs: convex polytopes with faces across k/2 fixed directions, as bounds beside boxes and spheres.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/cull/classify.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+
+namespace crofton::study {
+
+// Half of a k-DOP's directions, unit vectors: the coordinate axes, and the cube's diagonals (14), its faces' (18), or
+// both (26). Errors: k is none of 6, 14, 18, 26.
+[[nodiscard]] Result<Vector<glm::dvec3>> k_dop_directions(std::uint32_t k);
+
+// { x : low[i] ≤ dot(directions[i], x) ≤ high[i] }, and its corners.
+struct KDop {
+    Vector<glm::dvec3> directions;
+    Vector<double> low, high;
+    Vector<glm::dvec3> corners;
+};
+
+// The least of its directions around the points: every slab touches two of them. Directions may have any length but 0.
+// Errors: no points, NaN or infinite ones (by index); more than 64 directions; a direction that is 0 or not finite (by
+// index); directions that all lie in a plane.
+[[nodiscard]] Result<KDop> k_dop_around(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions);
+
+struct BestKDop {
+    KDop bound;
+    glm::dmat3 rotation{1.0};  // of the directions
+    double value = 0.0;
+    double lower_bound = 0.0;  // the criterion of the points' hull, which every bound contains
+};
+
+// The directions turned as a whole, by a search downhill from several rotations: a good local optimum, never worse than
+// the directions as they are. `lower_bound` certifies how far from any bound's best it can be at most. Errors: as
+// k_dop_around; a criterion that fails validate; a hull without volume.
+[[nodiscard]] Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
+                                          const measure::Criterion& criterion);
+
+// Conservative culling of any convex body by its corners: `outside` iff one plane of the view rejects all of them,
+// `inside` iff none rejects any; in double, a corner within 1e-9 of a plane (of its distance from the view's origin)
+// counting as in front of it for `outside`, as behind it for `inside`.
+[[nodiscard]] cull::Verdict classify(const Frustum& frustum, std::span<const glm::dvec3> corners);
+
+}  // namespace crofton::study

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/core/memory.hpp>
+#include <crofton/fit/sphere.hpp>
+#include <crofton/geometry/trigonometry.hpp>
+#include <crofton/study/ball_given_ancestors.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "direction_cells.hpp"
+
+namespace crofton::study {
+namespace {
+
+using std::numbers::pi;
+constexpr std::size_t kDirections = 1024;
+
+struct Cell {
+    glm::dvec3 center;
+    double half;
+    double bound;
+    std::uint64_t age;
+};
+
+class BallSearch {
+  public:
+    BallSearch(std::span<const glm::dvec3> points, std::span<const ConvexBody> ancestors) : points_(points) {
+        for (std::size_t i = 0; i < kDirections; ++i) {
+            // Even heights, longitudes by the golden angle.
+            const double z = 2.0 * (static_cast<double>(i) + 0.5) / kDirections - 1.0;
+            const double turns = static_cast<double>(i) * 0.6180339887498949;
+            const glm::dvec2 circle = cosine_sine(2.0 * pi * (turns - std::floor(turns)));
+            const double r = std::sqrt(1.0 - z * z);
+            normals_.push_back({r * circle.x, r * circle.y, z});
+            double least = std::numeric_limits<double>::infinity();
+            for (const ConvexBody& body : ancestors) least = std::min(least, support(body, normals_.back()));
+            ancestors_.push_back(least);
+        }
+    }
+
+    [[nodiscard]] bool object_is_inside() const {
+        for (std::size_t i = 0; i < normals_.size(); ++i)
+            for (const glm::dvec3& p : points_)
+                if (glm::dot(p, normals_[i]) > ancestors_[i] + 1e-9 * (std::abs(ancestors_[i]) + glm::length(p)))
+                    return false;
+        return true;
+    }
+
+    [[nodiscard]] double radius_at(const glm::dvec3& center) const {
+        double r = 0.0;
+        for (const glm::dvec3& p : points_) r = std::max(r, glm::distance(p, center));
+        return r;
+    }
+
+    [[nodiscard]] double measure_of(const glm::dvec3& center) const {
+        const double r = radius_at(center);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < normals_.size(); ++i)
+            sum += std::min(ancestors_[i], glm::dot(center, normals_[i]) + r);
+        return 4.0 * pi * sum / static_cast<double>(normals_.size());
+    }
+
+    // Below the measure of every ball whose centre lies in the cube; infinite where all are larger than `largest`.
+    [[nodiscard]] double bound(const glm::dvec3& center, double half, double largest) const {
+        glm::dvec3 farthest = points_[0];
+        for (const glm::dvec3& p : points_)
+            if (glm::distance(p, center) > glm::distance(farthest, center)) farthest = p;
+        const double r = glm::distance(farthest, center);
+        if (r - std::sqrt(3.0) * half > largest) return std::numeric_limits<double>::infinity();
+        const glm::dvec3 e = r > 0.0 ? (center - farthest) / r : glm::dvec3(0.0);
+        std::array<double, 8> sums{};
+        for (std::size_t i = 0; i < normals_.size(); ++i) {
+            const double base = glm::dot(center, normals_[i]) + r;
+            const glm::dvec3 slope = half * (normals_[i] + e);
+            for (unsigned corner = 0; corner < 8; ++corner)
+                sums[corner] +=
+                    std::min(ancestors_[i], base + (corner & 1 ? slope.x : -slope.x) +
+                                                (corner & 2 ? slope.y : -slope.y) + (corner & 4 ? slope.z : -slope.z));
+        }
+        return 4.0 * pi * *std::min_element(sums.begin(), sums.end()) / static_cast<double>(normals_.size());
+    }
+
+    void run(const Sphere& least, const BallOptions& options, BallGivenAncestors& result) {
+        const double largest = options.largest * least.radius;
+        const auto lower = [](const Cell& a, const Cell& b) {
+            return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
+        };
+        Vector<Cell> heap;
+        const auto consider = [&](const glm::dvec3& center) {
+            if (radius_at(center) > largest) return;
+            if (const double value = measure_of(center); value < result.value)
+                result.value = value, result.ball = {center, radius_at(center)};
+        };
+        // Every centre within `largest` of the object's points lies in this cube.
+        heap.push_back({least.center, largest, bound(least.center, largest, largest), 0});
+        consider(least.center);
+        result.cells = 1;
+        while (!heap.empty() && result.cells < options.max_cells &&
+               heap.front().bound < result.value * (1.0 - options.tolerance)) {
+            std::pop_heap(heap.begin(), heap.end(), lower);
+            const Cell cell = heap.back();
+            heap.pop_back();
+            const double half = 0.5 * cell.half;
+            for (unsigned corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 center =
+                    cell.center +
+                    half * glm::dvec3(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
+                consider(center);
+                ++result.cells;
+                const double below = std::max(cell.bound, bound(center, half, largest));
+                if (below >= result.value) {
+                    dropped_ = std::min(dropped_, below);
+                    continue;
+                }
+                heap.push_back({center, half, below, result.cells});
+                std::push_heap(heap.begin(), heap.end(), lower);
+            }
+        }
+        result.lower_bound = std::min({result.value, dropped_, heap.empty() ? result.value : heap.front().bound});
+    }
+
+  private:
+    std::span<const glm::dvec3> points_;
+    Vector<glm::dvec3> normals_;
+    Vector<double> ancestors_;
+    double dropped_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> points,
+                                                std::span<const ConvexBody> ancestors, const BallOptions& options) {
+    if (!(options.largest >= 1.0 && options.largest <= 1e6) || !(options.tolerance > 0.0 && options.tolerance < 1.0))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "ball given ancestors: `largest` must lie in [1, 1e6], `tolerance` in (0, 1)");
+    if (auto valid = validate_bodies(ancestors); !valid) return tl::unexpected(valid.error());
+    const auto least = fit::minimal_sphere(points);
+    if (!least) return tl::unexpected(least.error());
+    BallSearch search(points, ancestors);
+    if (!search.object_is_inside())
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "ball given ancestors: the object is not inside its ancestors' bounds");
+    BallGivenAncestors result;
+    result.ball = *least;
+    result.value = result.plain_value = search.measure_of(least->center);
+    result.lower_bound = 0.0;
+    if (least->radius > 0.0)
+        search.run(*least, options, result);
+    else
+        result.lower_bound = result.value;
+    return result;
+}
+
+}  // namespace crofton::study

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/study/diameter.hpp>
+#include <glm/geometric.hpp>
+#include <string>
+
+namespace crofton::study {
+namespace {
+
+template <class Point>
+void consider(const Point& a, const Point& b, Diameter<Point>& best) {
+    if (const double length = glm::distance(a, b); length > best.length) best = {length, a, b};
+}
+
+}  // namespace
+
+Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (!(std::max(std::abs(points[i].x), std::abs(points[i].y)) <= kMaxCoordinate))
+            return fail(std::isfinite(points[i].x) && std::isfinite(points[i].y) ? ErrorCode::out_of_range
+                                                                                 : ErrorCode::non_finite,
+                        i, "diameter: point " + std::to_string(i) + " is NaN, infinite or beyond 1e30");
+    const auto hull = measure::convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    const Vector<glm::dvec2>& p = *hull;
+    Diameter<glm::dvec2> best{0.0, p[0], p[0]};
+    const auto at = [&](std::size_t i) -> const glm::dvec2& { return p[i < p.size() ? i : i % p.size()]; };
+    // The corner farthest from each side; while it moves on, its distances to both ends of the side are looked at.
+    std::size_t far = 1;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const glm::dvec2 side = at(i + 1) - at(i);
+        const auto height = [&](std::size_t k) {
+            const glm::dvec2 d = at(k) - at(i);
+            return side.x * d.y - side.y * d.x;
+        };
+        consider(at(i), at(far), best);
+        while (height(far + 1) > height(far)) {
+            far = (far + 1) % p.size();
+            consider(at(i), at(far), best);
+        }
+        consider(at(i + 1), at(far), best);
+        // A side parallel to this one: both its ends are as far.
+        consider(at(i), at(far + 1), best);
+        consider(at(i + 1), at(far + 1), best);
+    }
+    return best;
+}
+
+Result<Diameter<glm::dvec3>> diameter(std::span<const glm::dvec3> points) {
+    const auto hull = convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    Aabb box;
+    for (const std::uint32_t v : hull->vertices) box.include(points[v]);
+    const glm::dvec3 middle = box.min + 0.5 * (box.max - box.min);
+    struct Corner {
+        glm::dvec3 point;
+        double reach;  // from the middle
+    };
+    Vector<Corner> corners;
+    corners.reserve(hull->vertices.size());
+    for (const std::uint32_t v : hull->vertices) corners.push_back({points[v], glm::distance(points[v], middle)});
+    std::stable_sort(corners.begin(), corners.end(),
+                     [](const Corner& a, const Corner& b) { return a.reach > b.reach; });
+    Diameter<glm::dvec3> best{0.0, corners[0].point, corners[0].point};
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        for (std::size_t j = i + 1; j < corners.size(); ++j) {
+            if (corners[i].reach + corners[j].reach < best.length) break;
+            consider(corners[i].point, corners[j].point, best);
+        }
+    return best;
+}
+
+}  // namespace crofton::study

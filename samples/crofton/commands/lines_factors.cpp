@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "lines_factors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/radiosity/patches.hpp>
+#include <crofton/study/mutual_information.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+
+#include "assets/flat_scene.hpp"
+#include "commands.hpp"
+#include "json/json.hpp"
+#include "report.hpp"
+#include "verify/rows.hpp"
+#include "verify/standard_pairs.hpp"
+
+namespace crofton::cli {
+namespace {
+
+Result<int> run_pairs(const FactorsRun& run) {
+    std::vector<VerifyRow> rows;
+    for (const StandardPair& pair : standard_pairs()) {
+        const auto found = factor_by_global_lines(pair, run.blocks, run.seed);
+        if (!found) return tl::unexpected(found.error());
+        rows.push_back(measured_row(pair.name, pair.source, pair.factor, found->value, found->standard_error));
+        rows.back().cases = found->rays;
+    }
+    if (run.json != "-") std::fputs(table_of(rows).c_str(), stdout);
+    if (!run.json.empty())
+        if (const auto written = write_json(run.json, json_of(rows)); !written) return tl::unexpected(written.error());
+    return std::all_of(rows.begin(), rows.end(), [](const VerifyRow& row) { return row.holds; }) ? kSuccess
+                                                                                                 : kCheckFailed;
+}
+
+// Triangles that are small beside a cell share a patch; the cells grow until there are few enough patches. Large
+// triangles are not cut, so a scene may have fewer.
+Vector<std::uint32_t> patch_numbers(const TriangleMesh& mesh, const Aabb& bounds, std::uint64_t most) {
+    const double size = glm::length(bounds.max - bounds.min);
+    Vector<std::uint32_t> numbers;
+    for (double cell = size / 256.0; cell < 2.0 * size; cell *= 1.25) {
+        numbers = radiosity::group_small_triangles(mesh, {}, cell);
+        if (1 + std::uint64_t{*std::max_element(numbers.begin(), numbers.end())} <= most) break;
+    }
+    return numbers;
+}
+
+struct SceneComplexity {
+    std::string name;
+    std::size_t triangles = 0, patches = 0;
+    double mean_crossings = 0.0, escaped = 0.0;
+    study::MutualInformation information;
+};
+
+Result<SceneComplexity> look_at(const std::string& scene, const FactorsRun& run) {
+    assets::LoadOptions load;
+    if (scene.ends_with(".wad")) load.map = run.map;
+    load.seed = run.seed;
+    auto source = assets::load_scene(scene, load);
+    if (!source) return tl::unexpected(source.error());
+    source->scene.update();
+    const TriangleMesh mesh = assets::flat_scene(*source).mesh;
+    const auto tracer = radiosity::LineTracer::build(mesh);
+    if (!tracer) return tl::unexpected(tracer.error());
+    const Vector<std::uint32_t> numbers = patch_numbers(mesh, tracer->bounds(), run.patches);
+    const Vector<radiosity::Material> materials(std::size_t{*std::max_element(numbers.begin(), numbers.end())} + 1);
+    const auto patches = radiosity::make_patches(mesh, numbers, materials);
+    if (!patches) return tl::unexpected(patches.error());
+    const radiosity::LineSource lines(tracer->bounds(), radiosity::LineMethod::walls, run.seed);
+    const auto matrix = radiosity::factors_by_global_lines(*tracer, *patches, lines, run.blocks);
+    if (!matrix) return tl::unexpected(matrix.error());
+    const auto information = study::mutual_information(*matrix);
+    if (!information) return tl::unexpected(information.error());
+    SceneComplexity result{source->name, mesh.triangle_count(), patches->count(), 0.0, 0.0, *information};
+    double surface = 0.0, rays = 0.0, escaped = 0.0;
+    for (const double area : patches->areas) surface += area;
+    for (std::size_t i = 0; i < matrix->size; ++i) {
+        rays += static_cast<double>(matrix->rays[i]);
+        escaped += static_cast<double>(matrix->escaped[i]);
+    }
+    result.mean_crossings = 2.0 * surface / lines.surface_area();
+    result.escaped = escaped / rays;
+    return result;
+}
+
+}  // namespace
+
+Result<int> run_factors(const FactorsRun& run) {
+    if (run.scenes.empty()) return run_pairs(run);
+    Json rows = Json::array();
+    if (run.json != "-")
+        std::printf("%-24s %10s %8s %10s %9s %10s %10s %10s\n", "scene", "triangles", "patches", "crossings", "escape",
+                    "bits", "of at most", "bias");
+    for (const std::string& scene : run.scenes) {
+        const auto seen = look_at(scene, run);
+        if (!seen) return tl::unexpected(seen.error());
+        const auto& i = seen->information;
+        if (run.json != "-")
+            std::printf("%-24s %10zu %8zu %10.3f %8.1f%% %10.3f %10.3f %10.3f\n", seen->name.c_str(), seen->triangles,
+                        seen->patches, seen->mean_crossings, 100.0 * seen->escaped, i.bits, i.entropy_bits, i.bias);
+        rows.push_back({{"scene", seen->name},
+                        {"triangles", seen->triangles},
+                        {"patches", seen->patches},
+                        {"mean_crossings", seen->mean_crossings},
+                        {"escaped", seen->escaped},
+                        {"bits", i.bits},
+                        {"entropy_bits", i.entropy_bits},
+                        {"bias_bits", i.bias},
+                        {"rays", i.rays}});
+    }
+    if (!run.json.empty())
+        if (const auto written = write_json(run.json, rows); !written) return tl::unexpected(written.error());
+    return kSuccess;
+}
+
+}  // namespace crofton::cli

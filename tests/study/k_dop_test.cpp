@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/sampling/random.hpp>
+#include <crofton/study/k_dop.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
+
+using namespace crofton;
+
+namespace {
+
+std::vector<glm::dvec3> random_points(std::uint64_t seed, int count) {
+    sampling::Random random(21, seed);
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < count; ++i)
+        points.push_back(glm::dvec3(1.0, 0.6, 0.3) * sampling::ball_point(random.point<3>()));
+    return points;
+}
+
+}  // namespace
+
+TEST_SUITE("study/k_dop") {
+    TEST_CASE("unknown k, no points, NaN, zero and flat directions are refused, and the culprit is named") {
+        CHECK(study::k_dop_directions(7).error().code == ErrorCode::invalid_argument);
+        const auto axes = *study::k_dop_directions(6);
+        CHECK(study::k_dop_around({}, axes).error().code == ErrorCode::empty);
+        auto points = random_points(1, 5);
+        const std::vector<glm::dvec3> flat = {{1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, zero = {{1, 0, 0}, {0, 0, 0}};
+        CHECK(study::k_dop_around(points, flat).error().code == ErrorCode::degenerate);
+        CHECK(study::k_dop_around(points, zero).error().item == 1);
+        CHECK(study::best_k_dop(points, axes, {}).error().code == ErrorCode::invalid_argument);
+        points[3].x = std::nan("");
+        CHECK(study::k_dop_around(points, axes).error().item == 3);
+        const std::vector<glm::dvec3> plane = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+        CHECK(study::best_k_dop(plane, axes, measure::minimal_area()).error().code == ErrorCode::degenerate);
+    }
+
+    TEST_CASE("k directions: 3, 7, 9 and 13, all unit and none twice") {
+        for (const std::uint32_t k : {6u, 14u, 18u, 26u}) {
+            const auto directions = *study::k_dop_directions(k);
+            CHECK(directions.size() == k / 2);
+            for (std::size_t i = 0; i < directions.size(); ++i) {
+                CHECK(glm::length(directions[i]) == doctest::Approx(1.0));
+                for (std::size_t j = 0; j < i; ++j) CHECK(std::abs(glm::dot(directions[i], directions[j])) < 0.99);
+            }
+        }
+    }
+
+    TEST_CASE(
+        "around a ball of many points: box, truncated shapes, each in the next, V from the closed form of a 14-DOP") {
+        std::vector<glm::dvec3> ball;
+        for (int i = 0; i < 20000; ++i)
+            ball.push_back(sampling::direction({(i + 0.5) / 20000, std::fmod(i * 0.6180339887498949, 1.0)}));
+        const auto volume = [&](std::uint32_t k) {
+            const auto dop = study::k_dop_around(ball, *study::k_dop_directions(k));
+            REQUIRE(dop.has_value());
+            return measure::intrinsic_volumes_of_hull(dop->corners)->volume;
+        };
+        CHECK(volume(6) == doctest::Approx(8.0).epsilon(1e-3));
+        // A cube of side 2 less eight corners: x + y + z > √3 cuts off right tetrahedra with legs L = 3 − √3, of which
+        // the two of an edge share (L − 1)³/3.
+        const double leg = 3.0 - std::sqrt(3.0);
+        CHECK(volume(14) ==
+              doctest::Approx(8.0 - 8.0 * std::pow(leg, 3.0) / 6.0 + 12.0 * std::pow(leg - 1.0, 3.0) / 3.0)
+                  .epsilon(1e-3));
+        CHECK(volume(26) < volume(14));
+        CHECK(volume(26) < volume(18));
+        CHECK(volume(26) > 4.0 / 3.0 * std::numbers::pi);
+    }
+
+    TEST_CASE("every point is inside, no bound undercuts the hull, and six faces cannot beat the best box") {
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            const auto points = random_points(seed, 12);
+            for (const std::uint32_t k : {6u, 14u, 18u, 26u}) {
+                const auto best = study::best_k_dop(points, *study::k_dop_directions(k), measure::minimal_area());
+                REQUIRE(best.has_value());
+                for (const glm::dvec3& p : points)
+                    for (std::size_t i = 0; i < best->bound.directions.size(); ++i) {
+                        const double at = glm::dot(best->bound.directions[i], p);
+                        CHECK(at >= best->bound.low[i] - 1e-12);
+                        CHECK(at <= best->bound.high[i] + 1e-12);
+                    }
+                CHECK(best->value >= best->lower_bound);
+                // A hull of corners and points is the corners' own: they hold the points.
+                auto all = best->bound.corners;
+                all.insert(all.end(), points.begin(), points.end());
+                CHECK(measure::intrinsic_volumes_of_hull(all)->volume ==
+                      doctest::Approx(measure::intrinsic_volumes_of_hull(best->bound.corners)->volume).epsilon(1e-9));
+                if (k != 6) continue;
+                const auto box =
+                    fit::fit_exact(std::span<const glm::dvec3>(points), {.criterion = measure::minimal_area()});
+                CHECK(best->value >= box->lower_bound * (1.0 - 1e-9));
+            }
+        }
+    }
+
+    TEST_CASE("culling by corners never drops what a plane does not reject, and says inside only of what is") {
+        Camera camera;
+        camera.far_distance = 50.0;
+        const Frustum frustum = *frustum_of(camera);
+        for (std::uint64_t seed = 0; seed < 500; ++seed) {
+            sampling::Random random(22, seed);
+            auto points = random_points(seed, 8);
+            const glm::dvec3 at(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-40, 10));
+            for (glm::dvec3& p : points) p += at;
+            const auto dop = study::k_dop_around(points, *study::k_dop_directions(14));
+            const cull::Verdict verdict = study::classify(frustum, dop->corners);
+            for (std::size_t i = 0; i + 2 < points.size(); ++i) {
+                const bool meets = intersects(frustum, points[i], points[i + 1], points[i + 2]);
+                if (verdict == cull::Verdict::outside) CHECK_FALSE(meets);
+                if (verdict == cull::Verdict::inside) CHECK(meets);
+            }
+        }
+    }
+}
