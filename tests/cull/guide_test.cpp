@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The example of docs/cull.md, compiled and run.
+// The examples of docs/cull.md and docs/lights.md, compiled and run.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -7,6 +7,8 @@
 #include <cmath>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/shadow_casters.hpp>
 #include <cstdio>
 #include <limits>
 #include <vector>
@@ -79,9 +81,86 @@ std::vector<crofton::Obb> row_of_houses() {
     return boxes;
 }
 
+// The examples of docs/lights.md.
+struct LitRow {
+    std::size_t pairs = 0;
+    std::vector<std::uint32_t> shadows, drawn;
+};
+
+int light_row(const std::vector<crofton::Obb>& house_boxes, const crofton::Camera& camera,
+              const std::vector<crofton::Sphere>& lamps, const glm::dvec3& toward_sun, LitRow& row) {
+    using namespace crofton;
+    const std::vector<cull::SpotLight> spots;
+    cull::FroxelLights lit;
+    cull::VisibleSet visible, candidates;
+    cull::ShadowReceivers receivers;
+    Vector<std::uint64_t> drawn;
+    const Result<boxtree::BoxTree> houses = boxtree::BoxTree::build(house_boxes);
+    if (!houses) return report(houses.error());
+    const Result<Frustum> frustum = frustum_of(camera);
+    if (!frustum) return report(frustum.error());
+    const cull::View view{.frustum = *frustum};
+    cull::find_visible(*houses, view, visible);
+    std::vector<Obb> seen_boxes;
+    for (const boxtree::ItemId id : visible.ids()) seen_boxes.push_back(house_boxes[id]);
+    const auto upload = [&](std::span<const std::uint32_t> offsets, std::span<const std::uint32_t> lights) {
+        row.pairs = offsets.back() == lights.size() ? lights.size() : 0;
+    };
+    const auto draw_shadow = [&](std::uint32_t id) { row.shadows.push_back(id); };
+    // clang-format off
+    // Once per camera: a grid of 16 × 9 × 24, slices in equal ratios from near to far.
+    const Result<cull::FroxelGrid> grid = cull::FroxelGrid::build(camera, {16, 9, 24});
+    if (!grid) return report(grid.error());
+
+    // Each frame: balls and cones. A spot's number follows those of the points.
+    if (auto found = cull::find_lights(*grid, lamps, spots, lit); !found) return report(found.error());
+    upload(lit.offsets(), lit.lights());  // froxel f: lights()[offsets()[f]] to before lights()[offsets()[f + 1]]
+
+    // Who could throw a shadow into the view, and onto something that is seen?
+    const Result<Frustum> volume = cull::shadow_volume(view.frustum, toward_sun);
+    if (!volume) return report(volume.error());
+    cull::find_visible(*houses, {.frustum = *volume}, candidates);
+    if (auto set = receivers.set_sun(view.frustum, seen_boxes, toward_sun); !set) return report(set.error());
+    for (const boxtree::ItemId id : candidates.ids())
+        if (receivers.wants(house_boxes[id])) draw_shadow(id);
+
+    // Nothing below 2 pixels, nothing of layer 3 beyond 50 metres; what was drawn stays a tenth longer.
+    Result<cull::DrawLimits> limits = cull::limits_of(camera, 1080.0, 2.0);
+    if (!limits) return report(limits.error());
+    std::vector<float> distances(32, std::numeric_limits<float>::infinity());
+    distances[3] = 50.0f;
+    limits->layer_distances = distances;
+    limits->drawn_before = drawn;
+    limits->longer = 1.1;
+    cull::find_visible(*houses, view, visible, {.limits = &*limits});
+    cull::to_bits(visible.ids(), house_boxes.size(), drawn);  // for the next frame
+    // clang-format on
+    row.drawn.assign(visible.ids().begin(), visible.ids().end());
+    return 0;
+}
+
 }  // namespace
 
 TEST_SUITE("cull/guide") {
+    TEST_CASE("the examples of lights, shadows and limits, on a row of houses") {
+        crofton::Camera camera;
+        camera.fov_y = 1.5707963267948966;
+        camera.aspect = 1.0;
+        std::vector<crofton::Obb> boxes = row_of_houses();
+        // Above the row, one house whose shadow falls on it from along +y, and one whose shadow falls behind it.
+        boxes.push_back({.center = {0.0, 40.0, -20.0}, .half_extents = glm::vec3(0.25f)});
+        boxes.push_back({.center = {0.0, 40.0, -30.0}, .half_extents = glm::vec3(0.25f)});
+        LitRow row;
+        REQUIRE(light_row(boxes, camera, {{{0.01, 0.01, -20.0}, 1e-3}}, {0.0, 1.0, 0.0}, row) == 0);
+        CHECK(row.pairs == 1);
+        CHECK(std::ranges::count(row.shadows, 200u) == 1);
+        CHECK(std::ranges::count(row.shadows, 201u) == 0);
+        CHECK(row.drawn.size() > 30);                                         // 0.43 · 540 / 20 pixels and more
+        for (crofton::Obb& box : boxes) box.half_extents = glm::vec3(0.01f);  // 0.03 m at 20 m: 0.9 of a pixel
+        REQUIRE(light_row(boxes, camera, {}, {0.0, 1.0, 0.0}, row) == 0);
+        CHECK(row.drawn.empty());
+    }
+
     TEST_CASE("the example of the guide draws what a square view of 90 degrees sees of a row") {
         // At distance 20 the view is 40 wide; a house's far face, at 20.25, and its half width make it 20.5 to each
         // side: |x| ≤ 20.5 meets. A spark is seen to |x| ≤ 20 + √2/10.

@@ -43,7 +43,17 @@ void Query::add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::s
 void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
                           std::size_t& count) {
     std::uint32_t* listed = visible_.listed_.data();
-    const std::size_t found = list_bits(bits, visible_.listed_);
+    std::size_t found = list_bits(bits, visible_.listed_);
+    if (options_.limits) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < found; ++i) {
+            const std::uint32_t k = listed[i];
+            const ItemId item = moving_->items()[k];
+            listed[kept] = k;
+            kept += is_wanted(moving_->boxes()[k], item, tree.layer_masks()[item]);
+        }
+        found = kept;
+    }
     for (std::size_t i = 0; i < found; ++i) listed[i] = moving_->items()[listed[i]];
     if (tree.detached_layers() & view_.layer_mask) {
         std::copy_n(listed, found, to + count);

@@ -10,6 +10,7 @@
 
 #include "exact/box_constraints.hpp"
 #include "id_bits_kernel.hpp"
+#include "limits/limits_kernel.hpp"
 #include "list/direct_kernel.hpp"
 #include "tree/block_planes.hpp"
 
@@ -110,6 +111,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
         for (std::size_t w = 0; w < chunk_words; ++w) {
             std::uint64_t visible = output.visible[w];
             if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
+            if (options_.limits) visible = wanted_bits(visible, boxes, layer_masks, first + 64 * w);
             seen[first / 64 + w] = visible;
             marked[first / 64 + w] = visible & ~output.inside[w];
         }
@@ -123,6 +125,18 @@ std::uint64_t Query::layer_bits(std::span<const std::uint32_t> layer_masks) cons
     for (std::size_t i = 0; i < std::min<std::size_t>(64, layer_masks.size()); ++i)
         bits |= std::uint64_t{(layer_masks[i] & view_.layer_mask) != 0} << i;
     return bits;
+}
+
+// Those of up to 64 visible boxes, from `first` on, that are worth drawing.
+std::uint64_t Query::wanted_bits(std::uint64_t visible, std::span<const Obb> boxes,
+                                 std::span<const std::uint32_t> layer_masks, std::size_t first) {
+    std::uint64_t result = visible;
+    for (std::uint64_t rest = visible; rest; rest &= rest - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
+        if (!is_wanted(boxes[i], static_cast<ItemId>(i), layer_masks.empty() ? ~0u : layer_masks[i]))
+            result &= ~(rest & -rest);
+    }
+    return result;
 }
 
 // What the kernel left of these boxes, and their statistics.
@@ -189,7 +203,8 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
                                 &view,
                                 options_.mode == CullMode::exact};
     const Tasks tasks(input, tree.item_count() >= kParallelItems);
-    if (executor.concurrency() > 1 && tasks.count > 1) return run_parallel(tree, input, tasks, executor);
+    if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)
+        return run_parallel(tree, input, tasks, executor);
     TreeKernelOutput output{};
     output.inside = visible_.ids_.data();
     output.straddling = visible_.straddling_.data();
@@ -197,7 +212,10 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     output.work_size = tree.nodes().size() + tree.leaves().size() + kPadding;
     grow(visible_.work_, kWorkLists * output.work_size);
     output.work = visible_.work_.data();
-    run_tree_kernel(input, tasks.entries, tasks.count, output);
+    if (options_.limits)
+        run_limits_kernel(input, kernel_limits_of(*options_.limits), output);
+    else
+        run_tree_kernel(input, tasks.entries, tasks.count, output);
     std::size_t inside = output.inside_count, straddling = output.straddling_count;
     append_decided(output, decide(tree, output), inside, straddling);
     finish(tree, inside, straddling, executor);
@@ -278,6 +296,7 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
         for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane) {
             if (!(tree.leaves()[l].layers[lane] & view_.layer_mask)) continue;
             const ItemId item = tree.slot_items()[l * boxtree::kWidth + lane];
+            if (!is_wanted(tree.boxes()[item], item, tree.leaves()[l].layers[lane])) continue;
             const Verdict verdict = classify(view_.frustum, tree.boxes()[item], options_.mode);
             if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
             if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
@@ -287,7 +306,7 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
 
 // Replaces the undecided slots by the items that are visible after all, with kInside where that is so; the others are
 // improper.
-std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) const {
+std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
         // The boxes lie in the order of their ids, far from each other: ask for them ahead.
@@ -295,6 +314,7 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
         if (i + kAhead < output.undecided_count)
             hwy::Prefetch(&tree.boxes()[tree.slot_items()[output.undecided[i + kAhead]]]);
         const ItemId item = tree.slot_items()[output.undecided[i]];
+        if (!is_wanted(tree.boxes()[item], item, tree.layer_masks()[item])) continue;
         const Verdict verdict = classify_usable(view_.frustum, tree.boxes()[item], options_.mode);
         if (verdict != Verdict::outside) output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;
     }
@@ -317,7 +337,8 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.boxes_tested += output.boxes_tested;
     statistics.accepted_whole += output.accepted_whole;
     statistics.exact_tests += output.undecided_count;
-    statistics.improper += output.improper + output.undecided_count - kept;
+    statistics.improper += output.improper;
+    if (!options_.limits) statistics.improper += output.undecided_count - kept;  // else they may be small or far
 }
 
 void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {

@@ -4,6 +4,7 @@
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 
+#include "limits/limits.hpp"
 #include "list/list_kernel.hpp"
 #include "tree/tree_kernel.hpp"
 
@@ -30,6 +31,14 @@ class Query {
   private:
     void start(std::size_t items);
     void run_all(const boxtree::BoxTree& tree, Executor& executor);
+    // As far as limits go.
+    [[nodiscard]] bool is_wanted(const Obb& box, ItemId item, std::uint32_t layers) {
+        return options_.limits == nullptr ||
+               is_within_limits(*options_.limits, box, item,
+                                layer_limit_.of(*options_.limits, layers & view_.layer_mask));
+    }
+    [[nodiscard]] std::uint64_t wanted_bits(std::uint64_t visible, std::span<const Obb> boxes,
+                                            std::span<const std::uint32_t> layer_masks, std::size_t first);
     struct Tasks {
         static constexpr std::size_t kMost = std::size_t{boxtree::kWidth} * boxtree::kWidth;
         std::uint64_t entries[kMost];
@@ -39,7 +48,7 @@ class Query {
     };
     void run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
                       Executor& executor);
-    [[nodiscard]] std::size_t decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) const;
+    [[nodiscard]] std::size_t decide(const boxtree::BoxTree& tree, TreeKernelOutput& output);
     void append_decided(const TreeKernelOutput& output, std::size_t kept, std::size_t& inside, std::size_t& straddling);
     void add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
     void append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
@@ -56,6 +65,7 @@ class Query {
     VisibleSet& visible_;
     const CullOptions& options_;
     const MovingBoxes* moving_;
+    LayerLimit layer_limit_;
 };
 
 }  // namespace crofton::cull

@@ -7,6 +7,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
+#include <crofton/cull/draw_limits.hpp>
 #include <crofton/cull/statistics.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <cstddef>
@@ -68,6 +69,9 @@ enum class ResultOrder : std::uint8_t { ascending, tree };
 struct CullOptions {
     CullMode mode = CullMode::exact;
     ResultOrder order = ResultOrder::ascending;
+    // What is too small or too far is left out. A query without limits costs what it did; one with limits uses no other
+    // thread.
+    const DrawLimits* limits = nullptr;
 };
 
 // Finds the items that `view` sees and whose box is not outside; `visible` is overwritten, and once it has grown to the

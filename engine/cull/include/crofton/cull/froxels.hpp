@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Lights against the froxels of a view: which lights reach which cell of a grid over the view volume.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+
+namespace crofton::cull {
+
+struct FroxelOptions {
+    std::uint32_t columns = 16, rows = 9, slices = 24;
+    // slices + 1 distances along `forward`, ascending; the grid reaches from the first to the last. None: from near to
+    // far, in equal ratios (perspective) or in equal steps (orthographic).
+    std::span<const double> depths = {};
+};
+
+// A grid over a camera's view. Columns and rows divide the picture evenly: column 0 is at its left, row 0 at its
+// bottom, slice 0 at the near plane. What is stored are planes: one between every two columns, rows and slices, and one
+// at each end. A froxel is the exact set of points between its six planes, taken as reals; it is closed, and neighbours
+// share a plane.
+class FroxelGrid {
+  public:
+    // Errors: as validate(Camera); a size of 0 or above 1024 along an axis; far infinite and no depths given; depths
+    // that are not slices + 1, not ascending, closer than 2^-20 of their magnitude or, in perspective, not positive; a
+    // view wider or higher than 176 degrees; numbers beyond 1e12.
+    [[nodiscard]] static Result<FroxelGrid> build(const Camera& camera, const FroxelOptions& options = {});
+
+    [[nodiscard]] std::uint32_t columns() const { return size_[0]; }
+    [[nodiscard]] std::uint32_t rows() const { return size_[1]; }
+    [[nodiscard]] std::uint32_t slices() const { return size_[2]; }
+    [[nodiscard]] std::size_t size() const { return std::size_t{size_[0]} * size_[1] * size_[2]; }
+    // Columns are neighbours, then rows, then slices.
+    [[nodiscard]] std::uint32_t index(std::uint32_t column, std::uint32_t row, std::uint32_t slice) const {
+        return (slice * size_[1] + row) * size_[0] + column;
+    }
+    // Its six planes: left, right, bottom, top, near, far.
+    [[nodiscard]] Frustum froxel(std::uint32_t index) const;
+    [[nodiscard]] std::span<const double> depths() const { return depths_; }
+
+  private:
+    friend class LightPass;
+    glm::dvec3 origin_{0.0}, axes_[3] = {};  // right, up, forward
+    std::uint32_t size_[3] = {0, 0, 0};
+    Vector<Plane> planes_[3];  // those that keep what is to the right, above, beyond
+    Vector<double> depths_;
+    Vector<double> doubles_;  // for kernels: src/lights/froxel_kernel.hpp
+    Vector<float> floats_;
+    double spread_ = 1.0, start_ = 0.0;
+};
+
+// The points x with |x − apex| ≤ range and (x − apex) · axis ≥ cos_half_angle · |x − apex| · |axis|: a cone with a
+// spherical cap. `axis` is not zero and need not have length 1; components below 2^-30 of the largest are read as 0, as
+// are cosines below 2^-30. cos_half_angle is in [0, 1]: at most a half ball.
+struct SpotLight {
+    glm::dvec3 apex{0.0};
+    glm::vec3 axis{0.0f, 0.0f, -1.0f};
+    float cos_half_angle = 0.70710678f;
+    float range = 1.0f;
+};
+
+// The lights of each froxel, ready for a GPU's buffers. Keeps its memory.
+class FroxelLights {
+  public:
+    // Froxel f's lights are lights()[offsets()[f]] … lights()[offsets()[f + 1] − 1], ascending.
+    [[nodiscard]] std::span<const std::uint32_t> offsets() const { return offsets_; }
+    [[nodiscard]] std::span<const std::uint32_t> lights() const {
+        return std::span(lights_).first(offsets_.empty() ? 0 : offsets_.back());
+    }
+    [[nodiscard]] std::span<const std::uint32_t> lights_of(std::uint32_t froxel) const {
+        return lights().subspan(offsets_[froxel], offsets_[froxel + 1] - offsets_[froxel]);
+    }
+    // Pairs that were left to exact arithmetic.
+    [[nodiscard]] std::uint64_t exact_tests() const { return exact_tests_; }
+
+  private:
+    friend class LightPass;
+    struct Run {
+        std::uint32_t froxel, light, mask;  // bit l: froxel + l
+    };
+    struct Part {
+        Vector<Run> runs;
+        std::size_t count = 0;
+        std::uint64_t exact_tests = 0;
+    };
+    Vector<std::uint32_t> offsets_, lights_;  // `lights_` as long as its largest use so far
+    Vector<Part> parts_;
+    std::uint64_t exact_tests_ = 0;
+};
+
+// Lists for every froxel the lights that share a point with it, exactly for the stored numbers: none is missing, none
+// is there in vain, touching counts. Light i is points[i]; light points.size() + i is spots[i]. The same lists, bit for
+// bit, with any executor and instruction set. Allocates nothing once `result` has been used for as much. Points whose
+// numbers include some below 1e-60 other than 0 may be listed where they only nearly touch an edge. Errors, which leave
+// `result` as it was: a light that is not finite, beyond 1e12, of a negative radius or range, a cosine outside [0, 1],
+// a zero axis; `item` is the light's number. More than 2^32 − 1 pairs.
+[[nodiscard]] Result<void> find_lights(const FroxelGrid& grid, std::span<const Sphere> points,
+                                       std::span<const SpotLight> spots, FroxelLights& result,
+                                       Executor& executor = serial_executor());
+
+}  // namespace crofton::cull

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Lights against a grid of froxels, in vectors: what a filter can decide, and calls for what it cannot.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace crofton::cull {
+
+// In the view's own frame: u right, v up, w forward from the grid's origin. Boundary i of the columns is u = slope_i w
+// + start_i, of the rows likewise in v, of the slices w = depth_i. As unit normals: across_i u + forward_i w + offset_i
+// ≥ 0 is the right or upper side. Arrays have kFroxelPadding entries more than there are boundaries.
+inline constexpr std::size_t kFroxelPadding = 16;
+
+template <class T>
+struct FroxelArrays {
+    const T *slope[2], *start[2], *across[2], *forward[2], *offset[2], *depth;
+
+    static constexpr std::size_t kPerBoundary = 5;
+
+    // Where they lie in one array.
+    FroxelArrays(const T* base, const std::uint32_t (&size)[3]) {
+        for (unsigned axis = 0; axis < 2; ++axis)
+            for (const T** array : {&slope[axis], &start[axis], &across[axis], &forward[axis], &offset[axis]}) {
+                *array = base;
+                base += size[axis] + 1 + kFroxelPadding;
+            }
+        depth = base;
+    }
+    static std::size_t length(const std::uint32_t (&size)[3]) {
+        return kPerBoundary * (size[0] + size[1] + 2 + 2 * kFroxelPadding) + size[2] + 1 + kFroxelPadding;
+    }
+};
+
+struct FroxelKernelGrid {
+    std::uint32_t size[3];
+    FroxelArrays<float> floats;
+    FroxelArrays<double> doubles;
+    double spread;  // ≥ 1 + the largest |slope| of columns and of rows
+    double start;   // ≥ the largest |start|
+};
+
+// In the grid's frame; the axis is a unit vector up to rounding.
+struct KernelLight {
+    double at[3];
+    double radius;  // of the ball, or the spot's range
+    double axis[3], cosine, sine;
+    bool is_spot;
+};
+
+// Froxels `froxel` + l for the bits l of `mask` are lit by the light.
+struct LitRun {
+    std::uint32_t froxel, light, mask;
+};
+
+struct FroxelKernelInput {
+    const FroxelKernelGrid* grid;
+    const KernelLight* lights;
+    std::uint32_t count, first;  // light n's number is first + n
+    // What no filter can decide.
+    bool (*decide)(void* context, std::uint32_t light, std::uint32_t froxel);
+    void* context;
+};
+
+// Handles light `light` of the input, and writes at most as many runs as there are froxels; returns how many.
+std::size_t run_froxel_kernel(const FroxelKernelInput& input, std::uint32_t light, LitRun* runs);
+
+}  // namespace crofton::cull

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The distance of two convex bodies by their support points (Gilbert, Johnson, Keerthi 1988). Let A be the set of all
+// differences of a point of the froxel and one of the light. A plane that all of A is beyond, seen from the origin, by
+// more than η proves that they are apart; a tetrahedron of A that has the ball of radius η around the origin in it
+// proves that they meet.
+#include "lights/spot_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/closest_points.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace crofton::cull {
+namespace {
+
+constexpr int kMostRounds = 48;
+
+// The point of the froxel farthest along m, relative to the apex.
+glm::dvec3 froxel_support(const FroxelCell& cell, const glm::dvec3& apex, const glm::dvec3& m) {
+    glm::dvec3 best(0.0);
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const double w : {cell.low, cell.high}) {
+        glm::dvec3 corner;
+        for (int axis = 0; axis < 2; ++axis) {
+            const int side = m[axis] > 0.0;
+            corner[axis] = cell.slope[axis][side] * w + cell.start[axis][side] - apex[axis];
+        }
+        corner.z = w - apex.z;
+        if (const double at = glm::dot(corner, m); at > farthest) {
+            farthest = at;
+            best = corner;
+        }
+    }
+    return best;
+}
+
+// The same of the light.
+glm::dvec3 spot_support(const KernelLight& spot, const glm::dvec3& m) {
+    const glm::dvec3 axis(spot.axis[0], spot.axis[1], spot.axis[2]);
+    const double along = glm::dot(m, axis);
+    const glm::dvec3 rest = m - along * axis;
+    const double across = glm::length(rest);
+    if (across * spot.cosine <= along * spot.sine) return spot.radius / std::max(glm::length(m), 1e-300) * m;
+    if (along * spot.cosine + across * spot.sine <= 0.0) return glm::dvec3(0.0);
+    return spot.radius * (spot.cosine * axis + spot.sine / across * rest);
+}
+
+// How deep within the tetrahedron the origin lies; negative outside.
+double depth_of_origin(const glm::dvec3 (&points)[4]) {
+    double depth = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec3 &a = points[(i + 1) % 4], &b = points[(i + 2) % 4], &c = points[(i + 3) % 4];
+        const glm::dvec3 normal = glm::cross(b - a, c - a);
+        const double length = glm::length(normal), side = glm::dot(normal, points[i] - a);
+        if (!(length > 0.0) || side == 0.0) return -1.0;
+        depth = std::min(depth, -glm::dot(normal, a) / length * (side > 0.0 ? 1.0 : -1.0));
+    }
+    return depth;
+}
+
+}  // namespace
+
+Answer filter_spot(const KernelLight& spot, const FroxelCell& cell, double eta) {
+    const glm::dvec3 apex(spot.at[0], spot.at[1], spot.at[2]);
+    const auto support = [&](const glm::dvec3& m) {  // of A, towards −m
+        return froxel_support(cell, apex, -m) - spot_support(spot, m);
+    };
+    const glm::dvec3 axis(spot.axis[0], spot.axis[1], spot.axis[2]);
+    const glm::dvec3 first = support(-axis);
+    glm::dvec3 points[4] = {first, first, first, first}, nearest = first;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const double square = glm::dot(nearest, nearest);
+        if (!(square > 0.0)) return Answer::unknown;
+        points[3] = support(nearest);
+        const double bound = glm::dot(nearest, points[3]), length = std::sqrt(square);
+        if (bound > eta * length) return Answer::no;
+        if (depth_of_origin(points) > eta) return Answer::yes;
+        // The nearest point of the new faces; the origin lies behind the old one or in it.
+        Triangle best{points[0], points[1], points[2]};
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < 3; ++i) {
+            const Triangle face{points[i], points[(i + 1) % 3], points[3]};
+            const glm::dvec3 at = closest_on_triangle(glm::dvec3(0.0), face);
+            if (const double distance = glm::dot(at, at); distance < least) {
+                least = distance;
+                nearest = at;
+                best = face;
+            }
+        }
+        std::copy_n(best.begin(), 3, points);
+    }
+    return Answer::unknown;
+}
+
+}  // namespace crofton::cull

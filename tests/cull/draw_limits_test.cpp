@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <gmpxx.h>
+#include <hwy/targets.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/cull/cull.hpp>
+#include <crofton/cull/moving_boxes.hpp>
+#include <oracle/random_boxes.hpp>
+#include <vector>
+
+using namespace crofton;
+
+namespace {
+
+// The definition in draw_limits.hpp, in rationals.
+bool oracle_keeps(const cull::DrawLimits& limits, const Obb& box, std::uint32_t item, std::uint32_t layers) {
+    mpq_class distance = 0, radius = 0;
+    for (int j = 0; j < 3; ++j) {
+        const mpq_class step = mpq_class(box.center[j]) - mpq_class(limits.eye[j]);
+        distance += step * step;
+        radius += mpq_class(double(box.half_extents[j])) * mpq_class(double(box.half_extents[j]));
+    }
+    mpq_class longer = 1;
+    if (item / 64 < limits.drawn_before.size() && limits.drawn_before[item / 64] >> (item % 64) & 1)
+        longer = limits.longer;
+    const auto within = [&](double limit, const mpq_class& size) {
+        if (!std::isfinite(limit)) return true;
+        const mpq_class most = longer * mpq_class(limit);
+        return distance <= most * most * size;
+    };
+    const mpq_class least = mpq_class(limits.least_radius) / longer;
+    if (radius < least * least || !within(limits.radii, radius)) return false;
+    if (!limits.item_distances.empty() && !within(double(limits.item_distances[item]), 1)) return false;
+    if (limits.layer_distances.empty()) return true;
+    for (std::uint32_t l = 0; l < 32; ++l)
+        if (layers >> l & 1 && within(double(limits.layer_distances[l]), 1)) return true;
+    return false;
+}
+
+struct LimitedCrowd {
+    oracle::Crowd crowd;
+    std::vector<float> layer_distances, item_distances;
+    std::vector<std::uint64_t> drawn;
+    cull::View view;
+    cull::DrawLimits limits;
+
+    LimitedCrowd(std::uint64_t seed, std::size_t count, double offset)
+        : crowd(oracle::random_crowd(count, offset, seed)) {
+        oracle::NearMisses random(seed, offset);
+        Camera camera = random.camera();
+        camera.far_distance = camera.near_distance + 200.0;
+        view = {*frustum_of(camera), random.index(2) ? ~0u : 7u};
+        limits.eye = camera.position;
+        if (random.index(4)) limits.radii = random.number(5.0, 100.0);
+        if (random.index(4) == 0) limits.least_radius = random.number(0.1, 1.0);
+        for (int l = 0; l < 32; ++l)
+            layer_distances.push_back(l % 7 == 6 ? std::numeric_limits<float>::infinity()
+                                                 : float(random.number(0.0, 80.0)));
+        if (random.index(2)) limits.layer_distances = layer_distances;
+        for (std::size_t i = 0; i < count; ++i) item_distances.push_back(float(random.number(0.0, 150.0)));
+        if (random.index(3) == 0) limits.item_distances = item_distances;
+        for (std::size_t w = 0; w < count / 128; ++w)
+            drawn.push_back(std::uint64_t{random.index(~0u)} << 32 | random.index(~0u));
+        if (random.index(2)) {
+            limits.drawn_before = drawn;
+            limits.longer = random.number(1.0, 1.5);
+        }
+        // Some exactly on a limit: five radii of √(1 + 4 + 4) away.
+        for (std::size_t i = 0; i < count; i += 50) {
+            crowd.boxes[i].half_extents = {1.0f, 2.0f, 2.0f};
+            crowd.boxes[i].center = limits.eye + glm::dvec3(0.0, 0.0, i % 100 ? 15.0 : std::nextafter(15.0, 20.0));
+        }
+        if (seed % 3 == 0) limits.radii = 5.0;
+    }
+
+    std::vector<cull::ItemId> expected() const {
+        std::vector<cull::ItemId> ids;
+        for (cull::ItemId i = 0; i < crowd.boxes.size(); ++i)
+            if (crowd.layers[i] & view.layer_mask &&
+                cull::classify(view.frustum, crowd.boxes[i]) != cull::Verdict::outside &&
+                oracle_keeps(limits, crowd.boxes[i], i, crowd.layers[i] & view.layer_mask))
+                ids.push_back(i);
+        return ids;
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("cull/draw_limits") {
+    TEST_CASE("limits of a picture: a ball at the limit has a diameter of as many pixels") {
+        Camera camera;
+        camera.position = {1.0, 2.0, 3.0};
+        camera.fov_y = 1.0;
+        const cull::DrawLimits limits = *cull::limits_of(camera, 1080.0, 4.0);
+        CHECK(limits.eye == camera.position);
+        // The outline of a ball of radius 1 at distance d has half the angle asin(1 / d).
+        const double pixels = 1080.0 * std::tan(std::asin(1.0 / limits.radii)) / std::tan(0.5);
+        CHECK(std::abs(pixels - 4.0) < 1e-9);
+        camera.projection = Projection::orthographic;
+        camera.height = 20.0;
+        const cull::DrawLimits flat = *cull::limits_of(camera, 1000.0, 4.0);
+        CHECK(flat.least_radius == doctest::Approx(0.04));  // 4 pixels of 0.02 are the diameter
+        CHECK(!(flat.radii < cull::DrawLimits::kNone));
+        CHECK(!cull::limits_of(camera, 0.0, 4.0).has_value());
+        CHECK(!cull::limits_of(camera, 1000.0, std::nan("")).has_value());
+        camera.aspect = -1.0;
+        CHECK(!cull::limits_of(camera, 1000.0, 4.0).has_value());
+    }
+
+    TEST_CASE("what is not finite drops nothing, and numbers without measure are taken as they are") {
+        const Obb box{.center = {10.0, 0.0, 0.0}, .half_extents = glm::vec3(1.0f)};
+        Obb unknown = box;
+        unknown.center.y = std::nan("");
+        const float distances[1] = {std::nanf("")};
+        CHECK(cull::is_worth_drawing({.radii = 0.0}, unknown, 0));
+        CHECK(cull::is_worth_drawing({.eye = {std::nan(""), 0.0, 0.0}, .radii = 0.0}, box, 0));
+        CHECK(cull::is_worth_drawing({.radii = std::nan("")}, box, 0));
+        CHECK(cull::is_worth_drawing({.least_radius = std::nan("")}, box, 0));
+        CHECK(cull::is_worth_drawing({.item_distances = distances}, box, 0));
+        CHECK(cull::is_worth_drawing({.least_radius = 1.5}, box, 0));
+        CHECK(!cull::is_worth_drawing({.least_radius = 1.75}, box, 0));
+        CHECK(!cull::is_worth_drawing({.radii = -1.0}, box, 0));
+        CHECK(cull::is_worth_drawing({.radii = 1e29}, box, 0));
+        CHECK(!cull::is_worth_drawing({.radii = 5.0, .longer = std::numeric_limits<double>::infinity()}, box, 0));
+        const std::uint64_t drawn[1] = {1};
+        CHECK(cull::is_worth_drawing(
+            {.radii = 5.0, .drawn_before = drawn, .longer = std::numeric_limits<double>::infinity()}, box, 0));
+    }
+
+    TEST_CASE("agrees with the oracle on items at their limits") {
+        oracle::NearMisses random(3);
+        int kept = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            Obb box;
+            box.half_extents = {float(random.number(0, 1)), float(random.number(0, 1)), random.index(2) ? 0.0f : 1.0f};
+            const double radius = glm::length(glm::dvec3(box.half_extents));
+            cull::DrawLimits limits;
+            limits.eye = (trial % 2 ? 1e7 : 1.0) * random.direction();
+            limits.radii = random.number(0.0, 100.0);
+            const double off = random.index(2) ? 0.0 : std::exp(random.number(-40.0, -1.0));
+            box.center =
+                limits.eye + (limits.radii * radius * (1.0 + (random.index(2) ? off : -off))) * random.direction();
+            const std::uint64_t drawn[1] = {random.index(2)};
+            if (random.index(4) == 0) limits.longer = 1.25;
+            limits.drawn_before = drawn;
+            if (random.index(4) == 0) limits.least_radius = radius;
+            const bool keeps = cull::is_worth_drawing(limits, box, 0);
+            kept += keeps;
+            REQUIRE(keeps == oracle_keeps(limits, box, 0, 1));
+        }
+        CHECK(kept > 5000);
+        CHECK(kept < 15000);
+    }
+
+    TEST_CASE("tree, list, moving boxes and a loop over all keep the same items, on every instruction set") {
+        std::size_t some = 0;
+        for (std::uint64_t seed = 0; seed < 24; ++seed) {
+            const LimitedCrowd of(seed, seed % 2 ? 300 : 4000, seed % 4 == 3 ? 1e6 : 0.0);
+            const std::vector<cull::ItemId> expected = of.expected();
+            some += expected.size();
+            boxtree::BoxTree tree = *boxtree::BoxTree::build(of.crowd.boxes, of.crowd.layers);
+            std::vector<cull::ItemId> moving;
+            std::vector<Obb> moving_boxes;
+            for (cull::ItemId i = 0; i < of.crowd.boxes.size(); i += 3) {
+                moving.push_back(i);
+                moving_boxes.push_back(of.crowd.boxes[i]);
+            }
+            boxtree::BoxTree rest = *boxtree::BoxTree::build(of.crowd.boxes, of.crowd.layers, {.detached = moving});
+            cull::MovingBoxes list;
+            REQUIRE(list.update(rest, moving, moving_boxes).has_value());
+            cull::VisibleSet visible;
+            for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+                hwy::SetSupportedTargetsForTest(left & -left);
+                cull::find_visible(tree, of.view, visible, {.limits = &of.limits});
+                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                for (std::size_t i = 0; i < visible.size(); ++i)
+                    REQUIRE(visible.verdicts()[i] == cull::classify(of.view.frustum, of.crowd.boxes[visible.ids()[i]]));
+                cull::find_visible(of.crowd.boxes, of.crowd.layers, of.view, visible, {.limits = &of.limits});
+                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                cull::find_visible(rest, list, of.view, visible, {.limits = &of.limits});
+                REQUIRE(std::ranges::equal(visible.ids(), expected));
+                cull::find_visible(tree, of.view, visible,
+                                   {cull::CullMode::exact, cull::ResultOrder::tree, &of.limits});
+                CHECK(visible.size() == expected.size());
+                hwy::SetSupportedTargetsForTest(0);
+            }
+        }
+        CHECK(some > 1000);
+    }
+
+    TEST_CASE("a view that is not finite keeps to the limits, too") {
+        LimitedCrowd of(1, 300, 0.0);
+        of.view.frustum.planes[0].offset = std::nan("");
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(of.crowd.boxes, of.crowd.layers);
+        cull::VisibleSet visible;
+        cull::find_visible(tree, of.view, visible, {.limits = &of.limits});
+        CHECK(std::ranges::equal(visible.ids(), of.expected()));
+    }
+
+    TEST_CASE("what is far is dropped by nodes, not item by item") {
+        const oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 8);
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes);
+        const std::vector<float> distances(32, 8.0f);
+        const cull::DrawLimits limits{.layer_distances = distances};
+        cull::VisibleSet visible;
+        Camera camera;
+        cull::find_visible(tree, {*frustum_of(camera)}, visible, {.limits = &limits});
+        CHECK(visible.size() > 0);
+        if (cull::kCountStatistics) CHECK(visible.statistics().boxes_tested < 5000);
+    }
+
+    TEST_CASE("with hysteresis an item at its limit comes and goes once, without it in every other frame") {
+        const std::vector<Obb> boxes{{.center = {0.0, 0.0, -100.0}, .half_extents = glm::vec3(1.0f)}};
+        for (const double longer : {1.0, 1.1}) {
+            cull::DrawLimits limits{.longer = longer};
+            const float distance[1] = {100.0f};
+            limits.item_distances = distance;
+            cull::VisibleSet visible;
+            Vector<std::uint64_t> drawn;
+            int changes = 0;
+            std::size_t before = 0;
+            for (int frame = 0; frame < 20; ++frame) {
+                limits.eye.z = frame % 2 ? -1.0 : 1.0;
+                limits.drawn_before = drawn;
+                cull::find_visible(boxes, {}, {*frustum_of(Camera{})}, visible, {.limits = &limits});
+                changes += visible.size() != before;
+                before = visible.size();
+                cull::to_bits(visible.ids(), boxes.size(), drawn);
+            }
+            CHECK(changes == (longer > 1.0 ? 1 : 19));
+        }
+    }
+}
