@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/bake/checksum.hpp>
 #include <crofton/core/executor.hpp>
 
-#include <cstring>
 #include <string>
 
+#include "forge.hpp"
 #include "temporary_file.hpp"
 
 using namespace crofton;
@@ -43,20 +42,6 @@ scene::Scene sample_scene(unsigned nodes) {
     }
     scene.update();
     return scene;
-}
-
-// As a forger would.
-void make_sums_right(Vector<std::byte>& file) {
-    Header header;
-    std::memcpy(&header, file.data(), sizeof header);
-    auto* sections = reinterpret_cast<Section*>(file.data() + sizeof header);
-    for (Section& section : std::span(sections, header.section_count))
-        section.checksum = checksum(std::span<const std::byte>(file).subspan(section.offset, section.size));
-    header.table_checksum = 0;
-    const std::uint64_t sums[] = {checksum(std::as_bytes(std::span(&header, 1))),
-                                  checksum(std::as_bytes(std::span<const Section>(sections, header.section_count)))};
-    header.table_checksum = checksum(std::as_bytes(std::span(sums)));
-    std::memcpy(file.data(), &header, sizeof header);
 }
 
 bool equal(const Obb& a, const Obb& b) {
@@ -112,7 +97,7 @@ TEST_SUITE("bake/baked_scene") {
             for (std::size_t word = 0; word + 4 <= reader->sections()[target].size; word += 4) {
                 Vector<std::byte> file = *good;
                 std::memset(file.data() + reader->sections()[target].offset + word, 0xff, 4);
-                make_sums_right(file);
+                bake_test::make_sums_right(file);
                 const auto baked = BakedScene::from_memory(file);
                 refused += baked ? 0 : 1;
                 if (!baked) CHECK(baked.error().message.find("checksum") == std::string::npos);

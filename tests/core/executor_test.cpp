@@ -1,10 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <crofton/core/executor.hpp>
+#include <thread>
 #include <vector>
 
 using namespace crofton;
+
+namespace {
+
+// Leaves numbers that descend where a returned call had its variables: whoever reads them there still finds ranges to
+// work on, and a body that is none.
+[[gnu::noinline]] std::uint64_t scribble_on_stack() {
+    constexpr std::size_t kWords = 512;
+    volatile std::uint64_t words[kWords];
+    for (std::size_t i = 0; i < kWords; ++i) words[i] = (kWords - i) * 0x0001000100010000u;
+    return words[7];
+}
+
+}  // namespace
 
 TEST_SUITE("core/executor") {
     TEST_CASE("zero items call no body") {
@@ -35,5 +51,67 @@ TEST_SUITE("core/executor") {
         for (int call = 0; call < 2000; ++call)
             pool.parallel_for(10, 1, [&](std::size_t begin, std::size_t, unsigned) { sum += begin; });
         CHECK(sum == 2000u * 45u);
+    }
+
+    TEST_CASE("a call returns when the last body has, however long another thread takes over it") {
+        ThreadPool pool(4);
+        int shared = 0;
+        for (int call = 0; call < 40; ++call) {
+            std::atomic<int> begun{0}, finished{0};
+            pool.parallel_for(4, 1, [&](std::size_t, std::size_t, unsigned worker) {
+                ++begun;
+                // The caller waits for another to begin, and is done first.
+                const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+                while (worker == 0 && begun < 3 && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+                if (worker != 0) std::this_thread::sleep_for(std::chrono::milliseconds(1 + 2 * worker));
+                ++finished;
+            });
+            CHECK(finished == 4);
+            shared += begun > 1;
+        }
+        CHECK(shared > 0);
+    }
+
+    TEST_CASE("threads that race for a million ranges take each once") {
+        ThreadPool pool(3);
+        std::vector<std::atomic<std::uint8_t>> visits(100000);
+        for (int call = 1; call <= 10; ++call) {
+            pool.parallel_for(visits.size(), 1, [&](std::size_t begin, std::size_t, unsigned) { ++visits[begin]; });
+            std::size_t wrong = 0;
+            for (const auto& visit : visits) wrong += visit != call;
+            REQUIRE(wrong == 0);
+        }
+    }
+
+    TEST_CASE("a thread that wakes when all is done finds nothing to do") {
+        ThreadPool pool(8);
+        std::atomic<std::size_t> calls{0};
+        std::uint64_t seen = 0;
+        for (int call = 0; call < 3000; ++call) {
+            pool.parallel_for(2, 1, [&](std::size_t, std::size_t, unsigned) { ++calls; });
+            seen |= scribble_on_stack();
+            // Long enough that some have gone to sleep when the next call comes.
+            if (call % 4 == 0) std::this_thread::sleep_for(std::chrono::microseconds(100));
+        }
+        CHECK(calls == 6000);
+        CHECK(seen != 0);
+    }
+
+    TEST_CASE("several threads may call one pool at once, and each gets its own work done") {
+        ThreadPool pool(3);
+        std::atomic<int> wrong{0};
+        std::vector<std::thread> callers;
+        for (int caller = 0; caller < 4; ++caller)
+            callers.emplace_back([&] {
+                for (int call = 0; call < 300; ++call) {
+                    std::array<std::atomic<int>, 50> visits{};
+                    pool.parallel_for(50, 3, [&](std::size_t begin, std::size_t end, unsigned) {
+                        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+                    });
+                    for (const auto& visit : visits) wrong += visit != 1;
+                }
+            });
+        for (std::thread& caller : callers) caller.join();
+        CHECK(wrong == 0);
     }
 }

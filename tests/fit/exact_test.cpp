@@ -63,7 +63,9 @@ glm::dmat3 random_rotation(std::mt19937& random) {
 TEST_SUITE("fit/exact") {
     TEST_CASE("a gap or a time budget out of range is refused, bad points as in fit_obb") {
         const Points points(4, glm::dvec3(1.0));
-        CHECK(fit::fit_exact(view(points), {.gap = 0.0}).error().code == ErrorCode::invalid_argument);
+        const auto no_gap = fit::fit_exact(view(points), {.gap = 0.0});
+        REQUIRE(!no_gap.has_value());
+        CHECK(no_gap.error().code == ErrorCode::invalid_argument);
         CHECK(!fit::fit_exact(view(points), {.gap = std::numeric_limits<double>::quiet_NaN()}));
         CHECK(!fit::fit_exact(view(points), {.time_budget_seconds = -1.0}));
         Points bad = points;

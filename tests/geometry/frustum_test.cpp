@@ -46,6 +46,42 @@ TEST_SUITE("geometry/frustum") {
         CHECK(frustum_of(matrix, DepthRange::zero_to_one).error().code == ErrorCode::non_finite);
     }
 
+    TEST_CASE("an up that is nearly forward is refused, a little farther off it is good") {
+        Camera camera;
+        camera.up = camera.forward + glm::dvec3(1e-10, 0.0, 0.0);
+        CHECK(frustum_of(camera).error().code == ErrorCode::degenerate);
+        camera.up = camera.forward + glm::dvec3(1e-8, 0.0, 0.0);
+        CHECK(frustum_of(camera).has_value());
+    }
+
+    TEST_CASE("a view matrix that is singular but for its last bits is refused, a nearly flat one is good") {
+        const glm::dmat4 matrix = world_to_clip(Camera{});
+        for (int r = 0; r < 3; ++r)
+            for (const double off : {0.0, 1e-16, 1e-8}) {
+                // Row r becomes that of w, but for a share of what it was.
+                glm::dmat4 flat = matrix;
+                for (int c = 0; c < 4; ++c) flat[c][r] = matrix[c][3] + off * matrix[c][r];
+                const auto frustum = frustum_of(flat, DepthRange::minus_one_to_one);
+                CHECK(frustum.has_value() == (off == 1e-8));
+                if (!frustum) CHECK(frustum.error().code == ErrorCode::degenerate);
+            }
+    }
+
+    TEST_CASE("a view matrix whose volume is empty is refused: a side that lies beyond infinity") {
+        // Rows x, y, z, w: w + x = (0, 0, 0, ∓1), which no point or every point satisfies.
+        const auto with_side = [](double offset) {
+            const glm::dvec4 rows[] = {{0, 0, 1, offset}, {0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, -1, 0}};
+            glm::dmat4 matrix;
+            for (int r = 0; r < 4; ++r)
+                for (int c = 0; c < 4; ++c) matrix[c][r] = rows[r][c];
+            return matrix;
+        };
+        CHECK(frustum_of(with_side(-1.0), DepthRange::zero_to_one).error().code == ErrorCode::empty);
+        const auto open = frustum_of(with_side(1.0), DepthRange::zero_to_one);
+        REQUIRE(open.has_value());
+        CHECK(open->plane_count == 5);
+    }
+
     TEST_CASE("parameters and matrices of every kind give the same volume as the clip conditions") {
         std::mt19937_64 random(3);
         std::uniform_real_distribution<double> number(-1.0, 1.0);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <crofton/geometry/camera.hpp>
+#include <oracle/edges.hpp>
 #include <oracle/exact_frustum.hpp>
 #include <oracle/near_misses.hpp>
 
@@ -63,6 +65,37 @@ TEST_SUITE("geometry/frustum_triangle") {
             }
             CHECK(hits > 500);
             CHECK(hits < 2900);
+        }
+    }
+
+    TEST_CASE("agrees with exact elimination to the last bit where a triangle begins to miss the frustum") {
+        for (const double offset : {0.0, 1e6}) {
+            oracle::NearMisses cases(6, offset);
+            int compared = 0;
+            for (int trial = 0; trial < 150; ++trial) {
+                const Frustum frustum = *frustum_of(cases.camera());
+                const auto corners = *frustum_corners(frustum);
+                glm::dvec3 middle(0.0);
+                for (const glm::dvec3& corner : corners) middle += 0.125 * corner;
+                const glm::dvec3 target = cases.surface_point(frustum, corners);
+                const glm::dvec3 u = cases.number(0.1, 9.0) * cases.direction(),
+                                 v = cases.number(0.1, 9.0) * cases.direction();
+                const glm::dvec3 way = target - (frustum.origin + middle);
+                const auto corner_at = [&](double s) { return frustum.origin + middle + s * way; };
+                const auto meets = [&](double s) {
+                    return intersects(frustum, corner_at(s), corner_at(s) + u, corner_at(s) + v);
+                };
+                if (!meets(0.0) || meets(30.0)) continue;
+                const double edge = oracle::edge_between(0.0, 30.0, meets).first;
+                const glm::dvec3 size = glm::abs(corner_at(edge));
+                const double step = oracle::rounding_step(std::max({size.x, size.y, size.z})) / glm::length(way);
+                for (int k = -5; k <= 5; ++k) {
+                    const double s = edge + 0.3 * k * step;
+                    CHECK(meets(s) == oracle::meets(frustum, corner_at(s), corner_at(s) + u, corner_at(s) + v));
+                    ++compared;
+                }
+            }
+            CHECK(compared > 500);
         }
     }
 }

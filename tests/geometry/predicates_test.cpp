@@ -172,6 +172,26 @@ TEST_SUITE("geometry/predicates") {
         CHECK(zeros > 50);
     }
 
+    TEST_CASE("points of one circle whose products take 200 bits lie on it, and not one unit off it") {
+        std::mt19937_64 random(15);
+        for (int trial = 0; trial < 20000; ++trial) {
+            // Pythagorean points of the circle of radius 65, as large as integers go.
+            static constexpr int kPoints[][2] = {{16, 63}, {25, 60}, {33, 56}, {39, 52}, {0, 65},
+                                                 {65, 0},  {63, 16}, {60, 25}, {56, 33}, {52, 39}};
+            const auto scale = static_cast<double>(random() >> (19 + random() % 20));
+            const glm::dvec2 middle = trial % 2 ? glm::dvec2(0.0) : glm::dvec2(0x1.8p50, -0x1p50);
+            glm::dvec2 points[4];
+            for (auto& point : points) {
+                const auto& k = kPoints[random() % 10];
+                point = scale * glm::dvec2(random() % 2 ? k[0] : -k[0], random() % 2 ? k[1] : -k[1]) + middle;
+            }
+            if (trial % 4 == 3) points[random() % 4].x += 1.0;
+            const int truth = in_circle_reference(points[0], points[1], points[2], points[3]);
+            REQUIRE(in_circle(points[0], points[1], points[2], points[3]) == truth);
+            if (trial % 4 != 3) REQUIRE(truth == 0);
+        }
+    }
+
     TEST_CASE("agrees with rational arithmetic on nearly coplanar points") {
         std::mt19937_64 random(17);
         std::uniform_real_distribution<double> number(-1.0, 1.0);

@@ -5,6 +5,7 @@
 #include <crofton/scene/scene.hpp>
 #include <cstring>
 #include <map>
+#include <oracle/code_of.hpp>
 #include <random>
 #include <vector>
 
@@ -138,7 +139,7 @@ struct Pair {
                 const bool cycle = parent != kNone && plain.is_below(parent, node);
                 const auto result = scene.set_parent(node, parent);
                 CHECK(result.has_value() == !cycle);
-                if (cycle) CHECK(result.error().code == ErrorCode::invalid_argument);
+                if (cycle) CHECK(oracle::code_of(result) == ErrorCode::invalid_argument);
                 if (!cycle) plain.nodes[node].parent = parent;
                 break;
             }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/scene/scene.hpp>
 #include <limits>
+#include <oracle/code_of.hpp>
 
 using namespace crofton;
 using namespace crofton::scene;
@@ -29,13 +30,18 @@ TEST_SUITE("scene/planar_polygon") {
         p.polygon.ring_ends = {2, 4};
         CHECK(validate(p).error().code == ErrorCode::degenerate);
         p.polygon.ring_ends = {3};
-        CHECK(validate(p).error().code == ErrorCode::invalid_argument);
+        REQUIRE(!validate(p).has_value());
+        CHECK(oracle::code_of(validate(p)) == ErrorCode::invalid_argument);
         p = square();
         p.polygon.points[2].x = std::numeric_limits<double>::quiet_NaN();
         CHECK(validate(p).error().item == 2);
         p = square();
         p.v = 2.0 * p.u;
         CHECK(validate(p).error().code == ErrorCode::degenerate);
+        p.v = p.u + 1e-10 * square().v;  // nearly parallel
+        CHECK(validate(p).error().code == ErrorCode::degenerate);
+        p.v = p.u + 1e-8 * square().v;
+        CHECK(validate(p).has_value());
         constexpr std::array<std::array<std::uint32_t, 3>, 1> beyond = {{{0, 1, 4}}};
         CHECK(to_mesh(square(), beyond).error().code == ErrorCode::out_of_range);
     }

@@ -4,6 +4,7 @@
 #include <crofton/scene/scene.hpp>
 #include <cstring>
 #include <limits>
+#include <oracle/code_of.hpp>
 #include <random>
 
 using namespace crofton;
@@ -196,7 +197,7 @@ TEST_SUITE("scene/scene") {
         CHECK(scene.update().instances_updated == 1);
         CHECK(scene.layer_masks()[a] == 0);
         CHECK(scene.layer_masks()[b] == ~0u);
-        CHECK(scene.remove_instance(a).error().code == ErrorCode::invalid_argument);
+        CHECK(oracle::code_of(scene.remove_instance(a)) == ErrorCode::invalid_argument);
         CHECK(scene.add_instance(node, mesh).value() == a);
     }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/sampling/random.hpp>
 #include <crofton/study/binary_tree.hpp>
+#include <oracle/code_of.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -74,7 +75,7 @@ TEST_SUITE("study/binary_tree") {
         CHECK(BinaryTree::build(boxes).error().item == 1);
         CHECK_FALSE(BinaryTree::build({}, {.criterion = {0.0, 0.0, 0.0}}).has_value());
         CHECK_FALSE(BinaryTree::build({}, {.split_criterion = {-1.0, 0.0, 1.0}}).has_value());
-        CHECK(BinaryTree::build({}, {.split = Split::sampled}).error().code == ErrorCode::invalid_argument);
+        CHECK(oracle::code_of(BinaryTree::build({}, {.split = Split::sampled})) == ErrorCode::invalid_argument);
         BinaryTree tree = *BinaryTree::build({});
         CHECK_FALSE(tree.insert(boxes[1]).has_value());
         CHECK_FALSE(tree.remove(0));

@@ -131,9 +131,9 @@ Result<void> BoxTree::validate_leaves(Trust trust) const {
                 return broken(item, "an item's lane does not match its box");
         }
     }
-    if (items != item_count()) return broken(kNoItem, "the leaves do not hold all items");
     for (const ItemId item : free_items_)
         if (item >= boxes_.size() || structure_.item_slots[item] != kNone) return broken(item, "a free id is in use");
+    if (items != item_count()) return broken(kNoItem, "the leaves do not hold all items");
     return {};
 }
 

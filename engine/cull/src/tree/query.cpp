@@ -304,8 +304,8 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
     finish(tree, inside, straddling, executor);
 }
 
-// Replaces the undecided slots by the items that are visible after all, with kInside where that is so; the others are
-// improper.
+// Replaces the undecided slots by the items that are visible after all, with kInside where that is so. Of the others,
+// those that no plane rejects are improper.
 std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
@@ -314,9 +314,13 @@ std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output
         if (i + kAhead < output.undecided_count)
             hwy::Prefetch(&tree.boxes()[tree.slot_items()[output.undecided[i + kAhead]]]);
         const ItemId item = tree.slot_items()[output.undecided[i]];
-        if (!is_wanted(tree.boxes()[item], item, tree.layer_masks()[item])) continue;
-        const Verdict verdict = classify_usable(view_.frustum, tree.boxes()[item], options_.mode);
-        if (verdict != Verdict::outside) output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;
+        const Obb& box = tree.boxes()[item];
+        if (!is_wanted(box, item, tree.layer_masks()[item])) continue;
+        const Verdict verdict = classify_usable(view_.frustum, box, options_.mode);
+        if (verdict != Verdict::outside)
+            output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;
+        else if (kCountStatistics && options_.mode == CullMode::exact)
+            output.improper += classify_usable(view_.frustum, box, CullMode::conservative) != Verdict::outside;
     }
     return kept;
 }
@@ -338,7 +342,6 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.accepted_whole += output.accepted_whole;
     statistics.exact_tests += output.undecided_count;
     statistics.improper += output.improper;
-    if (!options_.limits) statistics.improper += output.undecided_count - kept;  // else they may be small or far
 }
 
 void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Files whose checksums are right and whose contents are not: one fault each, refused for that fault.
+#include <doctest/doctest.h>
+#include <array>
+#include <crofton/bake/baked_scene.hpp>
+
+#include "forge.hpp"
+
+using namespace crofton;
+using namespace crofton::bake;
+using bake_test::with_element;
+using bake_test::with_table;
+
+namespace {
+
+// Section 0 ends within its last 64 bytes, so that padding follows.
+Vector<std::byte> two_sections() {
+    Writer writer;
+    const std::array<std::uint32_t, 5> numbers{1, 2, 3, 4, 5};
+    const std::array<char, 3> letters{'a', 'b', 'c'};
+    writer.add("numbers", std::span<const std::uint32_t>(numbers));
+    writer.add("letters", std::span<const char>(letters));
+    return writer.finish();
+}
+
+void check_refused(const Vector<std::byte>& file, std::string_view why) {
+    const auto reader = Reader::open(file);
+    REQUIRE_FALSE(reader);
+    INFO(reader.error().message);
+    CHECK(reader.error().message.find(why) != std::string::npos);
+}
+
+// Two meshes on two nodes: a triangle with colours, and a rectangle with a hole.
+Vector<std::byte> small_scene() {
+    scene::Scene scene;
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.indices = {0, 1, 2};
+    mesh.colors.assign(3, glm::vec3(0.5f));
+    REQUIRE(scene.add_mesh(mesh, "triangle"));
+    scene::PlanarPolygon polygon;
+    polygon.polygon = {{{0, 0}, {6, 0}, {6, 6}, {0, 6}, {1, 1}, {1, 2}, {2, 1}}, {4, 7}};
+    const std::array<std::array<std::uint32_t, 3>, 1> triangles{{{0, 1, 2}}};
+    REQUIRE(scene.add_polygon(polygon, triangles, "holed"));
+    const auto root = scene.add_node(scene::kNone, {}, ~0u);
+    const auto child = scene.add_node(*root, {}, ~0u);
+    REQUIRE(scene.add_instance(*root, 0));
+    REQUIRE(scene.add_instance(*child, 1));
+    scene.update();
+    auto file = bake::bake(scene);
+    REQUIRE(file);
+    REQUIRE(BakedScene::from_memory(*file));
+    return std::move(*file);
+}
+
+void check_scene_refused(const Vector<std::byte>& file, std::string_view why) {
+    const auto baked = BakedScene::from_memory(file);
+    REQUIRE_FALSE(baked);
+    INFO(baked.error().message);
+    CHECK(baked.error().message.find(why) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_SUITE("bake/forged") {
+    TEST_CASE("more sections than the limit are refused, as many as it allows are read") {
+        const auto with_sections = [](std::uint32_t count) {
+            const std::size_t table = sizeof(Header) + count * sizeof(Section);
+            Vector<std::byte> file((table + kAlignment - 1) / kAlignment * kAlignment);
+            Header header;
+            header.file_size = file.size();
+            header.section_count = count;
+            std::memcpy(file.data(), &header, sizeof header);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                Section section;
+                section.name[0] = static_cast<char>('0' + i);
+                section.offset = file.size();
+                std::memcpy(file.data() + sizeof header + i * sizeof section, &section, sizeof section);
+            }
+            bake_test::make_sums_right(file);
+            return file;
+        };
+        CHECK(Reader::open(with_sections(kMaxSections)));
+        check_refused(with_sections(kMaxSections + 1), "section count");
+    }
+
+    TEST_CASE("partial elements, elements of no size and reserved fields are refused") {
+        const Vector<std::byte> file = two_sections();
+        REQUIRE(Reader::open(with_table(file, [](Header&, Section*) {})));
+        check_refused(with_table(file, [](Header&, Section* s) { s[1].element_size = 2; }), "whole elements");
+        check_refused(with_table(file, [](Header&, Section* s) { s[1].element_size = 0; }), "whole elements");
+        check_refused(with_table(file, [](Header&, Section* s) { s[0].reserved = 1; }), "whole elements");
+    }
+
+    TEST_CASE("sections elsewhere than where they belong, and bytes hidden between or after them, are refused") {
+        const Vector<std::byte> file = two_sections();
+        check_refused(with_table(file, [](Header&, Section* s) { s[1].offset = s[0].offset; }), "outside its place");
+        check_refused(with_table(file, [](Header&, Section* s) { s[1].size = 65; }), "outside its place");
+        Section first, last;
+        std::memcpy(&first, file.data() + sizeof(Header), sizeof first);
+        std::memcpy(&last, file.data() + sizeof(Header) + sizeof first, sizeof last);
+        Vector<std::byte> hidden = file;
+        hidden[first.offset + first.size] = std::byte{1};
+        check_refused(hidden, "padding");
+        hidden = file;
+        hidden[last.offset + last.size] = std::byte{1};
+        check_refused(hidden, "after the last section");
+        hidden = file;
+        hidden.resize(file.size() + kAlignment);
+        check_refused(with_table(hidden, [&](Header& header, Section*) { header.file_size = hidden.size(); }),
+                      "after the last section");
+    }
+
+    TEST_CASE("every section's contents are compared with its checksum") {
+        for (const std::size_t section : {0u, 1u}) {
+            Vector<std::byte> file = two_sections();
+            Section where;
+            std::memcpy(&where, file.data() + sizeof(Header) + section * sizeof where, sizeof where);
+            file[where.offset] ^= std::byte{1};
+            check_refused(file, "checksum");
+        }
+    }
+
+    TEST_CASE("meshes whose arrays, colours, triangles, polygons or boxes are none are refused") {
+        const Vector<std::byte> file = small_scene();
+        const auto mesh = [&](auto change) { return with_element<MeshRecord>(file, "meshes", 0, change); };
+        check_scene_refused(mesh([](MeshRecord& m) { m.first_position = ~std::uint64_t{0}; }), "outside");
+        check_scene_refused(mesh([](MeshRecord& m) { m.position_count = 1000; }), "outside");
+        check_scene_refused(mesh([](MeshRecord& m) { m.color_count = 2; }), "colours");
+        check_scene_refused(mesh([](MeshRecord& m) { m.index_count = 2; }), "triangle");
+        check_scene_refused(mesh([](MeshRecord& m) { m.position_count = m.color_count = 2; }), "triangle");
+        check_scene_refused(mesh([](MeshRecord& m) { m.polygon = 1; }), "polygon that is not there");
+        check_scene_refused(mesh([](MeshRecord& m) { m.box.half_extents.x = -1.0f; }), "no box");
+        CHECK(BakedScene::from_memory(mesh([](MeshRecord& m) { m.color_count = 0; })));
+    }
+
+    TEST_CASE("rings that descend or end beyond the points are refused") {
+        const Vector<std::byte> file = small_scene();
+        const auto ring = [&](std::size_t at, std::uint32_t end) {
+            return with_element<std::uint32_t>(file, "rings", at, [&](std::uint32_t& e) { e = end; });
+        };
+        CHECK(BakedScene::from_memory(ring(0, 4)));
+        check_scene_refused(ring(1, 3), "ascend");
+        check_scene_refused(ring(1, 8), "ascend");
+        check_scene_refused(with_element<PolygonRecord>(file, "polygons", 0, [](PolygonRecord& p) { ++p.ring_count; }),
+                            "outside");
+    }
+
+    TEST_CASE("instances and nodes that name what is not there, half of it, or themselves are refused") {
+        const Vector<std::byte> file = small_scene();
+        const auto instance = [&](auto change) { return with_element<InstanceRecord>(file, "instance", 1, change); };
+        check_scene_refused(instance([](InstanceRecord& i) { i.mesh = 2; }), "not there");
+        check_scene_refused(instance([](InstanceRecord& i) { i.node = 2; }), "not there");
+        check_scene_refused(instance([](InstanceRecord& i) { i.mesh = scene::kNone; }), "not there");
+        check_scene_refused(instance([](InstanceRecord& i) { i.node = scene::kNone; }), "not there");
+        const auto node = [&](std::size_t at, std::uint32_t parent) {
+            return with_element<NodeRecord>(file, "nodes", at, [&](NodeRecord& n) { n.parent = parent; });
+        };
+        check_scene_refused(node(1, 1), "own ancestor");
+        check_scene_refused(node(0, 0), "own ancestor");
+        check_scene_refused(node(0, 1), "own ancestor");
+        check_scene_refused(node(0, 2), "parent that is not there");
+        // One instance fewer than the tree has, and one more.
+        const auto resized = [&](std::uint64_t by) {
+            return with_table(file, [&](const Header& header, Section* sections) {
+                for (std::uint32_t i = 0; i < header.section_count; ++i)
+                    if (std::string_view(sections[i].name, 8) == "instance") sections[i].size += by;
+            });
+        };
+        check_scene_refused(resized(sizeof(InstanceRecord)), "not over the instances");
+    }
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// Stored trees with one fault each, refused for that fault. The layout is written down here a second time.
+#include <doctest/doctest.h>
+#include <crofton/boxtree/box_tree.hpp>
+#include <cstring>
+#include <oracle/random_boxes.hpp>
+#include <string_view>
+
+using namespace crofton;
+using boxtree::BoxTree;
+using boxtree::ItemId;
+using boxtree::Leaf;
+using boxtree::LeafRange;
+using boxtree::Node;
+
+namespace {
+
+struct StoredHeader {
+    char magic[8];
+    std::uint32_t version, byte_order, node_bytes, leaf_bytes, box_bytes, height;
+    std::uint64_t boxes, free_items, nodes, leaves;
+    double criterion[3];
+};
+static_assert(sizeof(StoredHeader) == 88);
+
+// The parts of a stored tree, to be changed and put together again.
+struct Stored {
+    StoredHeader header;
+    std::vector<Obb> boxes;
+    std::vector<std::uint32_t> layer_masks;
+    std::vector<ItemId> free_items;
+    std::vector<Node> nodes;
+    std::vector<LeafRange> ranges;
+    std::vector<Leaf> leaves;
+    std::vector<std::uint8_t> leaf_counts;
+    std::vector<ItemId> slot_items;
+    std::vector<std::uint32_t> item_slots;
+
+    explicit Stored(const Vector<std::byte>& bytes) {
+        std::size_t at = 0;
+        const auto take = [&](void* to, std::size_t size) {
+            std::memcpy(to, bytes.data() + at, size);
+            at += size;
+        };
+        take(&header, sizeof header);
+        const auto take_all = [&](auto& array, std::size_t count) {
+            array.resize(count);
+            take(static_cast<void*>(array.data()), count * sizeof(array[0]));
+        };
+        take_all(boxes, header.boxes);
+        take_all(layer_masks, header.boxes);
+        take_all(free_items, header.free_items);
+        take_all(nodes, header.nodes);
+        take_all(ranges, header.nodes);
+        take_all(leaves, header.leaves);
+        take_all(leaf_counts, header.leaves);
+        take_all(slot_items, header.leaves * boxtree::kWidth);
+        take_all(item_slots, header.boxes);
+        REQUIRE(at == bytes.size());
+    }
+
+    [[nodiscard]] std::vector<std::byte> bytes() {
+        header.boxes = boxes.size();
+        header.free_items = free_items.size();
+        header.nodes = nodes.size();
+        header.leaves = leaves.size();
+        std::vector<std::byte> result;
+        const auto put = [&](const void* from, std::size_t size) {
+            const auto* first = static_cast<const std::byte*>(from);
+            result.insert(result.end(), first, first + size);
+        };
+        put(&header, sizeof header);
+        const auto put_all = [&](const auto& array) { put(array.data(), array.size() * sizeof(array[0])); };
+        put_all(boxes);
+        put_all(layer_masks);
+        put_all(free_items);
+        put_all(nodes);
+        put_all(ranges);
+        put_all(leaves);
+        put_all(leaf_counts);
+        put_all(slot_items);
+        put_all(item_slots);
+        return result;
+    }
+};
+
+// Three levels; item 5 is removed.
+Stored good_tree() {
+    const oracle::Crowd crowd = oracle::random_crowd(700, 0.0, 41);
+    BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers);
+    REQUIRE(tree.remove(5).has_value());
+    tree.refit();
+    REQUIRE(tree.height() >= 2);
+    return Stored(tree.serialise());
+}
+
+void check_refused(Stored& stored, std::string_view why) {
+    const auto tree = BoxTree::deserialise(stored.bytes());
+    REQUIRE(!tree.has_value());
+    INFO(tree.error().message);
+    CHECK(tree.error().message.find(why) != std::string::npos);
+}
+
+template <class Change>
+void check_refused_after(Change change, std::string_view why) {
+    Stored stored = good_tree();
+    change(stored);
+    check_refused(stored, why);
+}
+
+}  // namespace
+
+TEST_SUITE("boxtree/stored") {
+    TEST_CASE("what is taken apart and put together is the same tree") {
+        Stored stored = good_tree();
+        const auto back = BoxTree::deserialise(stored.bytes());
+        REQUIRE(back.has_value());
+        const auto bytes = back->serialise();
+        CHECK(std::ranges::equal(bytes, stored.bytes()));
+    }
+
+    TEST_CASE("bytes too many or too few, other versions, byte orders and element sizes are refused") {
+        Stored stored = good_tree();
+        std::vector<std::byte> bytes = stored.bytes();
+        for (const std::size_t size : {bytes.size() - 1, bytes.size() + 1, bytes.size() + 64, std::size_t{87}}) {
+            std::vector<std::byte> other = bytes;
+            other.resize(size);
+            const auto tree = BoxTree::deserialise(other);
+            REQUIRE(!tree.has_value());
+            CHECK(tree.error().code == ErrorCode::parse);
+        }
+        const char* const why = "another version";
+        check_refused_after([](Stored& s) { ++s.header.version; }, why);
+        check_refused_after([](Stored& s) { s.header.byte_order = 0x04030201; }, why);
+        check_refused_after([](Stored& s) { s.header.node_bytes += 64; }, why);
+        check_refused_after([](Stored& s) { s.header.leaf_bytes -= 64; }, why);
+        check_refused_after([](Stored& s) { s.header.box_bytes += 8; }, why);
+        check_refused_after([](Stored& s) { s.header.magic[7] = 'E'; }, "not a box tree");
+        check_refused_after([](Stored& s) { s.header.height = 0; }, "sizes out of range");
+        check_refused_after([](Stored& s) { s.header.height = 65; }, "sizes out of range");
+        check_refused_after([](Stored& s) { s.header.criterion[1] = -1.0; }, "criterion");
+    }
+
+    TEST_CASE("links that lead nowhere, twice to one place, round or too deep are refused") {
+        check_refused_after([](Stored& s) { s.nodes[0].child[0] = 10000; }, "does not exist");
+        check_refused_after([](Stored& s) { s.nodes[0].child[1] = s.nodes[0].child[0]; }, "know its parent");
+        check_refused_after([](Stored& s) { s.nodes[s.nodes[0].child[0]].lane_in_parent = 9; }, "know its parent");
+        check_refused_after([](Stored& s) { s.nodes[0].child[0] = 0; }, "know its parent");
+        check_refused_after([](Stored& s) { s.nodes[0].parent = 1; }, "in a cycle");
+        check_refused_after([](Stored& s) { s.header.height = 1; }, "too deep");
+        check_refused_after([](Stored& s) { s.nodes[0].count = 17; }, "more than 16");
+        check_refused_after([](Stored& s) { s.leaves[0].count = 17; }, "more than 16");
+        const auto add_leaf = [](Stored& s) {
+            s.leaves.push_back(s.leaves[0]);
+            s.leaves.back().count = 0;
+            s.leaf_counts.push_back(0);
+            s.slot_items.resize(s.slot_items.size() + boxtree::kWidth, boxtree::kNone);
+        };
+        check_refused_after(add_leaf, "below no node");
+        const auto add_root = [](Stored& s) {
+            Node root = s.nodes[0];
+            root.count = 0;
+            root.only_leaves = 1;
+            root.layers_every = ~std::uint32_t{0};
+            s.nodes.push_back(root);
+            s.ranges.push_back({});
+        };
+        check_refused_after(add_root, "not below the root");
+    }
+
+    TEST_CASE("nodes that are wrong about what lies below them are refused") {
+        const auto is_wrong = [](auto change, std::string_view why) {
+            check_refused_after([&](Stored& s) { change(s.nodes[s.nodes[0].child[0]], s); }, why);
+        };
+        for (int side = 0; side < 2; ++side)
+            for (int axis = 0; axis < 3; ++axis)
+                is_wrong(
+                    [&](Node& node, Stored&) {
+                        // The middle of lane 0 moves away from one side by half of its length.
+                        auto& middle = axis == 2 ? node.middle_half_z[0] : node.middle_xy[0];
+                        const int shift = axis == 1 ? 16 : 0;
+                        const auto half_row = axis == 2 ? node.middle_half_z[0] : node.half_xy[0];
+                        const int half = static_cast<std::int16_t>(half_row >> (axis == 0 ? 0 : 16));
+                        const int moved = static_cast<std::int16_t>(middle >> shift) + (side ? half : -half) / 2;
+                        middle &= ~(std::uint32_t{0xffff} << shift);
+                        middle |= (static_cast<std::uint32_t>(moved) & 0xffffu) << shift;
+                    },
+                    "does not contain");
+        is_wrong([](Node& node, Stored&) { node.layers_any[0] = 0; }, "layers");
+        is_wrong([](Node& node, Stored&) { node.layers_all[0] ^= 1u << 30; }, "layers");
+        is_wrong([](Node& node, Stored&) { node.layers_every ^= 1u << 30; }, "frame");
+        is_wrong([](Node& node, Stored&) { node.rounding *= 0.5f; }, "frame");
+        is_wrong([](Node& node, Stored&) { node.only_leaves ^= 1; }, "children's kind");
+        check_refused_after([](Stored& s) { s.nodes[0].only_leaves = 1; }, "children's kind");
+        check_refused_after([](Stored& s) { s.ranges[0].count = 10000; }, "leaves do not exist");
+        check_refused_after([](Stored& s) { s.ranges[0].first = 1; }, "leaves do not exist");
+        // Item 5's leaf has a gap, so the root's leaves have none that they could promise.
+        check_refused_after([](Stored& s) { s.ranges[0].items = 699; }, "about its items");
+        check_refused_after([](Stored& s) { s.ranges[0].items = 700; }, "about its items");
+    }
+
+    TEST_CASE("leaves that lose items, name others or show other boxes are refused") {
+        check_refused_after(
+            [](Stored& s) {
+                for (LeafRange& range : s.ranges) range.items = 0;
+                --s.leaf_counts[0];
+            },
+            "count is wrong");
+        check_refused_after([](Stored& s) { s.slot_items[0] = boxtree::kNone; }, "do not match its count");
+        check_refused_after([](Stored& s) { std::swap(s.slot_items[0], s.slot_items[1]); }, "slot says");
+        check_refused_after([](Stored& s) { s.slot_items[0] = 100000; }, "slot says");
+        check_refused_after([](Stored& s) { s.boxes[s.slot_items[0]].center.x += 0.5; }, "match its box");
+        check_refused_after([](Stored& s) { s.layer_masks[s.slot_items[0]] ^= 1u << 30; }, "match its box");
+        check_refused_after([](Stored& s) { s.boxes[s.slot_items[0]].half_extents.x = -1.0f; }, "");
+    }
+
+    TEST_CASE("free lists that name what is in use, what does not exist, or one id twice are refused by name") {
+        const auto refused_item = [](ItemId id) {
+            Stored stored = good_tree();
+            REQUIRE(stored.free_items == std::vector<ItemId>{5});
+            stored.free_items[0] = id;
+            const auto tree = BoxTree::deserialise(stored.bytes());
+            REQUIRE(!tree.has_value());
+            CHECK(tree.error().message.find("free id") != std::string::npos);
+            return tree.error().item;
+        };
+        CHECK(refused_item(7) == 7);
+        CHECK(refused_item(700) == 700);
+        CHECK(refused_item(boxtree::kNone) == boxtree::kNone);
+        check_refused_after([](Stored& s) { s.free_items = {5, 5}; }, "hold all items");
+        check_refused_after(
+            [](Stored& s) {
+                s.boxes.push_back(s.boxes[0]);
+                s.layer_masks.push_back(0);
+                s.item_slots.push_back(s.item_slots[0]);
+            },
+            "hold all items");
+    }
+}

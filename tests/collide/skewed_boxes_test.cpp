@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Boxes whose axes are as far from orthonormal as they may be, touching to rounding: the share of the float filters'
+// error bounds that is for the axes. And axes that are no numbers.
+#include <doctest/doctest.h>
+#include <crofton/collide/obb_obb.hpp>
+#include <limits>
+#include <vector>
+
+#include "random_boxes.hpp"
+
+using namespace crofton;
+using namespace crofton::collide;
+using namespace crofton::testing;
+
+namespace {
+
+// Every product of two axes is off by ±0.98e-4.
+glm::mat3 skewed(std::mt19937_64& random, const glm::dmat3& rotation) {
+    glm::dmat3 skew(1.0);
+    const auto off = [&] { return random() % 2 ? 0.98e-4 : -0.98e-4; };
+    for (int k = 0; k < 3; ++k) skew[k][k] += 0.5 * off();
+    for (int i = 0; i < 3; ++i)
+        for (int j = i + 1; j < 3; ++j) (random() % 2 ? skew[i][j] : skew[j][i]) += off();
+    return glm::mat3(rotation * skew);
+}
+
+// A pair that touches, needles and plates among them, moved apart or together by 1e-12 of its size.
+std::pair<Obb, Obb> touching_pair(std::mt19937_64& random) {
+    Obb a = random_box(random), b = random_box(random);
+    const glm::dmat3 frame = glm::mat3_cast(random_rotation(random));
+    glm::dmat3 other = glm::mat3_cast(random_rotation(random));
+    if (random() % 2) {
+        const double angle = std::pow(10.0, -double(random() % 7));
+        other = glm::dmat3(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(random_vector(random))))) * frame;
+    }
+    a.axes = skewed(random, frame);
+    b.axes = skewed(random, other);
+    for (int k = 0; k < 3; ++k) {
+        if (random() % 2) a.half_extents[k] *= random() % 3 ? 0.01f : 0.0f;
+        if (random() % 2) b.half_extents[k] *= random() % 3 ? 0.01f : 0.0f;
+    }
+    a.center = glm::dvec3(0.0);
+    const glm::dvec3 direction = glm::normalize(random_vector(random));
+    b.center = touching_distance(a, b, direction) * (random() % 2 ? 1.0 + 1e-12 : 1.0 - 1e-12) * direction;
+    return {a, b};
+}
+
+}  // namespace
+
+TEST_SUITE("collide/skewed boxes") {
+    TEST_CASE("200,000 touching pairs of skewed boxes: float filters answer as double and exact arithmetic do") {
+        std::mt19937_64 random(61);
+        std::vector<Obb> a, b;
+        std::vector<std::uint8_t> expected;
+        while (a.size() < 200000) {
+            const auto [first, second] = touching_pair(random);
+            // Separated by 0 along every axis that counts, or far away along a direction that hardly leads apart.
+            if (!(glm::length(second.center) < 1e3) || !validate(first) || !validate(second)) continue;
+            a.push_back(first);
+            b.push_back(second);
+            // With an axis to begin with, floats are not asked.
+            expected.push_back(separating_axis(first, second, 0) == kNotSeparated);
+        }
+        std::size_t wrong = 0, hits = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            wrong += intersects(a[i], b[i]) != (expected[i] != 0);
+            wrong += (separating_axis(a[i], b[i]) == kNotSeparated) != (expected[i] != 0);
+            hits += expected[i];
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > 50000);
+        CHECK(hits < 150000);
+        std::vector<std::uint8_t> from_batch(a.size());
+        (void)intersects(a, b, from_batch);
+        CHECK(from_batch == expected);
+    }
+
+    TEST_CASE("one axis component that is not finite, whichever it is, and a pair that would overlap does not meet") {
+        std::mt19937_64 random(62);
+        std::vector<Obb> a, b;
+        std::vector<std::uint8_t> expected;
+        const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                             -std::numeric_limits<float>::infinity()};
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j)
+                for (const float number : bad)
+                    for (const bool upright : {false, true})
+                        for (const bool first : {false, true}) {
+                            Obb box = random_box(random), other = random_box(random);
+                            if (upright) box.axes = other.axes = glm::mat3(1.0f);
+                            other.center = box.center;
+                            a.push_back(box);
+                            b.push_back(other);
+                            (first ? a : b).back().axes[k][j] = number;
+                            // A sound neighbour in every second lane.
+                            a.push_back(box);
+                            b.push_back(other);
+                            expected.insert(expected.end(), {0, 1});
+                        }
+        std::vector<std::uint8_t> hits(a.size());
+        (void)intersects(a, b, hits);
+        CHECK(hits == expected);
+        PackedBoxes packed_a, packed_b;
+        packed_a.pack(a, {});
+        packed_b.pack(b, {});
+        (void)intersects(packed_a, packed_b, hits);
+        CHECK(hits == expected);
+    }
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Clusters of boxes of which each lies within a filter's rounding of a plane: what the kernels decide in floats and
+// small integers must be classify's verdict, which edge_test.cpp compares with exact arithmetic.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/cull.hpp>
+#include <oracle/near_misses.hpp>
+#include <vector>
+
+using namespace crofton;
+using cull::CullMode;
+using cull::Verdict;
+
+namespace {
+
+// A cluster: as long as `size` along each of its own axes, boxes of half extents about `half`.
+struct Shape {
+    glm::dvec3 size;
+    double half;
+};
+
+// A box whose corner nearest to the plane or farthest from it lies `depth` inside of it, near a point of the plane.
+Obb box_at(oracle::NearMisses& random, const glm::dvec3& target, const glm::dvec3& normal, double half, double depth) {
+    Obb box;
+    const glm::dvec3 axis = random.direction();
+    const double angle = random.index(4) ? random.number(0.0, 6.2) : 0.0;
+    box.axes = glm::mat3(glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis)));
+    box.center = target + depth * normal;
+    const double side = random.index(2) ? 1.0 : -1.0;
+    for (int k = 0; k < 3; ++k) {
+        box.half_extents[k] = random.index(4) ? float(half * random.number(0.1, 1.0)) : 0.0f;
+        const glm::dvec3 edge = double(box.half_extents[k]) * glm::dvec3(box.axes[k]);
+        box.center += (glm::dot(edge, normal) > 0.0 ? side : -side) * edge;
+    }
+    return box;
+}
+
+// Boxes at one point of the frustum's surface, all about one of its planes or, at an edge, about both.
+std::vector<Obb> cluster_at(oracle::NearMisses& random, const Frustum& frustum, const Shape& shape, std::size_t count) {
+    const auto corners = *frustum_corners(frustum);
+    const glm::dvec3 target = random.surface_point(frustum, corners);
+    std::vector<std::pair<double, unsigned>> nearest;
+    for (unsigned i = 0; i < 6; ++i) {
+        const Plane& plane = frustum.planes[i];
+        nearest.emplace_back(std::fabs(glm::dot(plane.normal, target - frustum.origin) + plane.offset), i);
+    }
+    std::ranges::sort(nearest);
+    const double largest = std::max({shape.size.x, shape.size.y, shape.size.z});
+    const double quantum = std::ldexp(largest, -14);
+    std::vector<Obb> boxes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const unsigned p = nearest[random.index(8) ? 0 : 1].second;
+        const Plane& plane = frustum.planes[p];
+        glm::dvec3 at = target;
+        for (int j = 0; j < 3; ++j) at[j] += shape.size[j] * random.number(-1, 1);
+        // Back into the plane, as far as doubles go.
+        for (int pass = 0; pass < 2; ++pass)
+            at -= (glm::dot(plane.normal, at - frustum.origin) + plane.offset) * plane.normal;
+        double depth = quantum * random.number(-1.5, 1.5);
+        if (random.index(3) == 0) depth *= std::exp(random.number(-12.0, 3.0));
+        boxes.push_back(box_at(random, at, plane.normal, shape.half, depth));
+    }
+    return boxes;
+}
+
+void check_all(const std::vector<Obb>& boxes, const cull::View& view) {
+    const auto tree = boxtree::BoxTree::build(boxes);
+    REQUIRE(tree.has_value());
+    std::vector<Aabb> bounds;
+    for (const Obb& box : boxes) bounds.push_back(aabb_of(box));
+    std::vector<Sphere> balls;
+    for (const Obb& box : boxes) balls.push_back({box.center, double{box.half_extents.x}});
+    cull::BoxSet box_set;
+    cull::AabbSet bound_set;
+    cull::SphereSet ball_set;
+    box_set.assign(boxes);
+    bound_set.assign(bounds);
+    ball_set.assign(balls);
+    const std::vector<cull::View> views(2, view);
+    cull::VisibleSet visible;
+    cull::ManyVisible many;
+    cull::VerdictBits bits;
+    for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
+        std::vector<cull::ItemId> ids;
+        std::vector<Verdict> verdicts;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const Verdict verdict = cull::classify(view.frustum, boxes[i], mode);
+            if (verdict == Verdict::outside) continue;
+            ids.push_back(static_cast<cull::ItemId>(i));
+            verdicts.push_back(verdict);
+        }
+        const auto is_right = [&] {
+            return std::ranges::equal(visible.ids(), ids) && std::ranges::equal(visible.verdicts(), verdicts);
+        };
+        cull::find_visible(*tree, view, visible, {mode});
+        REQUIRE(is_right());
+        cull::find_visible(boxes, {}, view, visible, {mode});
+        REQUIRE(is_right());
+        cull::find_visible(*tree, views, many, mode);
+        std::vector<cull::ItemId> from_many(many.ids().begin(), many.ids().end());
+        std::ranges::sort(from_many);
+        REQUIRE(from_many == ids);
+        const auto check_set = [&](const auto& set, const auto& shapes) {
+            cull::find_visible(set, shapes, view, bits, mode);
+            for (std::size_t i = 0; i < shapes.size(); ++i)
+                REQUIRE(bits.verdict(i) == cull::classify(view.frustum, shapes[i], mode));
+        };
+        check_set(box_set, boxes);
+        check_set(bound_set, bounds);
+        check_set(ball_set, balls);
+    }
+}
+
+}  // namespace
+
+TEST_SUITE("cull/kernel edges") {
+    TEST_CASE("clusters within rounding of a frustum's planes get classify's verdicts from every structure") {
+        oracle::NearMisses random(23);
+        for (int trial = 0; trial < 4000; ++trial) {
+            Camera camera = random.camera();
+            // Far off the surface lies far from the view's origin: then the planes' own rounding counts.
+            const double reach = trial % 3 == 0 ? 1e9 : trial % 3 == 1 ? 1e4 : 1.0;
+            camera.far_distance = camera.near_distance + reach * random.number(1.0, 30.0);
+            if (camera.projection == Projection::orthographic) camera.height *= reach;
+            const double size = std::exp(random.number(reach > 1e6 ? -14.0 : -7.0, 3.0));
+            Shape shape{glm::dvec3(size), size * std::exp(random.number(-12.0, 1.0))};
+            // Lines and sheets: the block's reach, and with it the share of the normals' rounding, is small.
+            for (int j = 0; j < 3; ++j)
+                if (random.index(2)) shape.size[j] *= 0.01;
+            const std::size_t counts[] = {1, 2, 16, 16, 40, 300};
+            const std::size_t count = counts[random.index(trial % 10 ? 5 : 6)];
+            const Frustum frustum = *frustum_of(camera);
+            check_all(cluster_at(random, frustum, shape, count), {frustum});
+        }
+    }
+
+    TEST_CASE("planes whose normals are not unit vectors get classify's verdicts from every structure") {
+        oracle::NearMisses random(24);
+        for (int trial = 0; trial < 600; ++trial) {
+            Camera camera = random.camera();
+            if (trial % 2) camera.far_distance = 1e4;
+            const Frustum frustum = *frustum_of(camera);
+            const double size = std::exp(random.number(-7.0, 5.0));
+            const Shape shape{glm::dvec3(size), size * std::exp(random.number(-12.0, 1.0))};
+            const auto boxes = cluster_at(random, frustum, shape, trial % 10 ? 16 : 300);
+            // The same volume, to rounding; its planes measured otherwise.
+            Frustum scaled = frustum;
+            for (Plane& plane : scaled.planes) {
+                const double factor = trial % 3 == 0 ? 1.9 : trial % 3 == 1 ? 1.2 : random.number(0.1, 1.99);
+                plane.normal *= factor;
+                plane.offset *= factor;
+                for (int k = 0; k < 3; ++k) plane.normal[k] = std::clamp(plane.normal[k], -2.0, 2.0);
+            }
+            check_all(boxes, {scaled});
+        }
+    }
+}

@@ -1,0 +1,275 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Puts deliberate faults into a copy of the engine, one at a time, and sees whether the tests notice.
+
+tests/mutation/run.py [NAME|MODULE|FILE …]   those that a word selects (all without one); resumes where it was stopped
+tests/mutation/run.py --list                 what there is, nothing run
+tests/mutation/run.py --report               the table of what is known, nothing run
+
+Exit status: 0 if every mutant that has no reason to survive is caught, 1 if one survives, 2 if the harness cannot run.
+docs/testing.md says how to read it. Python 3.11, nothing else.
+"""
+import argparse
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from mutants import Mutant, by_rule, read_list
+
+ROOT = Path(__file__).resolve().parents[2]
+LISTS = ROOT / "tests" / "mutation"
+SEED = 21
+# By rule: how many of each module, and whose tests must catch them.
+RULES = {
+    "bake": (4, ["bake"]), "boxtree": (10, ["boxtree", "cull"]), "capi": (8, ["capi"]), "collide": (14, ["collide"]),
+    "core": (4, ["core"]), "cull": (14, ["cull"]), "fit": (12, ["fit"]), "geometry": (8, ["geometry"]),
+    "measure": (5, ["measure"]), "mesh": (10, ["mesh"]), "radiosity": (8, ["radiosity"]), "render": (5, ["render"]),
+    "sampling": (4, ["sampling"]), "scene": (8, ["scene"]), "study": (6, ["study"]), "triangulate": (12, ["triangulate"]),
+    "world": (8, ["world"]),
+}
+
+
+class Scratch:
+    """A copy of the tree with a build of its own."""
+
+    def __init__(self, work, jobs, clock):
+        self.tree = work / "tree"
+        self.build = self.tree / "build" / "mutation"
+        self.jobs = jobs
+        self.clock = clock
+        self.times = {}
+        self.built = set()
+
+    def copy(self):
+        """Brings changed files over, and takes away what is no longer there: also what an ended run left mutated."""
+        names = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, check=True, capture_output=True)
+        names = [n for n in names.stdout.decode().split("\0") if n and (ROOT / n).is_file()]
+        for name in names:
+            source, target = ROOT / name, self.tree / name
+            if target.exists() and target.read_bytes() == source.read_bytes():
+                continue
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, target)
+        for folder in ("engine", "tests"):
+            for path in (self.tree / folder).rglob("*"):
+                if path.is_file() and not (ROOT / path.relative_to(self.tree)).exists():
+                    path.unlink()
+
+    def configure(self):
+        if (self.build / "build.ninja").exists():
+            return
+        data = ROOT.parent / "shared" / "data"
+        command = ["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                   "-DCROFTON_SIMD_TARGETS=AVX2", f"-DCROFTON_SHARED_DATA={data}",
+                   f"-DCMAKE_PROJECT_crofton_INCLUDE={self.tree}/tests/mutation/settings.cmake"]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"cmake cannot configure {self.tree}:\n{done.stdout}{done.stderr}")
+
+    def compile(self, tests):
+        command = ["nice", "-n", "10", "cmake", "--build", str(self.build), "-j", str(self.jobs), "--target"]
+        return subprocess.run(command + [f"test_{t}" for t in tests], capture_output=True, text=True)
+
+    def run(self, test, limit):
+        """None if the tests pass, or how they fail."""
+        command = [str(self.build / "bin" / f"test_{test}"), "--abort-after=1", "--no-intro=1"]
+        started = time.monotonic()
+        process = subprocess.Popen(command, cwd=self.build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                   errors="replace", start_new_session=True)
+        try:
+            output, _ = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, 9)
+            process.communicate()
+            return f"{test}: longer than {limit:.0f} s"
+        self.times[test] = time.monotonic() - started
+        if process.returncode == 0:
+            return None
+        case = [line.strip() for line in output.splitlines() if line.startswith("TEST CASE:")]
+        return f"{test}: {case[0][10:].strip() if case else f'ended with {process.returncode}'}"
+
+    def check_original(self, tests):
+        """Builds the tests and sees them pass on the true code: that is how long a mutant may take ten times."""
+        for test in tests:
+            if test in self.built:
+                continue
+            done = self.compile([test])
+            if done.returncode:
+                sys.exit(f"test_{test} does not build without a fault:\n{done.stdout[-4000:]}")
+            failed = self.run(test, 1200)
+            if failed:
+                sys.exit(f"the tests fail without a fault: {failed}")
+            self.built.add(test)
+            self.clock[test] = self.times[test]
+
+    def try_mutant(self, mutant):
+        """(status, by what or why) of one mutant; the file is as before afterwards."""
+        path = self.tree / mutant.file
+        original = path.read_text()
+        changed = mutant.apply(original)
+        self.check_original(mutant.tests)
+        try:
+            path.write_text(changed)
+            built = self.compile(mutant.tests)
+            if built.returncode:
+                errors = [line for line in built.stdout.splitlines() if "error" in line]
+                return "invalid", errors[0][-200:] if errors else "does not build"
+            for test in mutant.tests:
+                failed = self.run(test, 30 + 10 * self.clock[test])
+                if failed:
+                    return "caught", failed
+            return "survived", ""
+        finally:
+            path.write_text(original)
+
+
+def all_mutants():
+    mutants = [m for path in sorted(LISTS.glob("*.txt")) if path.name != "equivalent.txt" for m in read_list(path)]
+    for mutant in mutants:
+        mutant.tests = mutant.tests or [mutant.module]
+    reasons = {}
+    for line in (LISTS / "equivalent.txt").read_text().splitlines():
+        if line and not line.startswith("#"):
+            name, _, reason = line.partition(": ")
+            reasons[name] = reason
+    for module, (count, tests) in RULES.items():
+        for mutant in by_rule(ROOT, module, count, SEED, tests):
+            mutant.equivalent = reasons.pop(mutant.name, "")
+            mutants.append(mutant)
+    if reasons:
+        sys.exit(f"equivalent.txt names what is not drawn: {', '.join(reasons)}")
+    names = [m.name for m in mutants]
+    twice = {n for n in names if names.count(n) > 1}
+    if twice:
+        sys.exit(f"mutants of one name: {', '.join(sorted(twice))}")
+    return mutants
+
+
+def digest(paths):
+    total = hashlib.sha256()
+    for path in paths:
+        total.update(path.read_bytes())
+    return total.hexdigest()[:16]
+
+
+class Known:
+    """Results of earlier runs. A caught mutant stays caught while its file is the same; a survivor is tried again when
+    the tests that should catch it have changed."""
+
+    def __init__(self, work):
+        self.path = work / "results.json"
+        self.all = json.loads(self.path.read_text()) if self.path.exists() else {}
+        self.digests = {}  # as of the start: files may be edited while mutants are tried in the copy
+
+    def file_digest(self, file):
+        if file not in self.digests:
+            self.digests[file] = digest([ROOT / file])
+        return self.digests[file]
+
+    def tests_digest(self, tests):
+        key = tuple(tests)
+        if key not in self.digests:
+            folders = [ROOT / "tests" / t for t in tests] + [ROOT / "tests" / "oracle"]
+            self.digests[key] = digest(sorted(p for f in folders for p in f.rglob("*") if p.is_file()))
+        return self.digests[key]
+
+    def get(self, mutant):
+        result = self.all.get(mutant.name)
+        if not result or result["file"] != self.file_digest(mutant.file) or result["replace"] != mutant.replace:
+            return None
+        if result["status"] != "caught" and result["tests"] != self.tests_digest(mutant.tests):
+            return None
+        return result
+
+    def put(self, mutant, status, by, seconds):
+        self.all[mutant.name] = {"status": status, "by": by, "seconds": round(seconds, 1), "replace": mutant.replace,
+                                 "file": self.file_digest(mutant.file), "tests": self.tests_digest(mutant.tests)}
+        partial = self.path.with_suffix(".partial")
+        partial.write_text(json.dumps(self.all, indent=1))
+        partial.replace(self.path)
+
+
+def report(mutants, known):
+    """The table, and whether nothing survives."""
+    columns = ("caught", "survived", "equivalent", "invalid", "untried")
+    rows, survivors = {}, []
+    for mutant in mutants:
+        row = rows.setdefault(mutant.module, dict.fromkeys(columns, 0))
+        result = known.get(mutant)
+        status = result["status"] if result else "untried"
+        if mutant.equivalent and status == "caught":
+            print(f"not equivalent after all: {mutant.name}, caught by {result['by']}")
+        elif mutant.equivalent:
+            status = "equivalent"
+        if status == "survived":
+            survivors.append(mutant)
+        row[status] += 1
+    rows["all"] = {c: sum(r[c] for r in rows.values()) for c in columns}
+    print("| module | mutants | caught | survived | equivalent | score |\n|---|---|---|---|---|---|")
+    for name, row in sorted(rows.items(), key=lambda item: (item[0] == "all", item[0])):
+        judged = row["caught"] + row["survived"]
+        score = f"{100 * row['caught'] / judged:.1f} %" if judged else "–"
+        print(f"| {name} | {judged + row['equivalent']} | {row['caught']} | {row['survived']} | {row['equivalent']} | {score} |")
+    total = rows["all"]
+    print(f"Not judged: {total['invalid']} do not build, {total['untried']} are not tried yet.")
+    for mutant in survivors:
+        print(f"survived: {mutant.name} ({mutant.file}): {mutant.why}")
+    return not survivors
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("select", nargs="*", help="modules, files or beginnings of names")
+    parser.add_argument("--list", action="store_true", help="print the mutants and end")
+    parser.add_argument("--report", action="store_true", help="print what is known and end")
+    parser.add_argument("--fresh", action="store_true", help="forget earlier results of those selected")
+    parser.add_argument("--hand", action="store_true", help="only those that are written down")
+    parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
+    parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
+    parser.add_argument("-j", "--jobs", type=int, default=2, help="compilations at a time")
+    options = parser.parse_args()
+    mutants = all_mutants()
+    if options.hand:
+        mutants = [m for m in mutants if m.at < 0]
+    if options.select:
+        chosen = lambda m: any(w in (m.module, m.file) or m.name.startswith(w) for w in options.select)
+        mutants = [m for m in mutants if chosen(m)]
+    for mutant in mutants:
+        mutant.apply((ROOT / mutant.file).read_text())  # a place that is gone is an error, not a survivor
+    if options.list:
+        for mutant in mutants:
+            print(f"{mutant.name}: {mutant.file}: {mutant.why}{' [equivalent]' if mutant.equivalent else ''}")
+        print(f"{len(mutants)} mutants")
+        return 0
+    options.work.mkdir(parents=True, exist_ok=True)
+    known = Known(options.work)
+    if options.fresh:
+        for mutant in mutants:
+            known.all.pop(mutant.name, None)
+    if not options.report:
+        scratch = Scratch(options.work.resolve(), options.jobs, {})
+        scratch.copy()
+        scratch.configure()
+        started = time.monotonic()
+        todo = [m for m in mutants if not m.equivalent and known.get(m) is None]
+        for number, mutant in enumerate(sorted(todo, key=lambda m: (m.file.endswith("hpp"), m.tests, m.file)), 1):
+            if time.monotonic() - started > 60 * options.minutes:
+                break
+            begun = time.monotonic()
+            status, by = scratch.try_mutant(mutant)
+            known.put(mutant, status, by, time.monotonic() - begun)
+            print(f"{number}/{len(todo)} {status}: {mutant.name} {by} ({time.monotonic() - begun:.0f} s)", flush=True)
+    return 0 if report(mutants, known) else 1
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (ValueError, OSError) as error:
+        print(f"tests/mutation/run.py: {error}", file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// The proven lower bound where it is tight: a bound that is a hair too high is no bound.
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/triangulate/triangulate.hpp>
+#include <oracle/minimum_weight.hpp>
+
+#include "polygons.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+using triangulate::TriangulateOptions;
+
+namespace {
+
+double lower_bound_of(const triangulate::Triangulation& result) {
+    return result.weight / (1.0 + result.gap);
+}
+
+// Two rows of points, between which every diagonal of the zigzag is 5 long: no diagonal is shorter.
+Polygon strip(int count) {
+    Polygon p;
+    for (int i = 0; i < count; ++i) p.points.emplace_back(6.0 * i, 0.0);
+    for (int i = count - 1; i >= 0; --i) p.points.emplace_back(6.0 * i + 3.0, 4.0);
+    p.ring_ends = {static_cast<std::uint32_t>(p.points.size())};
+    return p;
+}
+
+}  // namespace
+
+TEST_SUITE("triangulate/lower bound") {
+    TEST_CASE("where all diagonals are the shortest the bound is the minimum, and no more than that") {
+        for (const int count : {2, 3, 7, 40, 300})
+            for (const TriangulateOptions& options : {TriangulateOptions{.work = 0}, TriangulateOptions{.seconds = 0.0},
+                                                      TriangulateOptions{.bytes = 100}}) {
+                const auto result = triangulate::triangulate(strip(count), options);
+                REQUIRE(result.has_value());
+                const double minimum = 5.0 * (2.0 * count - 3.0);
+                CHECK(result->weight == doctest::Approx(minimum).epsilon(1e-12));
+                CHECK(lower_bound_of(*result) <= minimum);
+                CHECK(result->gap < 1e-9);
+            }
+    }
+
+    TEST_CASE("no bound of a small polygon is above its minimum, however little is known") {
+        std::mt19937_64 random(51);
+        int compared = 0, tight = 0;
+        for (int trial = 0; trial < 4000; ++trial) {
+            CAPTURE(trial);
+            Polygon p;
+            add_star(p, random, {0, 0}, 1.0 + trial % 9, 10.0, 4 + trial % 6, trial % 2 ? 4.0 : 0.0);
+            const auto result = triangulate::triangulate(p, {.seconds = 0.0});
+            if (!result || result->triangles.size() + 2 != p.points.size()) continue;
+            const auto truth = static_cast<double>(oracle::MinimumWeightReference(p).solve());
+            REQUIRE(lower_bound_of(*result) <= truth * (1.0 + 1e-15));
+            ++compared;
+            tight += lower_bound_of(*result) > truth * (1.0 - 1e-6);
+        }
+        CHECK(compared > 2000);
+        CHECK(tight > 100);
+    }
+
+    TEST_CASE(
+        "the faces that are left unsolved are bounded by their own diagonals, tightly where these are all alike") {
+        // A strip with a triangular hole in its middle, given work for some of its parts only.
+        Polygon p;
+        for (int i = 0; i < 12; ++i) p.points.emplace_back(6.0 * i, 0.0);
+        for (int i = 11; i >= 0; --i) p.points.emplace_back(6.0 * i + 3.0, 8.0);
+        p.ring_ends = {24};
+        p.points.insert(p.points.end(), {{30.0, 4.0}, {33.0, 5.0}, {36.0, 4.0}});
+        p.ring_ends.push_back(27);
+        const auto minimum = triangulate::triangulate(p, {});
+        REQUIRE(minimum.has_value());
+        REQUIRE(minimum->optimal);
+        for (std::uint64_t work = 0; work < 3000; work += 1 + work / 8) {
+            const auto result = triangulate::triangulate(p, {.work = work});
+            REQUIRE(result.has_value());
+            CHECK(lower_bound_of(*result) <= minimum->weight * (1.0 + 1e-15));
+        }
+    }
+}
