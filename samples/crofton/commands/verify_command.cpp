@@ -9,6 +9,7 @@
 #include "report.hpp"
 #include "verify/collide.hpp"
 #include "verify/cull.hpp"
+#include "verify/occlude.hpp"
 #include "verify/rows.hpp"
 #include "verify/topics.hpp"
 
@@ -23,6 +24,7 @@ constexpr Topic kTopics[] = {
     {"paper", verify_paper},
     {"lines", verify_lines},
     {"cull", verify_cull},
+    {"occlude", verify_occlude},
     {"collide", verify_collide},
 };
 

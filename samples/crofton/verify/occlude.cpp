@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "occlude.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/occlude/find_visible.hpp>
+#include <crofton/sampling/random.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace crofton::cli {
+namespace {
+
+using sampling::Random;
+
+struct Setup {
+    Camera camera;
+    std::vector<Obb> occluders, objects;
+    occlude::BufferSize size;
+};
+
+struct Counts {
+    std::uint64_t rays = 0, free = 0, hidden = 0, culled = 0, covered_rays = 0, passed = 0;
+};
+
+glm::dvec3 point_in_view(Random& random, const Camera& camera, double distance) {
+    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
+    const bool perspective = camera.projection == Projection::perspective;
+    const double half = perspective ? distance * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
+    const double x = random.uniform(-1.1, 1.1), y = random.uniform(-1.1, 1.1);
+    return camera.position + to_world * glm::dvec3(half * camera.aspect * x, half * y, -distance);
+}
+
+Obb box_at(Random& random, const glm::dvec3& center, double smallest, double largest) {
+    Obb box;
+    box.center = center;
+    if (random.uniform() < 0.7) box.axes = glm::mat3(sampling::rotation(random.point<3>()));
+    for (int k = 0; k < 3; ++k)
+        box.half_extents[k] = static_cast<float>(smallest * std::pow(largest / smallest, random.uniform()));
+    return box;
+}
+
+// Walls, boxes that touch, slivers, boxes around the eye and across the near plane; objects behind and between them.
+Setup random_setup(Random& random, double offset) {
+    Setup setup;
+    constexpr occlude::BufferSize kSizes[] = {{64, 36}, {160, 90}, {333, 201}, {640, 360}};
+    setup.size = kSizes[random.bits() % 4];
+    Camera& camera = setup.camera;
+    camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) + 3.0 * sampling::direction(random.point<2>());
+    camera.forward = sampling::direction(random.point<2>());
+    camera.up = sampling::direction(random.point<2>());
+    if (random.uniform() < 0.25) camera.projection = Projection::orthographic;
+    camera.fov_y = random.uniform(0.3, 2.0);
+    camera.height = random.uniform(5.0, 40.0);
+    camera.aspect = random.uniform(0.7, 2.0);
+    camera.near_distance = random.uniform(0.05, 1.0);
+    for (std::uint64_t i = 0, count = 2 + random.bits() % 12; i < count; ++i) {
+        const double u = random.uniform();
+        Obb box = box_at(random, point_in_view(random, camera, 0.5 * camera.near_distance + 30.0 * u * u), 0.2, 8.0);
+        const auto k = static_cast<int>(random.bits() % 3);
+        if (random.uniform() < 0.1) box.half_extents[k] = 1e-4f;
+        setup.occluders.push_back(box);
+        if (random.uniform() > 0.2) continue;
+        box.center += 2.0 * static_cast<double>(box.half_extents[k]) * glm::dvec3(box.axes[k]);
+        setup.occluders.push_back(box);
+    }
+    for (int i = 0; i < 256; ++i) {
+        const Obb& near = setup.occluders[random.bits() % setup.occluders.size()];
+        glm::dvec3 at = near.center;
+        for (int k = 0; k < 3; ++k)
+            at += random.uniform(-1.1, 1.1) * static_cast<double>(near.half_extents[k]) * glm::dvec3(near.axes[k]);
+        const bool perspective = camera.projection == Projection::perspective;
+        at += random.uniform(0.0, 1.5) * (perspective ? at - camera.position : glm::normalize(camera.forward));
+        if (i % 3 == 0) at = point_in_view(random, camera, random.uniform(1.0, 60.0));
+        setup.objects.push_back(box_at(random, at, 0.01, i % 4 ? 0.3 : 3.0));
+    }
+    return setup;
+}
+
+// The points from + t · along, t ≥ t_near; the question is about t = 1.
+struct WitnessRay {
+    glm::dvec3 from, along;
+    double t_near;
+};
+
+// False only if the ray certainly meets no front of the box between the near plane and t = 1: its slabs, in double,
+// with room for their rounding. A ray that cannot be decided is no witness.
+bool may_block(const WitnessRay& ray, const Obb& box) {
+    const glm::dvec3 from = ray.from - box.center;
+    const glm::dvec3 axes[3] = {glm::dvec3(box.axes[0]), glm::dvec3(box.axes[1]), glm::dvec3(box.axes[2])};
+    const double volume = glm::dot(axes[0], glm::cross(axes[1], axes[2]));
+    const double size = glm::length(from) + glm::length(ray.along);
+    double enter = -1e300, leave = 1e300, error = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 normal = glm::cross(axes[(k + 1) % 3], axes[(k + 2) % 3]) / volume;
+        const double at = glm::dot(normal, from), slope = glm::dot(normal, ray.along);
+        const auto half = static_cast<double>(box.half_extents[k]);
+        const double rounding = 1e-14 * (size + half);
+        if (std::fabs(slope) <= 1e3 * rounding) return true;
+        const double a = (-half - at) / slope, b = (half - at) / slope;
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+        error = std::max(error, 2.0 * rounding * (1.0 + std::max(std::fabs(a), std::fabs(b))) / std::fabs(slope));
+    }
+    return !(enter > leave + 2.0 * error || enter > 1.0 + error || enter < ray.t_near - error);
+}
+
+bool is_free(const WitnessRay& ray, const std::vector<Obb>& boxes) {
+    return std::none_of(boxes.begin(), boxes.end(), [&](const Obb& box) { return may_block(ray, box); });
+}
+
+bool is_in_view(const Frustum& frustum, const glm::dvec3& point) {
+    for (const Plane& plane : frustum.view())
+        if (!(glm::dot(plane.normal, point - frustum.origin) + plane.offset >= 0.0)) return false;
+    return true;
+}
+
+WitnessRay ray_to(const Camera& camera, const glm::dvec3& point) {
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const double depth = glm::dot(point - camera.position, forward);
+    const double t_near = camera.near_distance / depth;
+    if (camera.projection == Projection::perspective) return {camera.position, point - camera.position, t_near};
+    return {point - forward * depth, forward * depth, t_near};
+}
+
+void ask_for_objects(Random& random, const Setup& setup, const occlude::OcclusionBuffer& buffer, Counts& counts) {
+    occlude::VisibleSet visible;
+    occlude::find_visible(setup.objects, {}, buffer, visible);
+    std::vector<bool> shown(setup.objects.size(), false);
+    for (const boxtree::ItemId id : visible.ids()) shown[id] = true;
+    const Frustum& frustum = buffer.view().frustum;
+    for (std::size_t i = 0; i < setup.objects.size(); ++i) {
+        counts.hidden += !shown[i];
+        for (int n = 0; n < 8; ++n) {
+            glm::dvec3 point = setup.objects[i].center;
+            for (int k = 0; k < 3; ++k) {
+                const double t = random.uniform(-1.0, 1.0), end = t < 0.0 ? -1.0 : 1.0;
+                point += (k < n % 4 ? t : end) * static_cast<double>(setup.objects[i].half_extents[k]) *
+                         glm::dvec3(setup.objects[i].axes[k]);
+            }
+            ++counts.rays;
+            if (!is_in_view(frustum, point) || !is_free(ray_to(setup.camera, point), setup.occluders)) continue;
+            ++counts.free;
+            counts.culled += !shown[i];
+        }
+    }
+}
+
+// A ray through each of some covered squares, up to the depth that is stored there: it must not be free.
+void ask_for_pixels(Random& random, const Setup& setup, const occlude::OcclusionBuffer& buffer, Counts& counts) {
+    const Camera& camera = setup.camera;
+    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
+    const double half_x = 0.5 * setup.size.width, half_y = 0.5 * setup.size.height;
+    for (int n = 0; n < 2048; ++n) {
+        const auto x = static_cast<std::uint32_t>(random.bits() % setup.size.width);
+        const auto y = static_cast<std::uint32_t>(random.bits() % setup.size.height);
+        const auto nearness = static_cast<double>(buffer.nearness(x, y));
+        if (nearness < -1e38) continue;
+        // 2^-6 of a pixel is left free along the picture's edges.
+        const double u = (x + random.uniform() - half_x) / (half_x - 0x1p-6);
+        const double v = (y + random.uniform() - half_y) / (half_y - 0x1p-6);
+        WitnessRay ray{camera.position, {}, 0.0};
+        if (camera.projection == Projection::perspective) {
+            const double t = std::tan(0.5 * camera.fov_y);
+            ray.along = to_world * glm::dvec3(u * t * camera.aspect, v * t, -1.0) / nearness;
+            ray.t_near = camera.near_distance * nearness;
+        } else {
+            const double half = 0.5 * camera.height;
+            ray.from += to_world * glm::dvec3(u * half * camera.aspect, v * half, 0.0);
+            ray.along = glm::normalize(camera.forward) * -nearness;
+            ray.t_near = camera.near_distance / -nearness;
+        }
+        ++counts.covered_rays;
+        counts.passed += is_free(ray, setup.occluders);
+    }
+}
+
+}  // namespace
+
+std::vector<VerifyRow> verify_occlude(const VerifyOptions& options) {
+    std::vector<VerifyRow> rows;
+    for (const double offset : {0.0, 1e4, 1e5, 1e6, 1e7}) {
+        Random random(options.seed);
+        Counts counts;
+        while (counts.rays < options.trials) {
+            const Setup setup = random_setup(random, offset);
+            occlude::OccluderSet set;
+            for (const Obb& box : setup.occluders) (void)set.place(box);
+            auto buffer = *occlude::OcclusionBuffer::create(setup.size);
+            buffer.draw(set, *occlude::occlusion_view_of(setup.camera));
+            ask_for_objects(random, setup, buffer, counts);
+            ask_for_pixels(random, setup, buffer, counts);
+        }
+        char where[64];
+        std::snprintf(where, sizeof where, "at camera offset %g", offset);
+        const auto none = [&](const std::string& what, std::uint64_t cases, std::uint64_t measured) {
+            rows.push_back(
+                computed_row(what + " " + where, "docs/notes/occlude.md", 0.0, static_cast<double>(measured), 0.0));
+            rows.back().cases = cases;
+        };
+        none("of " + std::to_string(counts.free) + " rays that witness an object none has it culled,", counts.free,
+             counts.culled);
+        none("no ray passes a covered pixel,", counts.covered_rays, counts.passed);
+    }
+    return rows;
+}
+
+}  // namespace crofton::cli
