@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Occlusion culling of a town: what is found hidden, what it costs, and Intel's MaskedOcclusionCulling beside it where
+// CROFTON_MASKED_OCCLUSION_CULLING names its sources.
+#include <algorithm>
+#include <chrono>
+#include <crofton/occlude/occlusion_buffer.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "occlude_peer.hpp"
+#include "occlude_reference.hpp"
+#include "occlude_town.hpp"
+#include "simd_target.hpp"
+
+namespace {
+
+using namespace crofton;
+using namespace crofton::bench;
+
+struct Outcome {
+    std::size_t culled_visible = 0, culled_hidden = 0;
+    double draw = 1e9, query = 1e9;  // least seconds
+};
+
+Outcome judge(const std::vector<std::uint64_t>& hidden, const OcclusionReference& reference) {
+    Outcome outcome;
+    for (std::size_t i = 0; i < reference.seen.size(); ++i) {
+        const bool culled = hidden[i / 64] >> (i % 64) & 1;
+        outcome.culled_visible += culled && reference.seen[i];
+        outcome.culled_hidden += culled && reference.in_view[i] && !reference.seen[i];
+    }
+    return outcome;
+}
+
+template <class Work>
+double seconds_of(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Outcome run_ours(const OcclusionTown& town, const Camera& camera, const OcclusionReference& reference,
+                 const occlude::BufferSize& size, int repeats) {
+    occlude::OccluderSet set;
+    for (const Obb& house : town.houses) (void)set.place(house);
+    auto buffer = *occlude::OcclusionBuffer::create(size);
+    const auto view = *occlude::occlusion_view_of(camera);
+    std::vector<std::uint64_t> hidden((town.objects.size() + 63) / 64);
+    buffer.draw(set, view);
+    buffer.find_hidden(town.objects, hidden);
+    Outcome outcome = judge(hidden, reference);
+    for (int i = 0; i < repeats; ++i) {
+        outcome.draw = std::min(outcome.draw, seconds_of([&] { buffer.draw(set, view); }));
+        outcome.query = std::min(outcome.query, seconds_of([&] { buffer.find_hidden(town.objects, hidden); }));
+    }
+    return outcome;
+}
+
+#if defined(CROFTON_HAVE_MOC)
+Outcome run_peer(const OcclusionTown& town, const Camera& camera, const OcclusionReference& reference,
+                 const occlude::BufferSize& size, int repeats) {
+    MaskedPeer peer(size.width, size.height);
+    std::vector<std::uint64_t> hidden((town.objects.size() + 63) / 64);
+    peer.draw(town.houses, camera);
+    peer.find_hidden(town.objects, hidden);
+    Outcome outcome = judge(hidden, reference);
+    for (int i = 0; i < repeats; ++i) {
+        outcome.draw = std::min(outcome.draw, seconds_of([&] { peer.draw(town.houses, camera); }));
+        outcome.query = std::min(outcome.query, seconds_of([&] { peer.find_hidden(town.objects, hidden); }));
+    }
+    return outcome;
+}
+#endif
+
+void print(const char* name, const occlude::BufferSize& size, const Outcome& o, std::size_t hidden) {
+    std::printf(
+        "  %-24s %4ux%-4u  visible culled %4zu   hidden culled %6.2f %%   draw %6.3f ms   query %6.3f ms   both %6.3f "
+        "ms\n",
+        name, size.width, size.height, o.culled_visible,
+        100.0 * static_cast<double>(o.culled_hidden) / static_cast<double>(hidden), 1e3 * o.draw, 1e3 * o.query,
+        1e3 * (o.draw + o.query));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (!take_target_option(argc, argv)) return 1;
+    int repeats = 15;
+    double height = 60.0;
+    for (int i = 1; i < argc; ++i)
+        if (std::string_view(argv[i]).starts_with("--repeats=")) repeats = std::atoi(argv[i] + 10);
+    for (int i = 1; i < argc; ++i)
+        if (std::string_view(argv[i]).starts_with("--height=")) height = std::atof(argv[i] + 9);
+    std::printf("Instruction set: %s\n", target_in_use());
+    const occlude::BufferSize sizes[] = {{320, 180}, {480, 270}, {640, 360}, {1280, 720}, {1920, 1080}};
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        const OcclusionTown town = occlusion_town(seed, 250, 20'000, height);
+        const Camera& camera = town.cameras[0];
+        const OcclusionReference reference(town, camera, 3840, 2160);
+        const std::size_t hidden = reference.in_view_count - reference.seen_count;
+        std::printf("town %llu: 250 houses, 20,000 boxes, %zu in view, %zu seen\n",
+                    static_cast<unsigned long long>(seed), reference.in_view_count, reference.seen_count);
+        for (const auto& size : sizes) print("crofton", size, run_ours(town, camera, reference, size, repeats), hidden);
+#if defined(CROFTON_HAVE_MOC)
+        for (const auto& size : {sizes[2], sizes[4]})
+            print("MaskedOcclusionCulling", size, run_peer(town, camera, reference, size, repeats), hidden);
+#endif
+    }
+    return 0;
+}

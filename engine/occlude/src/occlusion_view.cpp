@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/trigonometry.hpp>
+#include <crofton/occlude/occlusion_view.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace crofton::occlude {
+namespace {
+
+using Row = std::array<double, 4>;
+
+Row row_of(const glm::dvec3& v, double constant) {
+    return {v.x, v.y, v.z, constant};
+}
+glm::dvec3 direction_of(const Row& row) {
+    return {row[0], row[1], row[2]};
+}
+Row row_of(const glm::dmat4& m, int r) {
+    return {m[0][r], m[1][r], m[2][r], m[3][r]};
+}
+
+constexpr std::size_t kNearPlane = 4;  // of a camera's frustum
+
+// Half of the least w at the corners of the view's near face: every point that the view sees lies beyond.
+double least_w_of(const OcclusionView& view) {
+    const auto& p = view.frustum.planes;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned i = 0; i < 4; ++i) {
+        const Plane &a = p[i & 1u], &b = p[2 + (i >> 1)], &c = p[kNearPlane];
+        const glm::dvec3 bc = glm::cross(b.normal, c.normal), ca = glm::cross(c.normal, a.normal),
+                         ab = glm::cross(a.normal, b.normal);
+        const glm::dvec3 corner = -(a.offset * bc + b.offset * ca + c.offset * ab) / glm::dot(a.normal, bc) +
+                                  (view.frustum.origin - view.origin);
+        least = std::min(least, glm::dot(direction_of(view.rows[2]), corner) + view.rows[2][3]);
+    }
+    return 0.5 * least;
+}
+
+}  // namespace
+
+Result<OcclusionView> occlusion_view_of(const Camera& camera) {
+    auto frustum = frustum_of(camera);
+    if (!frustum) return tl::unexpected(frustum.error());
+    const glm::dmat3 rotation = world_to_view_rotation(camera);
+    const glm::dvec3 right(rotation[0][0], rotation[1][0], rotation[2][0]);
+    const glm::dvec3 up(rotation[0][1], rotation[1][1], rotation[2][1]);
+    const glm::dvec3 forward = -glm::dvec3(rotation[0][2], rotation[1][2], rotation[2][2]);
+    OcclusionView view;
+    view.frustum = *frustum;
+    view.origin = camera.position;
+    view.perspective = camera.projection == Projection::perspective;
+    const double half_y = view.perspective ? tangent(0.5 * camera.fov_y) : 0.5 * camera.height;
+    view.rows[0] = row_of(right / (half_y * camera.aspect), 0.0);
+    view.rows[1] = row_of(up / half_y, 0.0);
+    if (view.perspective) {
+        view.rows[2] = row_of(forward, 0.0);
+        view.rows[3] = row_of(glm::dvec3(0.0), 1.0);
+        view.least_w = 0.5 * camera.near_distance;
+    } else {
+        view.rows[2] = row_of(glm::dvec3(0.0), 1.0);
+        view.rows[3] = row_of(-forward, 0.0);
+        view.least_w = 0.5;
+    }
+    return view;
+}
+
+Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange depth, const glm::dvec3& origin) {
+    auto frustum = frustum_of(to_clip, depth, origin);
+    if (!frustum) return tl::unexpected(frustum.error());
+    OcclusionView view;
+    view.frustum = *frustum;
+    const Row x = row_of(to_clip, 0), y = row_of(to_clip, 1), w = row_of(to_clip, 3);
+    // A near plane at infinity has been left out, and then the order of the planes is another.
+    const Row z = row_of(to_clip, 2);
+    const bool reversed = depth == DepthRange::reversed_zero_to_one;
+    glm::dvec3 near_normal = direction_of(z);
+    if (reversed) near_normal = direction_of(w) - near_normal;
+    if (depth == DepthRange::minus_one_to_one) near_normal += direction_of(w);
+    if (frustum->plane_count < 5 ||
+        !(glm::dot(near_normal, frustum->planes[kNearPlane].normal) > 0.999 * glm::length(near_normal)))
+        return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the matrix has no near plane");
+    // Rays are the lines through the point where the first two rows and w are 0, or along that direction.
+    const glm::dvec3 across = glm::cross(direction_of(x), direction_of(y));
+    const double turn = glm::dot(across, direction_of(w));
+    const double scale = glm::length(direction_of(x)) * glm::length(direction_of(y)) * glm::length(direction_of(w));
+    view.perspective = std::fabs(turn) > 1e-12 * scale && glm::length(direction_of(w)) > 1e-12 * std::fabs(w[3]);
+    if (view.perspective) {
+        const glm::dvec3 eye = -(x[3] * glm::cross(direction_of(y), direction_of(w)) +
+                                 y[3] * glm::cross(direction_of(w), direction_of(x)) + w[3] * across) /
+                               turn;
+        view.origin = origin + eye;
+        view.rows = {row_of(direction_of(x), 0.0), row_of(direction_of(y), 0.0), row_of(direction_of(w), 0.0),
+                     row_of(glm::dvec3(0.0), 1.0)};
+    } else {
+        glm::dvec3 away = glm::normalize(across);
+        if (glm::dot(away, frustum->planes[kNearPlane].normal) < 0.0) away = -away;
+        view.origin = origin;
+        view.rows = {row_of(direction_of(x) / w[3], x[3] / w[3]), row_of(direction_of(y) / w[3], y[3] / w[3]),
+                     row_of(glm::dvec3(0.0), 1.0), row_of(-away, 0.0)};
+    }
+    view.least_w = least_w_of(view);
+    if (!(view.least_w > 0.0) || !std::isfinite(view.least_w))
+        return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the near plane reaches the eye");
+    return view;
+}
+
+}  // namespace crofton::occlude

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// Boxes projected into a buffer's pixels, rounded outward, and what the coarse levels of depth say of them. Compiled
+// once per instruction set (Highway).
+#include <hwy/highway.h>
+
+#include <crofton/simd/mask_bits-inl.hpp>
+
+#include "query_kernel.hpp"
+
+#if defined(CROFTON_OCCLUDE_PROJECTION_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_OCCLUDE_PROJECTION_INL
+#undef CROFTON_OCCLUDE_PROJECTION_INL
+#else
+#define CROFTON_OCCLUDE_PROJECTION_INL
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::occlude::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using simd::HWY_NAMESPACE::mask_bits;
+
+constexpr std::size_t kLanes = 8;  // boxes, or rows of a tile, at a time
+using DF = hn::CappedTag<float, kLanes>;
+using DI = hn::RebindToSigned<DF>;
+using VF = hn::Vec<DF>;
+using VI = hn::Vec<DI>;
+
+// With u = 2^-24, a form at a corner: the centre (u), a half edge (u) and a coefficient (u) are rounded, a product is,
+// and sums of up to seven terms are: 10 u of the sum of the magnitudes, which itself is rounded; 2^-20 is 16 u.
+constexpr float kFormError = 0x1p-20f;
+
+// What is known of some lanes, a bit each. Lanes that are in none are visible.
+struct LaneBits {
+    std::uint32_t hidden, beside, open;
+
+    HWY_INLINE void add(const LaneBits& other, std::size_t first) {
+        hidden |= other.hidden << first;
+        beside |= other.beside << first;
+        open |= other.open << first;
+    }
+};
+
+// The levels of least nearness, for many rectangles at once.
+class Depths {
+  public:
+    explicit HWY_INLINE Depths(const QueryView& view) : view_(view) {}
+
+    // The least nearness over tiles [x0, x1] × [y0, y1], or over more than those.
+    HWY_INLINE VF least_over(VI x0, VI y0, VI x1, VI y1) const {
+        const DF d;
+        const DI di;
+        // 2^level ≥ the longer side: then the rectangle meets two blocks at most along each.
+        const VI longer = hn::Max(hn::Sub(x1, x0), hn::Sub(y1, y0));
+        const VI below = hn::Max(hn::Sub(longer, hn::Set(di, 1)), hn::Zero(di));
+        // For n ≥ 1 the exponent of n as a float is the place of its highest bit.
+        const VI exponent = hn::ShiftRight<23>(hn::BitCast(di, hn::ConvertTo(d, below)));
+        const VI level = hn::Max(hn::Sub(exponent, hn::Set(di, 126)), hn::Zero(di));
+        const VI rows2 = hn::Set(di, static_cast<std::int32_t>(2 * view_.padded_rows));
+        const VI base = hn::Sub(rows2, hn::Shr(rows2, level));
+        const VI stride = hn::Set(di, static_cast<std::int32_t>(view_.tile_columns));
+        const VI low = hn::Mul(hn::Add(base, hn::Shr(y0, level)), stride);
+        const VI high = hn::Mul(hn::Add(base, hn::Shr(y1, level)), stride);
+        const VI left = hn::Shr(x0, level), right = hn::Shr(x1, level);
+        const VF a = hn::Min(hn::GatherIndex(d, view_.least, hn::Add(low, left)),
+                             hn::GatherIndex(d, view_.least, hn::Add(low, right)));
+        const VF b = hn::Min(hn::GatherIndex(d, view_.least, hn::Add(high, left)),
+                             hn::GatherIndex(d, view_.least, hn::Add(high, right)));
+        return hn::Min(a, b);
+    }
+
+    HWY_INLINE VF at_pixel(VI x, VI y) const {
+        const DI di;
+        const VI stride = hn::Set(di, static_cast<std::int32_t>(view_.tile_columns));
+        const VI tile = hn::Add(hn::Mul(hn::ShiftRight<3>(y), stride), hn::ShiftRight<3>(x));
+        const VI seven = hn::Set(di, 7);
+        const VI inside = hn::Add(hn::ShiftLeft<3>(hn::And(y, seven)), hn::And(x, seven));
+        return hn::GatherIndex(DF(), view_.pixels, hn::Add(hn::ShiftLeft<6>(tile), inside));
+    }
+
+  private:
+    const QueryView& view_;
+};
+
+// The corners of eight boxes in pixels, counted from the picture's corner: each within `margin` of the true one.
+struct Projection {
+    alignas(32) float x[8][kLanes], y[8][kLanes];
+    alignas(32) float margin[kLanes], nearness[kLanes];                              // of no point is it more
+    alignas(32) float low_x[kLanes], low_y[kLanes], high_x[kLanes], high_y[kLanes];  // margins included, in the picture
+
+    // Fills lanes [at, at + Lanes) and says what is known of them already.
+    HWY_INLINE LaneBits project(const QueryView& view, const Depths& depths, const VF (&center)[3],
+                                const VF (&edge)[3][3], VF reach, std::size_t at) {
+        const DF d;
+        VF form[3][4];  // at the centre, and along the half edges
+        VF error[3];
+        for (std::size_t r = 0; r < 3; ++r) {
+            form[r][0] = hn::Add(along(view.form[r], center), hn::Set(d, view.form[r][3]));
+            for (std::size_t k = 0; k < 3; ++k) form[r][k + 1] = along(view.form[r], edge[k]);
+            const VF size = hn::Add(hn::Mul(hn::Set(d, view.reach[r]), reach), hn::Set(d, hwy_abs(view.form[r][3])));
+            error[r] = hn::Mul(size, hn::Set(d, kFormError));
+        }
+        Bounds bounds(d);
+        for (std::size_t c = 0; c < 8; ++c) add_corner(view, form, c, at, bounds);
+        return view.perspective ? finish<true>(view, depths, form, error, bounds, at)
+                                : finish<false>(view, depths, form, error, bounds, at);
+    }
+
+  private:
+    struct Bounds {
+        VF low_x, low_y, high_x, high_y, low_v, high_v;
+
+        explicit HWY_INLINE Bounds(DF d)
+            : low_x(hn::Set(d, 3e38f)),
+              low_y(low_x),
+              high_x(hn::Set(d, -3e38f)),
+              high_y(high_x),
+              low_v(low_x),
+              high_v(high_x) {}
+    };
+
+    static HWY_INLINE float hwy_abs(float v) { return v < 0.0f ? -v : v; }
+
+    static HWY_INLINE VF along(const float (&form)[4], const VF (&v)[3]) {
+        const DF d;
+        return hn::Add(hn::Add(hn::Mul(hn::Set(d, form[0]), v[0]), hn::Mul(hn::Set(d, form[1]), v[1])),
+                       hn::Mul(hn::Set(d, form[2]), v[2]));
+    }
+
+    static HWY_INLINE VF corner_of(const VF (&form)[4], std::size_t c) {
+        const VF a = c & 1 ? hn::Add(form[0], form[1]) : hn::Sub(form[0], form[1]);
+        const VF b = c & 2 ? hn::Add(a, form[2]) : hn::Sub(a, form[2]);
+        return c & 4 ? hn::Add(b, form[3]) : hn::Sub(b, form[3]);
+    }
+
+    HWY_INLINE void add_corner(const QueryView& view, const VF (&form)[3][4], std::size_t c, std::size_t at,
+                               Bounds& bounds) {
+        const DF d;
+        VF px = corner_of(form[0], c), py = corner_of(form[1], c);
+        const VF v = corner_of(form[2], c);
+        if (view.perspective) {
+            const VF inverse = hn::Div(hn::Set(d, 1.0f), v);
+            px = hn::Mul(px, inverse);
+            py = hn::Mul(py, inverse);
+        }
+        px = hn::Add(px, hn::Set(d, view.half_width));
+        py = hn::Add(py, hn::Set(d, view.half_height));
+        hn::Store(px, d, x[c] + at);
+        hn::Store(py, d, y[c] + at);
+        bounds.low_x = hn::Min(bounds.low_x, px);
+        bounds.high_x = hn::Max(bounds.high_x, px);
+        bounds.low_y = hn::Min(bounds.low_y, py);
+        bounds.high_y = hn::Max(bounds.high_y, py);
+        bounds.low_v = hn::Min(bounds.low_v, v);
+        bounds.high_v = hn::Max(bounds.high_v, v);
+    }
+
+    template <bool kPerspective>
+    HWY_INLINE LaneBits finish(const QueryView& view, const Depths& depths, const VF (&form)[3][4],
+                               const VF (&error)[3], const Bounds& bounds, std::size_t at) {
+        const DF d;
+        const DI di;
+        const VF width = hn::Set(d, static_cast<float>(view.width)),
+                 height = hn::Set(d, static_cast<float>(view.height));
+        // The largest coordinate, from the middle.
+        const VF largest = hn::Add(hn::Max(hn::Max(hn::Abs(bounds.low_x), hn::Abs(bounds.high_x)),
+                                           hn::Max(hn::Abs(bounds.low_y), hn::Abs(bounds.high_y))),
+                                   hn::Max(width, height));
+        VF spread = hn::Max(error[0], error[1]), most, in_front, centre_nearness;
+        if (kPerspective) {
+            // No point has less w than this; all quotients below are by as much at least.
+            const VF low_w = hn::Sub(bounds.low_v, error[2]);
+            in_front = low_w;
+            const VF inverse = hn::Div(hn::Set(d, 1.0f), low_w);
+            spread = hn::Mul(hn::Add(spread, hn::Mul(largest, error[2])), inverse);
+            most = hn::Mul(inverse, hn::Set(d, 1.0f + 0x1p-20f));
+            centre_nearness = hn::Div(hn::Set(d, 1.0f), form[2][0]);
+        } else {
+            in_front = hn::Set(d, 1.0f);
+            most = hn::Add(bounds.high_v, hn::Add(error[2], hn::Mul(hn::Abs(bounds.high_v), hn::Set(d, 0x1p-20f))));
+            centre_nearness = form[2][0];
+        }
+        // The quotient, the product and the sum with half the picture round as well.
+        const VF m = hn::Add(hn::Mul(spread, hn::Set(d, 1.0f + 0x1p-10f)), hn::Mul(largest, hn::Set(d, 0x1p-21f)));
+        const VF lx = hn::Sub(bounds.low_x, m), hx = hn::Add(bounds.high_x, m);
+        const VF ly = hn::Sub(bounds.low_y, m), hy = hn::Add(bounds.high_y, m);
+        // All comparisons are false for what is not a number: then nothing is known, and the box is visible.
+        const auto usable = hn::And(
+            hn::And(hn::Ge(in_front, hn::Set(d, kPerspective ? view.least_w : 0.5f)), hn::Lt(m, hn::Set(d, 0.5f))),
+            hn::Lt(largest, hn::Set(d, 1e6f)));
+        const auto beside = hn::Or(hn::Or(hn::Lt(hx, hn::Zero(d)), hn::Gt(lx, width)),
+                                   hn::Or(hn::Lt(hy, hn::Zero(d)), hn::Gt(ly, height)));
+        const auto clamped = [&](VF v, VF end) {
+            v = hn::Min(hn::Max(v, hn::Zero(d)), hn::Sub(end, hn::Set(d, 1.0f)));
+            return hn::IfThenElseZero(usable, v);
+        };
+        const VF cx = clamped(lx, width), cy = clamped(ly, height), ex = clamped(hx, width), ey = clamped(hy, height);
+        hn::Store(m, d, margin + at);
+        hn::Store(most, d, nearness + at);
+        hn::Store(cx, d, low_x + at);
+        hn::Store(cy, d, low_y + at);
+        hn::Store(ex, d, high_x + at);
+        hn::Store(ey, d, high_y + at);
+        const VI x0 = hn::ConvertTo(di, cx), y0 = hn::ConvertTo(di, cy), x1 = hn::ConvertTo(di, ex),
+                 y1 = hn::ConvertTo(di, ey);
+        const VF least = depths.least_over(hn::ShiftRight<3>(x0), hn::ShiftRight<3>(y0), hn::ShiftRight<3>(x1),
+                                           hn::ShiftRight<3>(y1));
+        const auto hidden = hn::Gt(least, most);
+        // A pixel in the middle that is farther than the box's centre is a short way to say that the box is visible.
+        const VI mx = hn::ShiftRight<1>(hn::Add(x0, x1)), my = hn::ShiftRight<1>(hn::Add(y0, y1));
+        const auto seen = hn::Le(depths.at_pixel(mx, my), centre_nearness);
+        const std::uint32_t usable_bits = mask_bits(d, usable), beside_bits = mask_bits(d, beside) & usable_bits;
+        const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~beside_bits;
+        return {hidden_bits, beside_bits, usable_bits & ~beside_bits & ~hidden_bits & ~mask_bits(d, seen)};
+    }
+};
+
+}  // namespace crofton::occlude::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

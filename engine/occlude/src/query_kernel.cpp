@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "query_kernel.hpp"
+
+#include <algorithm>
+#include <crofton/geometry/box.hpp>
+#include <cstddef>
+#include <cstring>
+
+#include "buffer_data.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "query_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+#include "outline-inl.hpp"
+#include "projection-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::occlude::HWY_NAMESPACE {
+namespace {
+
+static_assert(sizeof(Obb) == 72 && offsetof(Obb, axes) == 24 && offsetof(Obb, half_extents) == 60);
+
+// Eight boxes in rows of four floats: the centre relative to the view's origin, then axes and half extents.
+struct BoxBatch {
+    alignas(64) float quads[4][kLanes][4];
+
+    HWY_INLINE void copy(std::size_t to, const unsigned char* box, const double* origin) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            double center;
+            std::memcpy(&center, box + 8 * j, 8);
+            quads[0][to][j] = static_cast<float>(center - origin[j]);
+        }
+        quads[0][to][3] = 0.0f;
+        for (std::size_t q = 0; q < 3; ++q) std::memcpy(quads[q + 1][to], box + 24 + 16 * q, 16);
+    }
+};
+
+// Half edges and centre of as many boxes as there are lanes.
+struct BoxLanes {
+    VF center[3], edge[3][3], reach;
+
+    HWY_INLINE BoxLanes(const BoxBatch& batch, std::size_t at) {
+        const DF d;
+        VF unused, axis[9], half[3];
+        hn::LoadInterleaved4(d, batch.quads[0][at], center[0], center[1], center[2], unused);
+        hn::LoadInterleaved4(d, batch.quads[1][at], axis[0], axis[1], axis[2], axis[3]);
+        hn::LoadInterleaved4(d, batch.quads[2][at], axis[4], axis[5], axis[6], axis[7]);
+        hn::LoadInterleaved4(d, batch.quads[3][at], axis[8], half[0], half[1], half[2]);
+        reach = hn::Add(hn::Add(hn::Abs(center[0]), hn::Abs(center[1])), hn::Abs(center[2]));
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t j = 0; j < 3; ++j) {
+                edge[k][j] = hn::Mul(axis[3 * k + j], half[k]);
+                reach = hn::Add(reach, hn::Abs(edge[k][j]));
+            }
+    }
+};
+
+QueryBits query_boxes(const QueryView& view, const unsigned char* boxes, const std::uint32_t* items,
+                      std::size_t count) {
+    const DF d;
+    QueryBits result{0, 0};
+    BoxBatch batch;
+    Projection projected;
+    const Depths depths(view);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t size = std::min(kLanes, count - first);
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const std::size_t n = first + std::min(i, size - 1);
+            batch.copy(i, boxes + sizeof(Obb) * (items != nullptr ? items[n] : n), view.origin);
+        }
+        LaneBits bits{0, 0, 0};
+        for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
+            const BoxLanes lanes(batch, l);
+            bits.add(projected.project(view, depths, lanes.center, lanes.edge, lanes.reach, l), l);
+        }
+        const std::uint32_t present = 0xffu >> (kLanes - size);
+        for (std::uint32_t open = bits.open & present; open != 0; open &= open - 1) {
+            const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
+            if (outline_is_hidden(view, projected, i)) bits.hidden |= 1u << i;
+        }
+        result.hidden |= std::uint64_t{bits.hidden & present} << first;
+        result.beside |= std::uint64_t{bits.beside & present} << first;
+    }
+    return result;
+}
+
+ChildBits query_children(const QueryView& view, const boxtree::Node& node) {
+    const DF d;
+    const Depths depths(view);
+    Projection projected;
+    ChildBits result{0, 0};
+    double origin[3];
+    for (std::size_t j = 0; j < 3; ++j) origin[j] = node.origin[j] - view.origin[j];
+    for (unsigned first = 0; first < node.count; first += kLanes) {
+        alignas(32) float center[3][kLanes], half[3][kLanes];
+        for (unsigned i = 0; i < kLanes; ++i)
+            for (unsigned j = 0; j < 3; ++j) {
+                const double middle = static_cast<double>(node.unit) * boxtree::middle_of(node, first + i, j);
+                center[j][i] = static_cast<float>(origin[j] + middle);
+                half[j][i] = node.unit * static_cast<float>(boxtree::half_of(node, first + i, j));
+            }
+        LaneBits bits{0, 0, 0};
+        for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
+            VF c[3], e[3][3], reach = hn::Zero(d);
+            for (std::size_t j = 0; j < 3; ++j) {
+                c[j] = hn::Load(d, center[j] + l);
+                for (std::size_t k = 0; k < 3; ++k) e[k][j] = k == j ? hn::Load(d, half[j] + l) : hn::Zero(d);
+                reach = hn::Add(reach, hn::Add(hn::Abs(c[j]), hn::Abs(e[j][j])));
+            }
+            bits.add(projected.project(view, depths, c, e, reach, l), l);
+        }
+        const std::uint32_t present = 0xffu >> (kLanes - std::min<std::size_t>(kLanes, node.count - first));
+        for (std::uint32_t open = bits.open & present; open != 0; open &= open - 1) {
+            const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
+            if (outline_is_hidden(view, projected, i)) bits.hidden |= 1u << i;
+        }
+        result.hidden |= (bits.hidden & present) << first;
+        result.beside |= (bits.beside & present) << first;
+    }
+    return result;
+}
+
+}  // namespace
+}  // namespace crofton::occlude::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::occlude {
+
+HWY_EXPORT(query_boxes);
+
+QueryBits query_boxes_kernel(const QueryView& view, const unsigned char* boxes, const std::uint32_t* items,
+                             std::size_t count) {
+    return HWY_DYNAMIC_DISPATCH(query_boxes)(view, boxes, items, count);
+}
+
+HWY_EXPORT(query_children);
+
+ChildBits query_children_kernel(const QueryView& view, const boxtree::Node& node) {
+    return HWY_DYNAMIC_DISPATCH(query_children)(view, node);
+}
+
+}  // namespace crofton::occlude
+#endif

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+namespace crofton::occlude {
+namespace {
+
+// An edge as one triangle has it.
+struct HalfEdge {
+    std::uint32_t low, high, triangle;
+    bool forward;  // from low to high
+};
+
+[[nodiscard]] bool is_before(const glm::vec3& p, const glm::vec3& q) {
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+}
+
+// The points that triangles use, each once, in ascending order; triangles of fewer than three points are left out, and
+// `source` says which were kept.
+void weld(std::span<const glm::vec3> points, std::span<const std::uint32_t> indices, Shape& shape,
+          Vector<std::uint32_t>& source) {
+    Vector<std::uint32_t> order(indices.begin(), indices.end());
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return is_before(points[i], points[j]) || (points[i] == points[j] && i < j);
+    });
+    Vector<std::uint32_t> welded(points.size(), kNone);
+    for (const std::uint32_t i : order) {
+        if (shape.points.empty() || shape.points.back() != points[i]) shape.points.push_back(points[i]);
+        welded[i] = static_cast<std::uint32_t>(shape.points.size() - 1);
+    }
+    for (std::size_t t = 0; t < indices.size() / 3; ++t) {
+        const std::uint32_t a = welded[indices[3 * t]], b = welded[indices[3 * t + 1]], c = welded[indices[3 * t + 2]];
+        if (a == b || b == c || c == a) continue;
+        for (const std::uint32_t i : {a, b, c}) shape.triangles.push_back(i);
+        source.push_back(static_cast<std::uint32_t>(t));
+    }
+    for (const glm::vec3& p : shape.points)
+        shape.reach = std::max({shape.reach, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+}
+
+[[nodiscard]] Vector<HalfEdge> half_edges_of(const Shape& shape) {
+    Vector<HalfEdge> result;
+    result.reserve(shape.triangles.size());
+    for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
+        const std::size_t t = i / 3;
+        const std::uint32_t a = shape.triangles[i], b = shape.triangles[3 * t + (i + 1) % 3];
+        result.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(t), a < b});
+    }
+    std::sort(result.begin(), result.end(), [](const HalfEdge& p, const HalfEdge& q) {
+        return std::tie(p.low, p.high, p.forward, p.triangle) < std::tie(q.low, q.high, q.forward, q.triangle);
+    });
+    return result;
+}
+
+// Calls visit(group) for the half edges between each pair of points.
+template <class Visit>
+void for_each_edge(std::span<const HalfEdge> edges, const Visit& visit) {
+    for (std::size_t begin = 0; begin < edges.size();) {
+        std::size_t end = begin + 1;
+        while (end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high) ++end;
+        visit(edges.subspan(begin, end - begin));
+        begin = end;
+    }
+}
+
+[[nodiscard]] std::uint32_t root_of(Vector<std::uint32_t>& parents, std::uint32_t i) {
+    while (parents[i] != i) i = parents[i] = parents[parents[i]];
+    return i;
+}
+
+// Sorts triangles and edges by pieces.
+void divide(Shape& shape) {
+    Vector<std::uint32_t> parents(shape.triangle_count());
+    std::iota(parents.begin(), parents.end(), 0u);
+    for (const ShapeEdge& edge : shape.edges)
+        if (edge.right != kNone) {
+            const std::uint32_t a = root_of(parents, edge.left), b = root_of(parents, edge.right);
+            parents[std::max(a, b)] = std::min(a, b);
+        }
+    Vector<std::uint32_t> order(shape.triangle_count()), place(shape.triangle_count());
+    std::iota(order.begin(), order.end(), 0u);
+    for (std::uint32_t& i : place) i = kNone;
+    Vector<std::uint32_t> roots(shape.triangle_count());
+    for (std::uint32_t t = 0; t < roots.size(); ++t) roots[t] = root_of(parents, t);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return roots[a] < roots[b]; });
+    Vector<std::uint32_t> triangles;
+    triangles.reserve(shape.triangles.size());
+    for (const std::uint32_t t : order) {
+        const auto position = static_cast<std::uint32_t>(triangles.size() / 3);
+        if (shape.pieces.empty() || roots[order[shape.pieces.back().first_triangle]] != roots[t])
+            shape.pieces.push_back({position, position, 0, 0});
+        shape.pieces.back().end_triangle = position + 1;
+        place[t] = position;
+        for (std::size_t k = 0; k < 3; ++k) triangles.push_back(shape.triangles[3 * t + k]);
+    }
+    shape.triangles.swap(triangles);
+    for (ShapeEdge& edge : shape.edges) {
+        edge.left = place[edge.left];
+        if (edge.right != kNone) edge.right = place[edge.right];
+    }
+    std::sort(shape.edges.begin(), shape.edges.end(), [](const ShapeEdge& p, const ShapeEdge& q) {
+        return std::tie(p.left, p.a, p.b) < std::tie(q.left, q.a, q.b);
+    });
+    std::uint32_t e = 0;
+    for (ShapePiece& piece : shape.pieces) {
+        piece.first_edge = e;
+        while (e < shape.edges.size() && shape.edges[e].left < piece.end_triangle) ++e;
+        piece.end_edge = e;
+    }
+}
+
+void connect(Shape& shape) {
+    const Vector<HalfEdge> half_edges = half_edges_of(shape);
+    for_each_edge(half_edges, [&](std::span<const HalfEdge> group) {
+        const bool paired = group.size() == 2 && group[0].forward != group[1].forward;
+        for (const HalfEdge& half : group) {
+            const std::uint32_t a = half.forward ? half.low : half.high, b = half.forward ? half.high : half.low;
+            const std::uint32_t right = paired ? (&half == &group[0] ? group[1] : group[0]).triangle : kNone;
+            if (!paired || half.forward) shape.edges.push_back({a, b, half.triangle, right});
+        }
+    });
+    divide(shape);
+}
+
+[[nodiscard]] double area_of(const Shape& shape) {
+    double area = 0.0;
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
+        const glm::dvec3 a(shape.points[shape.triangles[3 * t]]);
+        area += glm::length(glm::cross(glm::dvec3(shape.points[shape.triangles[3 * t + 1]]) - a,
+                                       glm::dvec3(shape.points[shape.triangles[3 * t + 2]]) - a));
+    }
+    return 0.5 * area;
+}
+
+[[nodiscard]] double volume_of(const Shape& shape) {
+    const glm::dvec3 base(shape.points.front());
+    double volume = 0.0;
+    for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
+        const glm::dvec3 a = glm::dvec3(shape.points[shape.triangles[3 * t]]) - base;
+        const glm::dvec3 b = glm::dvec3(shape.points[shape.triangles[3 * t + 1]]) - base;
+        volume += glm::dot(a, glm::cross(b, glm::dvec3(shape.points[shape.triangles[3 * t + 2]]) - base));
+    }
+    return volume / 6.0;
+}
+
+[[nodiscard]] double extent_of(const Shape& shape) {
+    Aabb bounds;
+    for (const glm::vec3& p : shape.points) bounds.include(glm::dvec3(p));
+    return glm::length(bounds.max - bounds.min);
+}
+
+[[nodiscard]] Result<Shape> welded_shape(const TriangleMesh& mesh, Sides sides, Vector<std::uint32_t>& source) {
+    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+    Shape shape;
+    shape.sides = sides;
+    weld(mesh.positions, mesh.indices, shape, source);
+    if (static_cast<double>(shape.reach) > kMaxCoordinate)
+        return fail(ErrorCode::out_of_range, kNoItem, "occluder: a coordinate exceeds 1e30");
+    if (!(area_of(shape) > 0.0))
+        return fail(ErrorCode::degenerate, kNoItem, "occluder: no triangle has an area, so it hides nothing");
+    return shape;
+}
+
+}  // namespace
+
+Result<Shape> convex_shape(std::span<const glm::vec3> points) {
+    const auto hull = convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    if (hull->rank < 3)
+        return fail(ErrorCode::degenerate, kNoItem, "occluder: the points are flat; give a polygon to add_surface");
+    Shape shape;
+    shape.convex = true;
+    Vector<std::uint32_t> source;
+    weld(points, hull->triangles, shape, source);
+    connect(shape);
+    return shape;
+}
+
+Result<Shape> closed_shape(const TriangleMesh& mesh) {
+    Vector<std::uint32_t> source;
+    Result<Shape> shape = welded_shape(mesh, Sides::front, source);
+    if (!shape) return shape;
+    std::uint32_t open = kNone;
+    const Vector<HalfEdge> half_edges = half_edges_of(*shape);
+    for_each_edge(half_edges, [&](std::span<const HalfEdge> group) {
+        const auto forward = std::count_if(group.begin(), group.end(), [](const HalfEdge& e) { return e.forward; });
+        if (2 * static_cast<std::size_t>(forward) != group.size()) open = std::min(open, source[group[0].triangle]);
+    });
+    if (open != kNone)
+        return fail(
+            ErrorCode::invalid_argument, open,
+            "occluder: the mesh is open at triangle " + std::to_string(open) + "; close it, or give it to add_surface");
+    const double extent = extent_of(*shape);
+    const double volume = volume_of(*shape);
+    if (std::fabs(volume) <= 1e-12 * extent * extent * extent)
+        return fail(ErrorCode::degenerate, kNoItem, "occluder: the mesh is flat; give it to add_surface");
+    if (volume < 0.0)
+        return fail(ErrorCode::invalid_argument, kNoItem, "occluder: the mesh is inside out; turn its triangles round");
+    connect(*shape);
+    return shape;
+}
+
+Result<Shape> surface_shape(const TriangleMesh& surface, Sides sides) {
+    Vector<std::uint32_t> source;
+    Result<Shape> shape = welded_shape(surface, sides, source);
+    if (shape) connect(*shape);
+    return shape;
+}
+
+}  // namespace crofton::occlude

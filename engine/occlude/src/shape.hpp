@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// A shape of occluders, prepared: vertices welded, edges with their triangles, connected pieces.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/occlude/occluder.hpp>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+
+namespace crofton::occlude {
+
+inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+// From a to b as `left` has it, counter-clockwise around it; `right` goes from b to a. An edge of one triangle, or of
+// more than two, or of two that go the same way, stands once for each of its triangles, without a right one.
+struct ShapeEdge {
+    std::uint32_t a, b;
+    std::uint32_t left, right;
+};
+
+// Triangles [first_triangle, end_triangle) and edges likewise: what hangs together by edges that have two triangles.
+struct ShapePiece {
+    std::uint32_t first_triangle, end_triangle;
+    std::uint32_t first_edge, end_edge;
+};
+
+struct Shape {
+    Vector<glm::vec3> points;
+    Vector<std::uint32_t> triangles;  // three points each, by pieces
+    Vector<ShapeEdge> edges;          // by pieces
+    Vector<ShapePiece> pieces;
+    Sides sides = Sides::front;
+    bool convex = false;
+    float reach = 0.0f;  // ≥ |x|, |y|, |z| of every point
+
+    [[nodiscard]] std::size_t triangle_count() const { return triangles.size() / 3; }
+};
+
+// Errors as OccluderSet's functions of these names.
+[[nodiscard]] Result<Shape> convex_shape(std::span<const glm::vec3> points);
+[[nodiscard]] Result<Shape> closed_shape(const TriangleMesh& mesh);
+[[nodiscard]] Result<Shape> surface_shape(const TriangleMesh& surface, Sides sides);
+
+}  // namespace crofton::occlude

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/occlude/find_visible.hpp>
+
+#include "scenes.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+
+namespace {
+
+// Objects in rows behind and before some walls, far more than a node holds.
+OcclusionScene crowd_behind_walls(Random& random, double offset) {
+    OcclusionScene scene = random_scene(random, offset, 3000);
+    for (int i = 0; i < 4; ++i) {
+        Obb wall = box_at(random, point_in_view(random, scene.camera, 8.0 + i), 1.0, 5.0);
+        scene.occluders.push_back(wall);
+    }
+    return scene;
+}
+
+// Judges an answer against the frustum's, box by box: what is missing must be hidden, by rays and by the single test
+// or a bound above it.
+struct Judgement {
+    std::size_t missing = 0, seen_by_a_witness = 0, not_hidden_alone = 0, strangers = 0;
+};
+Judgement judge(Random& random, const OcclusionScene& scene, const occlude::OcclusionBuffer& buffer,
+                std::span<const boxtree::ItemId> ids, std::span<const Obb> boxes) {
+    Judgement result;
+    const Frustum& frustum = buffer.view().frustum;
+    std::vector<bool> found(boxes.size(), false);
+    for (const boxtree::ItemId id : ids) found[id] = true;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const bool visible = cull::classify(frustum, boxes[i]) != cull::Verdict::outside;
+        result.strangers += found[i] && !visible;
+        if (found[i] || !visible) continue;
+        ++result.missing;
+        result.not_hidden_alone += !buffer.hides(boxes[i]);
+        for (int n = 0; n < 8; ++n) {
+            const glm::dvec3 point = point_of(random, boxes[i]);
+            result.seen_by_a_witness +=
+                is_in_view(frustum, point) && oracle::is_free(ray_to(scene.camera, point), scene.occluders);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_SUITE("occlude/find_visible") {
+    TEST_CASE("trees, lists and what moves leave out only what is hidden") {
+        Random random(5);
+        std::size_t missing = 0, not_alone = 0;
+        occlude::VisibleSet from_tree, from_list, from_both;
+        for (const double offset : {0.0, 1e5, 1e7})
+            for (int trial = 0; trial < 6; ++trial) {
+                const OcclusionScene scene = crowd_behind_walls(random, offset);
+                const auto set = set_of(scene.occluders);
+                auto buffer = *occlude::OcclusionBuffer::create(scene.size);
+                buffer.draw(set, *occlude::occlusion_view_of(scene.camera));
+                auto tree = *boxtree::BoxTree::build(scene.objects);
+                occlude::find_visible(tree, buffer, from_tree);
+                const Judgement j = judge(random, scene, buffer, from_tree.ids(), scene.objects);
+                CHECK(j.seen_by_a_witness == 0);
+                CHECK(j.strangers == 0);
+                missing += j.missing;
+                not_alone += j.not_hidden_alone;
+                CHECK(std::is_sorted(from_tree.ids().begin(), from_tree.ids().end()));
+                // The list has no bounds above its boxes: it leaves out what the single test hides.
+                occlude::find_visible(scene.objects, {}, buffer, from_list);
+                const Judgement l = judge(random, scene, buffer, from_list.ids(), scene.objects);
+                CHECK(l.seen_by_a_witness == 0);
+                CHECK(l.strangers == 0);
+                CHECK(l.not_hidden_alone == 0);
+                CHECK(std::includes(from_list.ids().begin(), from_list.ids().end(), from_tree.ids().begin(),
+                                    from_tree.ids().end()));
+                cull::BoxSet boxes;
+                boxes.assign(scene.objects);
+                occlude::OcclusionBits bits;
+                occlude::find_visible(boxes, scene.objects, buffer, bits);
+                for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+                    const bool listed = std::binary_search(from_list.ids().begin(), from_list.ids().end(), i);
+                    const occlude::Verdict verdict = bits.verdict(i);
+                    CHECK(listed == (verdict == occlude::Verdict::inside || verdict == occlude::Verdict::straddling));
+                    if (listed) continue;
+                    CHECK((verdict == occlude::Verdict::outside) ==
+                          (cull::classify(buffer.view().frustum, scene.objects[i]) == cull::Verdict::outside));
+                }
+                // A third of them moves.
+                std::vector<boxtree::ItemId> items;
+                std::vector<Obb> moved;
+                for (std::uint32_t i = 0; i < scene.objects.size(); i += 3) {
+                    (void)tree.detach(i);
+                    items.push_back(i);
+                    moved.push_back(scene.objects[i]);
+                }
+                tree.refit();
+                cull::MovingBoxes moving;
+                CHECK(moving.update(tree, items, moved));
+                occlude::find_visible(tree, moving, buffer, from_both);
+                const Judgement b = judge(random, scene, buffer, from_both.ids(), scene.objects);
+                CHECK(b.seen_by_a_witness == 0);
+                CHECK(b.strangers == 0);
+                CHECK(std::includes(from_list.ids().begin(), from_list.ids().end(), from_both.ids().begin(),
+                                    from_both.ids().end()));
+            }
+        MESSAGE(missing << " hidden, " << not_alone << " of them by a bound alone");
+        CHECK(missing > 2'000);
+    }
+
+    TEST_CASE("verdicts are the frustum's, and layers are looked at") {
+        Random random(6);
+        const OcclusionScene scene = crowd_behind_walls(random, 0.0);
+        auto buffer = *occlude::OcclusionBuffer::create(scene.size);
+        buffer.draw(set_of(scene.occluders), *occlude::occlusion_view_of(scene.camera));
+        std::vector<std::uint32_t> layers(scene.objects.size());
+        for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = 1u << (i % 3);
+        const auto tree = *boxtree::BoxTree::build(scene.objects, layers);
+        occlude::VisibleSet all, some;
+        occlude::find_visible(tree, buffer, all);
+        occlude::find_visible(tree, buffer, some, {.layer_mask = 2});
+        std::size_t in_layer = 0;
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            CHECK(all.verdicts()[n] == cull::classify(buffer.view().frustum, scene.objects[all.ids()[n]]));
+            in_layer += all.ids()[n] % 3 == 1;
+        }
+        for (const boxtree::ItemId id : some.ids()) CHECK(id % 3 == 1);
+        CHECK(some.size() == in_layer);
+        CHECK(all.statistics().nodes_tested > 0);
+    }
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// Set-ups that break other occlusion cullers.
+#include <doctest/doctest.h>
+#include <hwy/targets.h>
+#include <crofton/core/executor.hpp>
+#include <crofton/occlude/find_visible.hpp>
+
+#include "scenes.hpp"
+
+using namespace crofton;
+using namespace crofton::test;
+
+namespace {
+
+Obb box_of(const glm::dvec3& center, const glm::vec3& half) {
+    Obb box;
+    box.center = center;
+    box.half_extents = half;
+    return box;
+}
+
+occlude::OcclusionBuffer picture(const std::vector<Obb>& occluders, const occlude::OcclusionView& view,
+                                 occlude::BufferSize size) {
+    auto buffer = *occlude::OcclusionBuffer::create(size);
+    buffer.draw(set_of(occluders), view);
+    return buffer;
+}
+
+constexpr occlude::BufferSize kSizes[] = {{64, 36}, {320, 180}, {640, 360}, {1000, 700}};
+
+}  // namespace
+
+TEST_SUITE("occlude/hard cases") {
+    TEST_CASE("what shows through a gap between two occluders is seen, however narrow the gap") {
+        for (const auto& size : kSizes)
+            for (const double gap : {1e-6, 1e-4, 1e-2, 0.1}) {
+                const std::vector<Obb> walls = {box_of({-5.0 - 0.5 * gap, 0.0, -10.0}, {5.0f, 5.0f, 0.1f}),
+                                                box_of({5.0 + 0.5 * gap, 0.0, -10.0}, {5.0f, 5.0f, 0.1f})};
+                const auto buffer = picture(walls, *occlude::occlusion_view_of(Camera{}), size);
+                CHECK(!buffer.hides(box_of({0.0, 0.0, -20.0}, {1.0f, 1.0f, 1.0f})));
+                CHECK(buffer.hides(box_of({5.0, 0.0, -20.0}, {1.0f, 1.0f, 1.0f})));
+            }
+    }
+
+    TEST_CASE("two large boxes that touch hide what is behind each, at any offset") {
+        for (const double offset : {0.0, 1e4, 1e7})
+            for (const auto& size : kSizes) {
+                Camera camera;
+                camera.position = offset_of(offset);
+                const std::vector<Obb> walls = {
+                    box_of(camera.position + glm::dvec3(-512.0, 0.0, -600.0), {512.0f, 512.0f, 64.0f}),
+                    box_of(camera.position + glm::dvec3(512.0, 0.0, -600.0), {512.0f, 512.0f, 64.0f})};
+                const auto buffer = picture(walls, *occlude::occlusion_view_of(camera), size);
+                CHECK(buffer.hides(box_of(camera.position + glm::dvec3(100.0, 0.0, -800.0), {20.0f, 20.0f, 20.0f})));
+                CHECK(buffer.hides(box_of(camera.position + glm::dvec3(-100.0, 0.0, -800.0), {20.0f, 20.0f, 20.0f})));
+            }
+    }
+
+    TEST_CASE("an opening at the picture's edge shows what is behind it") {
+        const Camera camera;
+        const double edge = 10.0 * std::tan(0.5 * camera.fov_y) * camera.aspect;  // of the picture, ten metres away
+        for (const auto& size : kSizes)
+            for (const double opening : {1e-9, 1e-6, 1e-3}) {
+                // The wall ends just before the picture does; the object stands in the opening, and beyond it.
+                const std::vector<Obb> walls = {box_of({edge - opening - 50.0, 0.0, -10.1}, {50.0f, 50.0f, 0.1f})};
+                const auto buffer = picture(walls, *occlude::occlusion_view_of(camera), size);
+                CHECK(!buffer.hides(box_of({2.0 * edge, 0.0, -20.0}, {0.5f, 0.5f, 0.5f})));
+                CHECK(buffer.hides(box_of({0.0, 0.0, -20.0}, {0.5f, 0.5f, 0.5f})));
+            }
+    }
+
+    TEST_CASE("an eye inside an occluder sees through it, and past it") {
+        const std::vector<Obb> around = {box_of({0.0, 0.0, 0.0}, {2.0f, 2.0f, 2.0f})};
+        const std::vector<Obb> both = {around[0], box_of({0.0, 0.0, -10.0}, {2.0f, 2.0f, 0.5f})};
+        const auto view = *occlude::occlusion_view_of(Camera{});
+        const Obb object = box_of({0.0, 0.0, -15.0}, {0.5f, 0.5f, 0.5f});
+        CHECK(!picture(around, view, {320, 180}).hides(object));
+        CHECK(picture(both, view, {320, 180}).hides(object));
+    }
+
+    TEST_CASE("an occluder through the near plane hides by what lies beyond, and by that alone") {
+        Camera camera;
+        camera.near_distance = 1.0;
+        // A wall along the left side of the view, from behind the eye to far ahead.
+        const std::vector<Obb> walls = {box_of({-2.0, 0.0, -20.0}, {0.5f, 3.0f, 40.0f})};
+        const auto buffer = picture(walls, *occlude::occlusion_view_of(camera), {640, 360});
+        CHECK(buffer.hides(box_of({-6.0, 0.0, -20.0}, {0.5f, 0.5f, 0.5f})));
+        CHECK(!buffer.hides(box_of({0.0, 0.0, -20.0}, {0.5f, 0.5f, 0.5f})));
+        // A wall whose front lies before the near plane: the picture shows what is behind.
+        const std::vector<Obb> near_wall = {box_of({0.0, 0.0, -1.0}, {3.0f, 3.0f, 0.5f})};
+        CHECK(!picture(near_wall, *occlude::occlusion_view_of(camera), {640, 360})
+                   .hides(box_of({0.0, 0.0, -5.0}, {0.5f, 0.5f, 0.5f})));
+    }
+
+    TEST_CASE("tiles seen in parallel, edge to edge, hide what each is above") {
+        Camera camera;
+        camera.position = {0.0, 50.0, 0.0};
+        camera.forward = {0.0, -1.0, 0.0};
+        camera.up = {0.0, 0.0, -1.0};
+        camera.projection = Projection::orthographic;
+        camera.height = 16.0;
+        camera.aspect = 1.0;
+        std::vector<Obb> tiles;
+        for (int x = -8; x < 8; ++x)
+            for (int z = -8; z < 8; ++z)
+                if ((x + z) % 5 != 0) tiles.push_back(box_of({x + 0.5, 10.0, z + 0.5}, {0.5f, 0.1f, 0.5f}));
+        const auto buffer = picture(tiles, *occlude::occlusion_view_of(camera), {256, 256});
+        for (int x = -8; x < 8; ++x)
+            for (int z = -8; z < 8; ++z) {
+                const bool hidden = buffer.hides(box_of({x + 0.5, 0.0, z + 0.5}, {0.3f, 1.0f, 0.3f}));
+                CHECK(hidden == ((x + z) % 5 != 0));
+            }
+        CHECK(!buffer.hides(box_of({0.5, 12.0, -3.5}, {0.3f, 1.0f, 0.3f})));  // above the tiles
+    }
+
+    TEST_CASE("matrices of any kind give the answers of the camera that they come from") {
+        Random random(21);
+        for (int trial = 0; trial < 20; ++trial) {
+            OcclusionScene scene = random_scene(random, 0.0, 200);
+            const auto set = set_of(scene.occluders);
+            auto from_camera = *occlude::OcclusionBuffer::create(scene.size),
+                 from_matrix = *occlude::OcclusionBuffer::create(scene.size);
+            from_camera.draw(set, *occlude::occlusion_view_of(scene.camera));
+            std::size_t differ = 0;
+            for (const DepthRange depth :
+                 {DepthRange::reversed_zero_to_one, DepthRange::zero_to_one, DepthRange::minus_one_to_one}) {
+                Camera camera = scene.camera;
+                if (camera.projection == Projection::perspective && trial % 2) camera.far_distance = HUGE_VAL;
+                const glm::dmat4 matrix = view_to_clip(camera, depth) * glm::dmat4(world_to_view_rotation(camera));
+                from_matrix.draw(set, *occlude::occlusion_view_of(matrix, depth, camera.position));
+                for (const Obb& object : scene.objects) {
+                    const bool hidden = from_matrix.hides(object);
+                    differ += hidden != from_camera.hides(object);
+                    if (!hidden) continue;
+                    for (int n = 0; n < 6; ++n) {
+                        const glm::dvec3 point = point_of(random, object);
+                        CHECK(!(is_in_view(from_matrix.view().frustum, point) &&
+                                oracle::is_free(ray_to(scene.camera, point), scene.occluders)));
+                    }
+                }
+            }
+            CHECK(differ <= 2);  // rows of the matrix are rounded otherwise
+        }
+    }
+
+    TEST_CASE("a mirrored picture hides the same") {
+        Random random(22);
+        const OcclusionScene scene = random_scene(random, 0.0, 100);
+        Camera camera = scene.camera;
+        camera.projection = Projection::perspective;
+        const glm::dmat4 matrix = view_to_clip(camera) * glm::dmat4(world_to_view_rotation(camera));
+        glm::dmat4 mirror(1.0);
+        mirror[0][0] = -1.0;
+        const auto straight =
+            picture(scene.occluders,
+                    *occlude::occlusion_view_of(matrix, DepthRange::reversed_zero_to_one, camera.position), {160, 96});
+        const auto mirrored = picture(
+            scene.occluders,
+            *occlude::occlusion_view_of(mirror * matrix, DepthRange::reversed_zero_to_one, camera.position), {160, 96});
+        std::size_t covered = 0, differ = 0;
+        for (std::uint32_t y = 0; y < 96; ++y)
+            for (std::uint32_t x = 0; x < 160; ++x) {
+                const bool a = straight.nearness(x, y) > -1e38f;
+                covered += a;
+                differ += a != (mirrored.nearness(159 - x, y) > -1e38f);
+            }
+        CHECK(covered > 100);
+        CHECK(differ <= 2);
+    }
+
+    TEST_CASE("slivers by the thousand cover no pixel that they do not fill") {
+        std::vector<Obb> slivers;
+        Random random(23);
+        for (int i = 0; i < 20'000; ++i)
+            slivers.push_back(box_of({random.uniform(-8, 8), 0.0, -10.0 - random.uniform()}, {1e-4f, 6.0f, 1e-4f}));
+        const auto buffer = picture(slivers, *occlude::occlusion_view_of(Camera{}), {320, 180});
+        for (std::uint32_t x = 0; x < 320; ++x) CHECK(buffer.nearness(x, 90) < -1e38f);
+    }
+
+    TEST_CASE("the occluder that hides is named") {
+        const std::vector<Obb> walls = {box_of({0.0, 0.0, -5.0}, {0.5f, 0.5f, 0.5f}),
+                                        box_of({0.0, 0.0, -10.0}, {4.0f, 4.0f, 0.5f}),
+                                        box_of({0.0, 0.0, -30.0}, {4.0f, 4.0f, 0.5f})};
+        const auto buffer = picture(walls, *occlude::occlusion_view_of(Camera{}), {640, 360});
+        Vector<occlude::OccluderId> ids;
+        buffer.hidden_by(box_of({2.5, 0.0, -14.0}, {0.5f, 0.5f, 0.5f}), ids);
+        CHECK(ids == Vector<occlude::OccluderId>{1});
+        buffer.hidden_by(box_of({0.0, 0.0, -14.0}, {2.0f, 2.0f, 0.5f}), ids);
+        CHECK(ids == Vector<occlude::OccluderId>{0, 1});
+        buffer.hidden_by(box_of({2.5, 0.0, -8.0}, {0.5f, 0.5f, 0.5f}), ids);
+        CHECK(ids.empty());
+    }
+
+    TEST_CASE("every instruction set and number of threads gives the same bits") {
+        ThreadPool pool(3);
+        Random random(24);
+        for (int trial = 0; trial < 6; ++trial) {
+            const OcclusionScene scene = random_scene(random, trial % 2 ? 1e6 : 0.0, 1000);
+            const auto set = set_of(scene.occluders);
+            const auto view = *occlude::occlusion_view_of(scene.camera);
+            const std::size_t words = (scene.objects.size() + 63) / 64;
+            auto reference = *occlude::OcclusionBuffer::create({333, 201});
+            reference.draw(set, view);
+            std::vector<std::uint64_t> expected(words), hidden(words);
+            reference.find_hidden(scene.objects, expected);
+            const auto compare = [&](Executor& executor) {
+                auto buffer = *occlude::OcclusionBuffer::create({333, 201});
+                buffer.draw(set, view, executor);
+                std::size_t differ = 0;
+                for (std::uint32_t y = 0; y < 201; ++y)
+                    for (std::uint32_t x = 0; x < 333; ++x) differ += buffer.nearness(x, y) != reference.nearness(x, y);
+                CHECK(differ == 0);
+                buffer.find_hidden(scene.objects, hidden, executor);
+                CHECK(hidden == expected);
+            };
+            compare(pool);
+            for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+                hwy::SetSupportedTargetsForTest(rest & -rest);
+                CAPTURE(hwy::TargetName(rest & -rest));
+                compare(serial_executor());
+            }
+            hwy::SetSupportedTargetsForTest(0);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <crofton/occlude/occluder.hpp>
+#include <limits>
+
+using namespace crofton;
+
+namespace {
+
+TriangleMesh cube() {
+    TriangleMesh mesh;
+    for (unsigned i = 0; i < 8; ++i)
+        mesh.positions.push_back({i & 1u ? 1.0f : 0.0f, i & 2u ? 1.0f : 0.0f, i & 4u ? 1.0f : 0.0f});
+    mesh.indices = {1, 3, 7, 1, 7, 5, 0, 4, 6, 0, 6, 2, 2, 6, 7, 2, 7, 3,
+                    0, 1, 5, 0, 5, 4, 4, 5, 7, 4, 7, 6, 0, 2, 3, 0, 3, 1};
+    return mesh;
+}
+
+}  // namespace
+
+TEST_SUITE("occlude/occluder") {
+    TEST_CASE("boxes that are not boxes are refused by name and hide nothing") {
+        occlude::OccluderSet set;
+        Obb box;
+        box.half_extents = {1.0f, 1.0f, 1.0f};
+        CHECK(*set.place(box) == 0);
+        Obb bad = box;
+        bad.center.y = std::numeric_limits<double>::quiet_NaN();
+        const auto refused = set.place(bad);
+        CHECK(refused.error().code == ErrorCode::non_finite);
+        CHECK(refused.error().item == 1);
+        bad = box;
+        bad.half_extents.z = 0.0f;
+        CHECK(set.place(bad).error().code == ErrorCode::degenerate);
+        CHECK(set.size() == 1);
+        CHECK(set.move(0, bad).error().code == ErrorCode::degenerate);
+        CHECK(set.move(1, box).error().code == ErrorCode::out_of_range);
+        CHECK(set.move(0, scene::Transform{}).error().code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("meshes that are open, inside out, flat or not finite are refused by name") {
+        occlude::OccluderSet set;
+        CHECK(set.add_mesh(cube()));
+        TriangleMesh open = cube();
+        open.indices.resize(open.indices.size() - 3);
+        CHECK(set.add_mesh(open).error().code == ErrorCode::invalid_argument);
+        CHECK(set.add_mesh(open).error().item == 0);  // {1, 3, 7}, across the edge from 3 to 1
+        TriangleMesh inside_out = cube();
+        for (std::size_t i = 0; i < inside_out.indices.size(); i += 3)
+            std::swap(inside_out.indices[i], inside_out.indices[i + 1]);
+        CHECK(set.add_mesh(inside_out).error().code == ErrorCode::invalid_argument);
+        TriangleMesh flat = cube();
+        for (glm::vec3& p : flat.positions) p.z = 0.5f;
+        CHECK(set.add_mesh(flat).error().code == ErrorCode::degenerate);
+        TriangleMesh bad = cube();
+        bad.positions[3].x = std::numeric_limits<float>::infinity();
+        CHECK(set.add_mesh(bad).error().code == ErrorCode::non_finite);
+        CHECK(set.add_mesh(bad).error().item == 3);
+        bad = cube();
+        bad.indices[5] = 8;
+        CHECK(set.add_mesh(bad).error().code == ErrorCode::out_of_range);
+        CHECK(set.add_mesh(TriangleMesh{}).error().code == ErrorCode::degenerate);
+        CHECK(set.add_surface(open, occlude::Sides::front));
+        CHECK(set.add_convex(flat.positions).error().code == ErrorCode::degenerate);
+        CHECK(set.add_convex(bad.positions));
+        CHECK(set.shape_count() == 3);
+    }
+
+    TEST_CASE("a transform that flattens a shape is refused") {
+        occlude::OccluderSet set;
+        const auto shape = *set.add_mesh(cube());
+        scene::Transform transform;
+        transform.linear[1] = glm::dvec3(0.0);
+        CHECK(set.place(shape, transform).error().code == ErrorCode::degenerate);
+        CHECK(set.place(shape + 1, {}).error().code == ErrorCode::out_of_range);
+        CHECK(set.size() == 0);
+        CHECK(*set.place(shape, {}) == 0);
+        CHECK(set.move(0, Obb{}).error().code == ErrorCode::invalid_argument);
+    }
+}
