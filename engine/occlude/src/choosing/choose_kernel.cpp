@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "choosing/choose_kernel.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "choosing/choose_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>
+// clang-format on
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::occlude::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using DF = hn::ScalableTag<float>;
+using VF = hn::Vec<DF>;
+
+HWY_INLINE VF dot_with(const VF* v, const float* constant) {
+    const DF d;
+    return hn::Add(hn::Add(hn::Mul(v[0], hn::Set(d, constant[0])), hn::Mul(v[1], hn::Set(d, constant[1]))),
+                   hn::Mul(v[2], hn::Set(d, constant[2])));
+}
+
+HWY_INLINE VF dot_of(const VF* a, const VF* b) {
+    return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+}
+
+// How far the ray along `along`, of length `length`, runs on from the point before it leaves the bounds.
+HWY_INLINE VF way_behind(const VF* point, const VF* along, VF length, const ChooseView& view) {
+    const DF d;
+    VF steps = hn::Set(d, 1e30f);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto upward = hn::Ge(along[k], hn::Zero(d));
+        const VF size = hn::Max(hn::Abs(along[k]), hn::Set(d, 1e-20f));
+        const VF high = hn::Sub(hn::Set(d, view.high[k]), point[k]), low = hn::Sub(point[k], hn::Set(d, view.low[k]));
+        steps = hn::Min(steps, hn::Div(hn::IfThenElse(upward, high, low), size));
+    }
+    return hn::Mul(hn::Max(steps, hn::Zero(d)), length);
+}
+
+struct Worth {
+    VF cover, value;
+};
+
+// Sums of products are rounded step by step, never fused: so all instruction sets agree.
+HWY_INLINE Worth worth_of(const float* const* columns, std::size_t i, const ChooseView& view) {
+    const DF d;
+    VF point[3], center[3], area[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        point[k] = hn::LoadU(d, columns[k] + i);
+        center[k] = hn::Sub(point[k], hn::Set(d, view.eye[k]));
+    }
+    const VF radius = hn::LoadU(d, columns[3] + i), zero = hn::Zero(d);
+    auto in_view = hn::Ge(radius, zero);
+    for (std::size_t p = 0; p < view.plane_count; ++p) {
+        const VF above = hn::Add(dot_with(center, view.planes[p].data()), hn::Set(d, view.planes[p][3]));
+        in_view = hn::And(in_view, hn::Ge(hn::Add(above, radius), zero));
+    }
+    VF along[3];  // the direction times its length
+    for (std::size_t k = 0; k < 3; ++k) along[k] = view.perspective ? center[k] : hn::Set(d, view.forward[k]);
+    VF faced = zero;
+    for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t k = 0; k < 3; ++k) area[k] = hn::LoadU(d, columns[4 + 3 * a + k] + i);
+        const VF signed_area = dot_of(along, area);
+        if (a == 0) {
+            const auto hides = hn::Or(hn::Le(signed_area, zero), hn::Eq(hn::LoadU(d, columns[13] + i), zero));
+            in_view = hn::And(in_view, hides);
+        }
+        faced = hn::Add(faced, hn::Abs(signed_area));
+    }
+    VF cover = hn::Mul(faced, hn::Set(d, view.scale)), length = hn::Set(d, 1.0f);
+    if (view.perspective) {
+        // Nearer than half the radius the quotient means nothing.
+        const VF near = hn::Mul(hn::Mul(radius, radius), hn::Set(d, 0.25f));
+        const VF square = hn::Max(hn::Max(dot_of(center, center), near), hn::Set(d, 1e-30f));
+        length = hn::Sqrt(square);
+        cover = hn::Div(hn::Div(cover, square), length);
+    }
+    cover = hn::IfThenElseZero(in_view, cover);
+    if (!view.bounded) return {cover, cover};
+    return {cover, hn::Mul(cover, way_behind(point, along, length, view))};
+}
+
+std::size_t run_cover(const float* const* columns, std::size_t count, const ChooseView& view, std::uint32_t* seen,
+                      float* values) {
+    const DF d;
+    const VF least = hn::Set(d, view.least);
+    std::size_t found = 0;
+    HWY_ALIGN float value[hn::MaxLanes(d)];
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const Worth worth = worth_of(columns, i, view);
+        const auto keep = hn::Ge(worth.cover, least);
+        if (hn::AllFalse(d, keep)) continue;
+        hn::Store(hn::IfThenElseZero(keep, worth.value), d, value);
+        for (std::size_t k = 0; k < hn::Lanes(d) && i + k < count; ++k) {
+            seen[found] = static_cast<std::uint32_t>(i + k);
+            values[found] = value[k];
+            found += value[k] > 0.0f ? 1 : 0;
+        }
+    }
+    return found;
+}
+
+}  // namespace
+}  // namespace crofton::occlude::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace crofton::occlude {
+
+HWY_EXPORT(run_cover);
+
+std::size_t measure_cover(const float* const* columns, std::size_t count, const ChooseView& view, std::uint32_t* seen,
+                          float* values) {
+    return HWY_DYNAMIC_DISPATCH(run_cover)(columns, count, view, seen, values);
+}
+
+}  // namespace crofton::occlude
+#endif

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// What candidates cover of a view, many at a time.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace crofton::occlude {
+
+struct ChooseView {
+    std::array<float, 3> eye{};                    // relative to the candidates' origin
+    std::array<float, 3> forward{};                // of unit length
+    std::array<std::array<float, 4>, 6> planes{};  // inward normals; of the eye's frame
+    std::size_t plane_count = 0;
+    bool perspective = true;
+    float scale = 1.0f;  // of what is covered: 1 / 4π, or one over the picture's area
+    float least = 0.0f;  // to be covered
+    bool bounded = false;
+    std::array<float, 3> low{}, high{};  // of the objects, relative to the candidates' origin
+};
+
+// Writes the ids of those in view that cover at least `least` to `seen`, and what they cover, times the way behind them
+// where that is bounded, to `values`; both have room for all. Returns their number. Same bits for any instruction set.
+std::size_t measure_cover(const float* const* columns, std::size_t count, const ChooseView& view, std::uint32_t* seen,
+                          float* values);
+
+}  // namespace crofton::occlude
