@@ -20,6 +20,7 @@ struct Request {
     std::vector<std::string> files;
     std::string criterion = "perimeter", quality = "exact", json_path, svg_path;
     double budget_seconds = 0.0;  // 0: none
+    ReadOptions read;
 };
 
 class Stopwatch {
@@ -61,7 +62,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
 Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& criterion, const Request& request) {
     FittedMesh mesh;
     mesh.file = file;
-    const auto points = load_points(file);
+    const auto points = load_points(file, request.read);
     if (!points) return tl::unexpected(points.error());
     const std::span<const glm::dvec3> span(*points);
     const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
@@ -97,7 +98,7 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
 }
 
 int run(const Request& request) {
-    const auto criterion = parse_criterion(request.criterion);
+    const auto criterion = parse_criterion(request.criterion, request.read);
     if (!criterion) return report_error("", criterion.error());
     std::vector<FittedMesh> meshes;
     for (const std::string& file : request.files) {
@@ -145,6 +146,7 @@ void add_fit_command(CommandLine& line) {
         "  crofton fit bunny.obj\n"
         "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"
         "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg");
+    add_read_options(command, request->read);
     command.action([request] { return run(*request); });
 }
 

@@ -11,6 +11,7 @@
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -19,6 +20,7 @@ namespace {
 using radiosity::LineMethod;
 
 struct Options {
+    ReadOptions read;
     std::string scene = "town", map, json;
     std::uint64_t blocks = 32, seed = 1;
     std::uint32_t repeats = 12;
@@ -93,10 +95,15 @@ Result<void> run(const Options& options) {
     assets::LoadOptions load;
     load.map = options.map;
     load.seed = options.seed;
+    load.limits = options.read.limits;
+    load.strict = options.read.strict;
     auto source = assets::load_scene(options.scene, load);
     if (!source) return tl::unexpected(source.error());
+    print_warnings(source->warnings);
     source->scene.update();
-    const TriangleMesh mesh = assets::flat_scene(*source).mesh;
+    const auto flat = assets::flat_scene(*source, options.read.limits);
+    if (!flat) return tl::unexpected(flat.error());
+    const TriangleMesh& mesh = flat->mesh;
     const Vector<radiosity::Material> materials(mesh.triangle_count());
     const auto patches = radiosity::make_patches(mesh, materials);
     if (!patches) return tl::unexpected(patches.error());
@@ -164,6 +171,7 @@ void add_lines_command(CommandLine& line) {
     command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
     command.option("--map", options->map, "Which level of a .wad");
     command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file();
+    add_read_options(command, options->read);
     command.action([options] {
         const auto done = run(*options);
         return done ? kSuccess : report_error("", done.error());
