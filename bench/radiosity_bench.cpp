@@ -37,7 +37,7 @@ struct Scene {
 Scene make_scene(const char* name, double edge) {
     auto source = assets::load_scene(name);
     source->scene.update();
-    TriangleMesh mesh = assets::flat_scene(*source).mesh;
+    TriangleMesh mesh = assets::flat_scene(*source).value().mesh;
     if (edge > 0.0) mesh = std::move(refine(mesh, edge)->mesh);
     const Vector<Material> materials(mesh.triangle_count());
     Patches patches = std::move(*make_patches(std::move(mesh), materials));

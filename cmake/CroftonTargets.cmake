@@ -48,7 +48,8 @@ function(crofton_module)
         set(unity UNITY)
     endif()
     crofton_own_target(${target} ${unity})
-    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+    # Exceptions serve core/recovery.hpp alone: a failed allocation unwinds to the public function, which returns an Error.
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                          PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/internal)

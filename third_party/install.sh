@@ -5,7 +5,7 @@
 #   third_party/install.sh --tests    also a browser, in which the tests open the report page
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
 #   third_party/install.sh --checks   also clang, its formatter and its linter, for .ci/run and .ci/long
-#   third_party/install.sh --engines  also the engines, job system and documentation tool that samples and tests use where installed
+#   third_party/install.sh --engines  also the engines, decoders, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
 
 packages=(
@@ -16,13 +16,13 @@ packages=(
     # render: loader, headers, lavapipe, validation
     libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
     # samples
-    libglfw3-dev libimgui-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev
+    libglfw3-dev libimgui-dev libstb-dev nlohmann-json3-dev libcli11-dev
     # tests
     doctest-dev libgmp-dev xvfb xauth xdotool libx11-dev
 )
 test_packages=(chromium)
 check_packages=(clang libclang-rt-dev clang-format clang-tidy)
-engine_packages=(libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)
+engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 
 for argument in "$@"; do

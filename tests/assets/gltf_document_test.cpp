@@ -168,7 +168,9 @@ TEST_SUITE("assets/gltf_document") {
             return text;
         };
         CHECK(read({{"name", "as it is"}}) == "0 0 5 6 0 0 ");
-        CHECK(says(read({{"name", "x"}}, std::nullopt), "no buffer view"));
+        CHECK(read({{"name", "x"}}, std::nullopt) == "0 0 5 6 0 0 ");
+        CHECK(says(read({{"count", 4'000'000'000u}}, std::nullopt),
+                   "without a buffer view: more than 8388608 triangles"));
         CHECK(says(read({{"count", 4'000'000'000u}}), "4000000000 elements for 3"));
         CHECK(says(read({{"count", -1}}), "whole number"));
         CHECK(says(read({{"count", "3"}}), "whole number"));

@@ -2,6 +2,10 @@
 #include <doctest/doctest.h>
 #include <crofton/bake/baked_scene.hpp>
 
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "temporary_file.hpp"
@@ -31,5 +35,36 @@ TEST_SUITE("bake/mapped_file") {
         moved = std::move(again);
         REQUIRE(moved.bytes().size() == contents.size());
         CHECK(moved.bytes()[99'999] == std::byte{7});
+    }
+
+    TEST_CASE("what is read into memory outlives the file being cut") {
+        const std::vector<std::byte> contents(100'000, std::byte{7});
+        const crofton::bake_test::TemporaryFile file(contents);
+        auto read = MappedFile::open(file.path(), {.access = crofton::bake::FileAccess::read});
+        REQUIRE(read);
+        std::filesystem::resize_file(file.path(), 10);
+        REQUIRE(read->bytes().size() == contents.size());
+        CHECK(std::equal(contents.begin(), contents.end(), read->bytes().begin()));
+        CHECK(reinterpret_cast<std::uintptr_t>(read->bytes().data()) % 64 == 0);
+        const MappedFile moved = std::move(*read);
+        CHECK(moved.bytes()[99'999] == std::byte{7});
+    }
+
+    TEST_CASE("a file beyond the limit and a pipe are refused at once, whichever way they are opened") {
+        const std::vector<std::byte> contents(1000, std::byte{7});
+        const crofton::bake_test::TemporaryFile file(contents);
+        const std::string pipe = file.path() + ".pipe";
+        REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+        for (const auto access : {crofton::bake::FileAccess::map, crofton::bake::FileAccess::read}) {
+            CHECK(MappedFile::open(file.path(), {.access = access, .largest = 1000}));
+            const auto large = MappedFile::open(file.path(), {.access = access, .largest = 999});
+            REQUIRE_FALSE(large);
+            CHECK(large.error().code == crofton::ErrorCode::out_of_range);
+            CHECK(large.error().message.find("1000 bytes, where the limit is 999") != std::string::npos);
+            const auto waiting = MappedFile::open(pipe, {.access = access});
+            REQUIRE_FALSE(waiting);
+            CHECK(waiting.error().message.find("not a regular file") != std::string::npos);
+        }
+        std::filesystem::remove(pipe);
     }
 }

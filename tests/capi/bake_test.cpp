@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../kill_writer.hpp"
 #include "handles.hpp"
 
 using namespace crofton::capi_test;
@@ -126,5 +127,59 @@ TEST_SUITE("capi/bake") {
         REQUIRE(crofton_tree_remove(tree.get(), 7) == CROFTON_OK);
         REQUIRE(crofton_tree_refit(tree.get()) == CROFTON_OK);
         CHECK(seen(tree.get(), 3u).size() == 39);
+    }
+
+    TEST_CASE("baking over a file that is open leaves its reader what it has, and a failed one the old file") {
+        const TemporaryFile file;
+        const Scene large = row(4000), small = row(1);
+        REQUIRE(crofton_scene_bake(large.get(), file.path.c_str(), nullptr) == CROFTON_OK);
+        crofton_baked_scene* opened = nullptr;
+        crofton_tree* opened_tree = nullptr;
+        REQUIRE(crofton_baked_scene_open(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
+        const BakedScene baked(opened);
+        const Tree tree(opened_tree);
+        REQUIRE(crofton_scene_bake(small.get(), file.path.c_str(), nullptr) == CROFTON_OK);
+        const crofton_baked_node* nodes = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_baked_scene_nodes(baked.get(), &nodes, &count) == CROFTON_OK);
+        REQUIRE(count == 4001);
+        CHECK(nodes[4000].world.translation[2] == -8000.0);
+        CHECK_FALSE(std::filesystem::exists(file.path + ".partial"));
+    }
+
+    TEST_CASE("killed while it bakes, the C API leaves the old file or the new one, and the next bake cleans up") {
+        const TemporaryFile file;
+        const Scene scenes[] = {row(3000), row(3001)};
+        REQUIRE(crofton_scene_bake(scenes[0].get(), file.path.c_str(), nullptr) == CROFTON_OK);
+        for (int i = 0; i < crofton::testing::kill_count(); ++i) {
+            const auto bake = [&](std::uint64_t round) {
+                return crofton_scene_bake(scenes[round % 2].get(), file.path.c_str(), nullptr) == CROFTON_OK;
+            };
+            CHECK(crofton::testing::kill_while_writing(bake, static_cast<std::uint64_t>(i), 10'000));
+            crofton_baked_scene* opened = nullptr;
+            crofton_tree* opened_tree = nullptr;
+            REQUIRE(crofton_baked_scene_read(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
+            const BakedScene baked(opened);
+            const Tree tree(opened_tree);
+        }
+        REQUIRE(crofton_scene_bake(scenes[0].get(), file.path.c_str(), nullptr) == CROFTON_OK);
+        CHECK_FALSE(std::filesystem::exists(file.path + ".partial"));
+    }
+
+    TEST_CASE("a baked scene that was read into memory outlives its file being cut") {
+        const TemporaryFile file;
+        const Scene scene = row(4000);
+        REQUIRE(crofton_scene_bake(scene.get(), file.path.c_str(), nullptr) == CROFTON_OK);
+        crofton_baked_scene* opened = nullptr;
+        crofton_tree* opened_tree = nullptr;
+        REQUIRE(crofton_baked_scene_read(file.path.c_str(), nullptr, &opened, &opened_tree) == CROFTON_OK);
+        const BakedScene baked(opened);
+        const Tree tree(opened_tree);
+        std::filesystem::resize_file(file.path, 100);
+        const crofton_baked_node* nodes = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_baked_scene_nodes(baked.get(), &nodes, &count) == CROFTON_OK);
+        REQUIRE(count == 4001);
+        CHECK(nodes[4000].world.translation[2] == -8000.0);
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/recovery.hpp>
 
 #include <limits>
 
@@ -68,23 +69,25 @@ void add_arrays(const Arrays& arrays, Writer& writer) {
 }  // namespace
 
 Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor) {
-    Arrays arrays;
-    for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) append_mesh(arrays, scene, mesh);
-    if (arrays.names.size() > std::numeric_limits<std::uint32_t>::max())
-        return fail(ErrorCode::out_of_range, kNoItem, "the meshes' names have more than 2^32 - 1 characters");
-    Writer writer;
-    add_arrays(arrays, writer);
-    Vector<InstanceRecord> instances;
-    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-        instances.push_back({scene.mesh_of(i), scene.node_of(i)});
-    writer.add("instance", std::span<const InstanceRecord>(instances));
-    Vector<NodeRecord> nodes;
-    for (scene::NodeId node = 0; node < scene.node_count(); ++node)
-        nodes.push_back({scene.world(node), scene.parent_of(node)});
-    writer.add("nodes", std::span<const NodeRecord>(nodes));
-    if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor); !added)
-        return tl::unexpected(added.error());
-    return writer.finish();
+    return detail::recover([&]() -> Result<Vector<std::byte>> {
+        Arrays arrays;
+        for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) append_mesh(arrays, scene, mesh);
+        if (arrays.names.size() > std::numeric_limits<std::uint32_t>::max())
+            return fail(ErrorCode::out_of_range, kNoItem, "the meshes' names have more than 2^32 - 1 characters");
+        Writer writer;
+        add_arrays(arrays, writer);
+        Vector<InstanceRecord> instances;
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+            instances.push_back({scene.mesh_of(i), scene.node_of(i)});
+        writer.add("instance", std::span<const InstanceRecord>(instances));
+        Vector<NodeRecord> nodes;
+        for (scene::NodeId node = 0; node < scene.node_count(); ++node)
+            nodes.push_back({scene.world(node), scene.parent_of(node)});
+        writer.add("nodes", std::span<const NodeRecord>(nodes));
+        if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor); !added)
+            return tl::unexpected(added.error());
+        return writer.finish();
+    });
 }
 
 }  // namespace crofton::bake

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/recovery.hpp>
 
 #include <string>
 
@@ -83,33 +84,37 @@ Result<void> BakedScene::check_instances() const {
 }
 
 Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Executor& executor) {
-    const auto reader = Reader::open(file, executor);
-    if (!reader) return tl::unexpected(reader.error());
-    BakedScene baked;
-    const Result<void> taken[] = {
-        take(*reader, "meshes", baked.meshes_),      take(*reader, "position", baked.positions_),
-        take(*reader, "colors", baked.colors_),      take(*reader, "indices", baked.indices_),
-        take(*reader, "names", baked.names_),        take(*reader, "polygons", baked.polygons_),
-        take(*reader, "points", baked.points_),      take(*reader, "rings", baked.rings_),
-        take(*reader, "instance", baked.instances_), take(*reader, "nodes", baked.nodes_),
-    };
-    for (const auto& each : taken)
-        if (!each) return tl::unexpected(each.error());
-    if (const auto good = baked.check_meshes(); !good) return tl::unexpected(good.error());
-    auto tree = read_tree(*reader);
-    if (!tree) return tl::unexpected(tree.error());
-    baked.tree_.emplace(std::move(*tree));
-    if (const auto good = baked.check_instances(); !good) return tl::unexpected(good.error());
-    return baked;
+    return detail::recover([&]() -> Result<BakedScene> {
+        const auto reader = Reader::open(file, executor);
+        if (!reader) return tl::unexpected(reader.error());
+        BakedScene baked;
+        const Result<void> taken[] = {
+            take(*reader, "meshes", baked.meshes_),      take(*reader, "position", baked.positions_),
+            take(*reader, "colors", baked.colors_),      take(*reader, "indices", baked.indices_),
+            take(*reader, "names", baked.names_),        take(*reader, "polygons", baked.polygons_),
+            take(*reader, "points", baked.points_),      take(*reader, "rings", baked.rings_),
+            take(*reader, "instance", baked.instances_), take(*reader, "nodes", baked.nodes_),
+        };
+        for (const auto& each : taken)
+            if (!each) return tl::unexpected(each.error());
+        if (const auto good = baked.check_meshes(); !good) return tl::unexpected(good.error());
+        auto tree = read_tree(*reader);
+        if (!tree) return tl::unexpected(tree.error());
+        baked.tree_.emplace(std::move(*tree));
+        if (const auto good = baked.check_instances(); !good) return tl::unexpected(good.error());
+        return baked;
+    });
 }
 
-Result<BakedScene> BakedScene::open(const std::string& path, Executor& executor) {
-    auto file = MappedFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    auto baked = from_memory(file->bytes(), executor);
-    if (!baked) return fail(baked.error().code, baked.error().item, path + ": " + baked.error().message);
-    baked->file_.emplace(std::move(*file));
-    return baked;
+Result<BakedScene> BakedScene::open(const std::string& path, Executor& executor, const FileOptions& options) {
+    return detail::recover([&]() -> Result<BakedScene> {
+        auto file = MappedFile::open(path, options);
+        if (!file) return tl::unexpected(file.error());
+        auto baked = from_memory(file->bytes(), executor);
+        if (!baked) return fail(baked.error().code, baked.error().item, path + ": " + baked.error().message);
+        baked->file_.emplace(std::move(*file));
+        return baked;
+    });
 }
 
 MeshView BakedScene::mesh(scene::MeshId id) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <crofton/bake/checksum.hpp>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/core/recovery.hpp>
 #include <string>
 
 namespace crofton::bake {
@@ -101,24 +102,26 @@ Vector<std::byte> Writer::finish() {
 }
 
 Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor) {
-    CROFTON_ASSERT(reinterpret_cast<std::uintptr_t>(file.data()) % kAlignment == 0,
-                   "the bytes start at a multiple of 64");
-    if (file.size() < sizeof(Header)) return damaged("too short for a .crofton file");
-    Header header;
-    std::memcpy(&header, file.data(), sizeof header);
-    if (const auto good = check_header(header, file.size()); !good) return tl::unexpected(good.error());
-    Reader reader;
-    reader.file_ = file;
-    reader.sections_ = {reinterpret_cast<const Section*>(file.data() + sizeof(Header)), header.section_count};
-    if (header.table_checksum != checksum_of(header, reader.sections_))
-        return damaged("the header or the table of sections is damaged (its checksum differs)");
-    if (const auto good = check_places(file, reader.sections_); !good) return tl::unexpected(good.error());
-    for (std::size_t i = 0; i < reader.sections_.size(); ++i) {
-        const Section& section = reader.sections_[i];
-        if (checksum(file.subspan(section.offset, section.size), executor) != section.checksum)
-            return damaged(name_of(section) + " is damaged (its checksum differs)", i);
-    }
-    return reader;
+    return detail::recover([&]() -> Result<Reader> {
+        CROFTON_ASSERT(reinterpret_cast<std::uintptr_t>(file.data()) % kAlignment == 0,
+                       "the bytes start at a multiple of 64");
+        if (file.size() < sizeof(Header)) return damaged("too short for a .crofton file");
+        Header header;
+        std::memcpy(&header, file.data(), sizeof header);
+        if (const auto good = check_header(header, file.size()); !good) return tl::unexpected(good.error());
+        Reader reader;
+        reader.file_ = file;
+        reader.sections_ = {reinterpret_cast<const Section*>(file.data() + sizeof(Header)), header.section_count};
+        if (header.table_checksum != checksum_of(header, reader.sections_))
+            return damaged("the header or the table of sections is damaged (its checksum differs)");
+        if (const auto good = check_places(file, reader.sections_); !good) return tl::unexpected(good.error());
+        for (std::size_t i = 0; i < reader.sections_.size(); ++i) {
+            const Section& section = reader.sections_[i];
+            if (checksum(file.subspan(section.offset, section.size), executor) != section.checksum)
+                return damaged(name_of(section) + " is damaged (its checksum differs)", i);
+        }
+        return reader;
+    });
 }
 
 Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size_t element_size) const {

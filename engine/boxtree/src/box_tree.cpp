@@ -5,6 +5,7 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/core/recovery.hpp>
 
 #include "bounds.hpp"
 #include "leaf_writer.hpp"
@@ -30,35 +31,40 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, const BuildOptions& o
 
 Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
                                const BuildOptions& options, Executor& executor) {
-    if (boxes.size() > kMaxItems) return fail(ErrorCode::out_of_range, kMaxItems, "box tree: more than 2^30 boxes");
-    if (!layer_masks.empty() && layer_masks.size() != boxes.size())
-        return fail(ErrorCode::invalid_argument, kNoItem, "box tree: as many layer masks as boxes are needed, or none");
-    if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
-    Vector<std::uint64_t> moving((boxes.size() + 63) / 64, 0);
-    for (const ItemId item : options.moving) {
-        if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item that moves");
-        moving[item / 64] |= std::uint64_t{1} << item % 64;
-    }
-    const auto moves = [](const void* bits, ItemId item) {
-        return (static_cast<const std::uint64_t*>(bits)[item / 64] >> item % 64 & 1) != 0;
-    };
-    BoxTree tree;
-    tree.criterion_ = options.criterion;
-    Aabb scene;
-    if (auto taken = tree.copy_and_validate(boxes, scene); !taken) return tl::unexpected(taken.error());
-    tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
-    tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
-    for (const ItemId item : options.detached) {
-        if (item >= boxes.size()) return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
-        if (!tree.is_detached(item)) tree.set_detached(item, true);
-    }
-    Builder builder(scene, tree.item_count(), options.criterion);
-    for (ItemId item = 0; item < boxes.size(); ++item)
-        if (!tree.is_detached(item)) builder.add(item, tree.boxes_[item]);
-    while (!builder.prepare(~std::size_t{0} / 8, tree.boxes_, {moves, moving.data()})) {
-    }
-    tree.build_subtrees(builder, executor);
-    return tree;
+    return detail::recover([&]() -> Result<BoxTree> {
+        if (boxes.size() > kMaxItems) return fail(ErrorCode::out_of_range, kMaxItems, "box tree: more than 2^30 boxes");
+        if (!layer_masks.empty() && layer_masks.size() != boxes.size())
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "box tree: as many layer masks as boxes are needed, or none");
+        if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+        Vector<std::uint64_t> moving((boxes.size() + 63) / 64, 0);
+        for (const ItemId item : options.moving) {
+            if (item >= boxes.size())
+                return fail(ErrorCode::out_of_range, item, "box tree: no box for an item that moves");
+            moving[item / 64] |= std::uint64_t{1} << item % 64;
+        }
+        const auto moves = [](const void* bits, ItemId item) {
+            return (static_cast<const std::uint64_t*>(bits)[item / 64] >> item % 64 & 1) != 0;
+        };
+        BoxTree tree;
+        tree.criterion_ = options.criterion;
+        Aabb scene;
+        if (auto taken = tree.copy_and_validate(boxes, scene); !taken) return tl::unexpected(taken.error());
+        tree.layer_masks_.assign(layer_masks.begin(), layer_masks.end());
+        tree.layer_masks_.resize(boxes.size(), ~std::uint32_t{0});
+        for (const ItemId item : options.detached) {
+            if (item >= boxes.size())
+                return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
+            if (!tree.is_detached(item)) tree.set_detached(item, true);
+        }
+        Builder builder(scene, tree.item_count(), options.criterion);
+        for (ItemId item = 0; item < boxes.size(); ++item)
+            if (!tree.is_detached(item)) builder.add(item, tree.boxes_[item]);
+        while (!builder.prepare(~std::size_t{0} / 8, tree.boxes_, {moves, moving.data()})) {
+        }
+        tree.build_subtrees(builder, executor);
+        return tree;
+    });
 }
 
 // Checks the boxes and copies them while they are at hand.
@@ -86,7 +92,7 @@ void BoxTree::build_subtrees(Builder& builder, Executor& executor) {
         const std::size_t count = std::min(kSubtreeBatch, subtrees.size() - first);
         const Subtree& last = subtrees[first + count - 1];
         structure_.leaves.resize(last.first_leaf + last.leaves);
-        executor.parallel_for(count, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        detail::recoverable_for(executor, count, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
             for (std::size_t s = first + begin; s < first + end; ++s) {
                 builder.build(s, workers[worker], boxes_);
                 const Subtree& subtree = subtrees[s];

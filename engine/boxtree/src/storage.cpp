@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trees as byte strings.
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/recovery.hpp>
 #include <cstring>
 
 namespace crofton::boxtree {
@@ -58,40 +59,42 @@ Vector<std::byte> BoxTree::serialise() const {
 }
 
 Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust trust) {
-    const auto damaged = [](const char* why) {
-        return fail(ErrorCode::parse, kNoItem, std::string("stored box tree: ") + why);
-    };
-    Header header;
-    const Header expected;
-    if (bytes.size() < sizeof(header)) return damaged("too short");
-    std::memcpy(&header, bytes.data(), sizeof(header));
-    if (std::memcmp(header.magic, expected.magic, sizeof(header.magic)) != 0) return damaged("not a box tree");
-    if (header.version != expected.version || header.byte_order != expected.byte_order ||
-        header.node_bytes != expected.node_bytes || header.leaf_bytes != expected.leaf_bytes ||
-        header.box_bytes != expected.box_bytes)
-        return damaged("written by another version or on another kind of machine");
-    if (header.boxes > (1u << 30) || header.free_items > header.boxes || header.nodes > (1u << 30) ||
-        header.leaves > (1u << 30) || header.height == 0 || header.height > 64)
-        return damaged("sizes out of range");
-    BoxTree tree;
-    tree.criterion_ = {header.criterion[0], header.criterion[1], header.criterion[2]};
-    tree.structure_.height = header.height;
-    std::size_t expected_size = sizeof(header);
-    TreeStorage::arrays(tree, header,
-                        [&](const auto& array, std::uint64_t count) { expected_size += count * sizeof(array[0]); });
-    if (bytes.size() != expected_size) return damaged("cut short, or too long");
-    std::size_t at = sizeof(header);
-    TreeStorage::arrays(tree, header, [&](auto& array, std::uint64_t count) {
-        array.resize(count);
-        if (count > 0) std::memcpy(static_cast<void*>(array.data()), bytes.data() + at, count * sizeof(array[0]));
-        at += count * sizeof(array[0]);
+    return detail::recover([&]() -> Result<BoxTree> {
+        const auto damaged = [](const char* why) {
+            return fail(ErrorCode::parse, kNoItem, std::string("stored box tree: ") + why);
+        };
+        Header header;
+        const Header expected;
+        if (bytes.size() < sizeof(header)) return damaged("too short");
+        std::memcpy(&header, bytes.data(), sizeof(header));
+        if (std::memcmp(header.magic, expected.magic, sizeof(header.magic)) != 0) return damaged("not a box tree");
+        if (header.version != expected.version || header.byte_order != expected.byte_order ||
+            header.node_bytes != expected.node_bytes || header.leaf_bytes != expected.leaf_bytes ||
+            header.box_bytes != expected.box_bytes)
+            return damaged("written by another version or on another kind of machine");
+        if (header.boxes > (1u << 30) || header.free_items > header.boxes || header.nodes > (1u << 30) ||
+            header.leaves > (1u << 30) || header.height == 0 || header.height > 64)
+            return damaged("sizes out of range");
+        BoxTree tree;
+        tree.criterion_ = {header.criterion[0], header.criterion[1], header.criterion[2]};
+        tree.structure_.height = header.height;
+        std::size_t expected_size = sizeof(header);
+        TreeStorage::arrays(tree, header,
+                            [&](const auto& array, std::uint64_t count) { expected_size += count * sizeof(array[0]); });
+        if (bytes.size() != expected_size) return damaged("cut short, or too long");
+        std::size_t at = sizeof(header);
+        TreeStorage::arrays(tree, header, [&](auto& array, std::uint64_t count) {
+            array.resize(count);
+            if (count > 0) std::memcpy(static_cast<void*>(array.data()), bytes.data() + at, count * sizeof(array[0]));
+            at += count * sizeof(array[0]);
+        });
+        clear_marks(tree.structure_);
+        tree.find_detached();
+        if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
+        if (auto valid = tree.validate(trust); !valid)
+            return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);
+        return tree;
     });
-    clear_marks(tree.structure_);
-    tree.find_detached();
-    if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
-    if (auto valid = tree.validate(trust); !valid)
-        return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);
-    return tree;
 }
 
 }  // namespace crofton::boxtree

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/capi/bake.h>
 
-#include <cerrno>
 #include <crofton/bake/baked_scene.hpp>
-#include <cstdio>
-#include <cstring>
-#include <string>
+#include <crofton/bake/write_file.hpp>
 
 #include "call.hpp"
 #include "convert.hpp"
@@ -28,19 +25,6 @@ struct crofton_baked_scene {
 
 namespace {
 
-crofton_status write_file(const char* path, std::span<const std::byte> bytes, const char* function) {
-    std::FILE* file = std::fopen(path, "wb");
-    bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    int reason = errno;
-    if (file != nullptr && std::fclose(file) != 0 && written) {
-        written = false;
-        reason = errno;
-    }
-    if (written) return CROFTON_OK;
-    if (file != nullptr) std::remove(path);
-    return report(CROFTON_IO, function, (std::string(path) + ": " + std::strerror(reason)).c_str());
-}
-
 // Gives an array where the call has all it needs.
 template <class From, class To>
 crofton_status give(std::span<const From> from, const To** array, std::size_t* count, const char* function) {
@@ -48,6 +32,25 @@ crofton_status give(std::span<const From> from, const To** array, std::size_t* c
     CROFTON_CHECK(check_pointer(count, function));
     *array = reinterpret_cast<const To*>(from.data());
     *count = from.size();
+    return CROFTON_OK;
+}
+
+crofton_status open_file(const char* path, const crofton_jobs* jobs, bake::FileAccess access,
+                         crofton_baked_scene** baked, crofton_tree** tree, const char* function) {
+    CROFTON_CHECK(check_pointer(path, function));
+    CROFTON_CHECK(check_jobs(jobs, function));
+    CROFTON_CHECK(check_pointer(baked, function));
+    CROFTON_CHECK(check_pointer(tree, function));
+    HostJobs executor(jobs);
+    auto opened = bake::BakedScene::open(path, executor, {.access = access});
+    if (!opened) return report(opened.error(), function);
+    crofton_tree* made = nullptr;
+    CROFTON_CHECK(create(&made, function, std::move(opened->tree())));
+    if (const crofton_status status = create(baked, function, std::move(*opened)); status != CROFTON_OK) {
+        static_cast<void>(destroy(made, function));
+        return status;
+    }
+    *tree = made;
     return CROFTON_OK;
 }
 
@@ -61,21 +64,18 @@ crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, 
     HostJobs executor(jobs);
     const auto bytes = bake::bake(scene->scene, executor);
     if (!bytes) return report(bytes.error(), __func__);
-    return write_file(path, *bytes, __func__);
+    const auto written = bake::write_file(path, *bytes);
+    return written ? CROFTON_OK : report(written.error(), __func__);
 }
 
 crofton_status crofton_baked_scene_open(const char* path, const crofton_jobs* jobs, crofton_baked_scene** baked,
                                         crofton_tree** tree) {
-    CROFTON_CHECK(check_pointer(path, __func__));
-    CROFTON_CHECK(check_jobs(jobs, __func__));
-    CROFTON_CHECK(check_pointer(baked, __func__));
-    CROFTON_CHECK(check_pointer(tree, __func__));
-    HostJobs executor(jobs);
-    auto opened = bake::BakedScene::open(path, executor);
-    if (!opened) return report(opened.error(), __func__);
-    *tree = create<crofton_tree>(std::move(opened->tree()));
-    *baked = create<crofton_baked_scene>(std::move(*opened));
-    return CROFTON_OK;
+    return open_file(path, jobs, bake::FileAccess::map, baked, tree, __func__);
+}
+
+crofton_status crofton_baked_scene_read(const char* path, const crofton_jobs* jobs, crofton_baked_scene** baked,
+                                        crofton_tree** tree) {
+    return open_file(path, jobs, bake::FileAccess::read, baked, tree, __func__);
 }
 
 crofton_status crofton_baked_scene_destroy(crofton_baked_scene* baked) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/recovery.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <new>
@@ -107,11 +108,19 @@ template <class T>
     return pointer || capacity == 0 ? CROFTON_OK : report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
 }
 
-// Handles live in the host's memory.
+// Handles live in the host's memory. Where there is none, `*handle` stays as it was.
 template <class Handle, class... Arguments>
-[[nodiscard]] Handle* create(Arguments&&... arguments) {
-    void* memory = detail::allocate(sizeof(Handle), alignof(Handle));
-    return new (memory) Handle{{Handle::kKind}, std::forward<Arguments>(arguments)...};
+[[nodiscard]] crofton_status create(Handle** handle, const char* function, Arguments&&... arguments) {
+    const detail::Recovery recovery;
+    void* memory = detail::try_allocate(sizeof(Handle), alignof(Handle));
+    try {
+        if (!memory) throw std::bad_alloc();
+        *handle = new (memory) Handle{{Handle::kKind}, std::forward<Arguments>(arguments)...};
+        return CROFTON_OK;
+    } catch (const std::bad_alloc&) {
+        detail::release(memory, sizeof(Handle), alignof(Handle));
+        return report(CROFTON_OUT_OF_MEMORY, function, "out of memory");
+    }
 }
 template <class Handle>
 [[nodiscard]] crofton_status destroy(Handle* handle, const char* function) {

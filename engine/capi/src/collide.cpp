@@ -60,8 +60,7 @@ crofton_status crofton_boxes_meet(const crofton_box* a, const crofton_box* b, in
 
 crofton_status crofton_broadphase_create(crofton_broadphase** broadphase) {
     CROFTON_CHECK(check_pointer(broadphase, __func__));
-    *broadphase = create<crofton_broadphase>();
-    return CROFTON_OK;
+    return create(broadphase, __func__);
 }
 
 crofton_status crofton_broadphase_destroy(crofton_broadphase* broadphase) {
@@ -108,8 +107,7 @@ crofton_status crofton_collider_create(const crofton_mesh* mesh, crofton_collide
     CROFTON_CHECK(to_mesh(mesh, __func__, copy));
     auto built = mesh::MeshTree::build(copy);
     if (!built) return report(built.error(), __func__);
-    *collider = create<crofton_collider>(std::move(*built));
-    return CROFTON_OK;
+    return create(collider, __func__, std::move(*built));
 }
 
 crofton_status crofton_collider_destroy(crofton_collider* collider) {

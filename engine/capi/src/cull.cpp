@@ -34,8 +34,7 @@ crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* lay
     auto built =
         boxtree::BoxTree::build(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0), {}, executor);
     if (!built) return report(built.error(), __func__);
-    *tree = create<crofton_tree>(std::move(*built));
-    return CROFTON_OK;
+    return create(tree, __func__, std::move(*built));
 }
 
 crofton_status crofton_tree_destroy(crofton_tree* tree) {
@@ -89,8 +88,7 @@ crofton_status crofton_tree_rebuild_step(crofton_tree* tree, size_t budget) {
 
 crofton_status crofton_visible_set_create(crofton_visible_set** visible) {
     CROFTON_CHECK(check_pointer(visible, __func__));
-    *visible = create<crofton_visible_set>();
-    return CROFTON_OK;
+    return create(visible, __func__);
 }
 
 crofton_status crofton_visible_set_destroy(crofton_visible_set* visible) {

@@ -29,7 +29,9 @@ crofton_status report(const Error& error, const char* function) {
     // Statuses 1 to 13 are the codes, in their order.
     static_assert(static_cast<int>(ErrorCode::internal) + 1 == CROFTON_INTERNAL);
     static_assert(static_cast<int>(ErrorCode::parse) + 1 == CROFTON_PARSE);
-    const auto status = static_cast<crofton_status>(static_cast<int>(error.code) + 1);
+    const auto status = error.code == ErrorCode::out_of_memory
+                            ? CROFTON_OUT_OF_MEMORY
+                            : static_cast<crofton_status>(static_cast<int>(error.code) + 1);
     return report(status, function, error.message.c_str(), error.item);
 }
 
@@ -58,6 +60,8 @@ const char* crofton_status_name(int status) {
             return "wrong struct size";
         case CROFTON_BUSY:
             return "busy";
+        case CROFTON_OUT_OF_MEMORY:
+            return crofton::to_string(crofton::ErrorCode::out_of_memory);
         default:
             break;
     }

@@ -35,8 +35,7 @@ crofton_status give(const Result<std::uint32_t>& result, std::uint32_t* id, cons
 
 crofton_status crofton_scene_create(crofton_scene** scene) {
     CROFTON_CHECK(check_pointer(scene, __func__));
-    *scene = create<crofton_scene>();
-    return CROFTON_OK;
+    return create(scene, __func__);
 }
 
 crofton_status crofton_scene_destroy(crofton_scene* scene) {

@@ -41,8 +41,7 @@ crofton_status copy_polygon(const crofton_polygon* polygon, const char* function
 
 crofton_status crofton_triangulator_create(crofton_triangulator** triangulator) {
     CROFTON_CHECK(check_pointer(triangulator, __func__));
-    *triangulator = create<crofton_triangulator>();
-    return CROFTON_OK;
+    return create(triangulator, __func__);
 }
 
 crofton_status crofton_triangulator_destroy(crofton_triangulator* triangulator) {

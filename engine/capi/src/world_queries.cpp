@@ -186,8 +186,7 @@ crofton_status crofton_world_raycast_any(const crofton_world* world, const croft
 
 crofton_status crofton_found_create(crofton_found** found) {
     CROFTON_CHECK(check_pointer(found, __func__));
-    *found = create<crofton_found>();
-    return CROFTON_OK;
+    return create(found, __func__);
 }
 
 crofton_status crofton_found_destroy(crofton_found* found) {

@@ -46,8 +46,7 @@ crofton_status count_listed(const Visible& visible, const crofton_world& world, 
 
 crofton_status crofton_visible_objects_create(crofton_visible_objects** visible) {
     CROFTON_CHECK(check_pointer(visible, __func__));
-    *visible = create<crofton_visible_objects>();
-    return CROFTON_OK;
+    return create(visible, __func__);
 }
 
 crofton_status crofton_visible_objects_destroy(crofton_visible_objects* visible) {
@@ -126,8 +125,7 @@ crofton_status crofton_visible_objects_get_statistics(const crofton_visible_obje
 
 crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible) {
     CROFTON_CHECK(check_pointer(visible, __func__));
-    *visible = create<crofton_visible_in_views>();
-    return CROFTON_OK;
+    return create(visible, __func__);
 }
 
 crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible) {

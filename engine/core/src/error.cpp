@@ -31,6 +31,8 @@ const char* to_string(ErrorCode code) {
             return "stale handle";
         case ErrorCode::internal:
             return "internal";
+        case ErrorCode::out_of_memory:
+            return "out of memory";
     }
     return "unknown";
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/memory.hpp>
+#include <crofton/core/recovery.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -33,6 +34,7 @@ void default_release(void*, void* memory, std::size_t bytes, std::size_t alignme
 
 constexpr MemoryHooks kDefaultHooks{default_allocate, default_release, nullptr};
 MemoryHooks hooks_in_force = kDefaultHooks;
+thread_local int recoveries = 0;
 
 }  // namespace
 
@@ -43,9 +45,21 @@ void reset_memory_hooks() {
     hooks_in_force = kDefaultHooks;
 }
 
+detail::Recovery::Recovery() {
+    ++recoveries;
+}
+detail::Recovery::~Recovery() {
+    --recoveries;
+}
+
+void* detail::try_allocate(std::size_t bytes, std::size_t alignment) {
+    return hooks_in_force.allocate(hooks_in_force.user, bytes, alignment);
+}
+
 void* detail::allocate(std::size_t bytes, std::size_t alignment) {
-    void* memory = hooks_in_force.allocate(hooks_in_force.user, bytes, alignment);
+    void* memory = try_allocate(bytes, alignment);
     if (!memory) {
+        if (recoveries > 0) throw std::bad_alloc();
         std::fprintf(stderr, "crofton: out of memory for %zu bytes\n", bytes);
         std::abort();
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 
 #include "fitter.hpp"
@@ -6,10 +7,10 @@
 namespace crofton::fit {
 
 Result<ExactFit> fit_exact(std::span<const glm::vec3> points, const ExactOptions& options) {
-    return Fitter().exact(points, options);
+    return detail::recover([&]() -> Result<ExactFit> { return Fitter().exact(points, options); });
 }
 Result<ExactFit> fit_exact(std::span<const glm::dvec3> points, const ExactOptions& options) {
-    return Fitter().exact(points, options);
+    return detail::recover([&]() -> Result<ExactFit> { return Fitter().exact(points, options); });
 }
 
 }  // namespace crofton::fit

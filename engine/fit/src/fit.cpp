@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 
 #include "cloud/enclose.hpp"
@@ -7,10 +8,10 @@
 namespace crofton::fit {
 
 Result<Obb> fit_obb(std::span<const glm::vec3> points, const FitOptions& options) {
-    return Fitter().fit(points, options);
+    return detail::recover([&]() -> Result<Obb> { return Fitter().fit(points, options); });
 }
 Result<Obb> fit_obb(std::span<const glm::dvec3> points, const FitOptions& options) {
-    return Fitter().fit(points, options);
+    return detail::recover([&]() -> Result<Obb> { return Fitter().fit(points, options); });
 }
 
 namespace {
@@ -28,10 +29,10 @@ Result<Obb> around(std::span<const Point> points, const glm::mat3& axes) {
 }  // namespace
 
 Result<Obb> fit_oriented(std::span<const glm::vec3> points, const glm::mat3& axes) {
-    return around(points, axes);
+    return detail::recover([&]() -> Result<Obb> { return around(points, axes); });
 }
 Result<Obb> fit_oriented(std::span<const glm::dvec3> points, const glm::mat3& axes) {
-    return around(points, axes);
+    return detail::recover([&]() -> Result<Obb> { return around(points, axes); });
 }
 
 }  // namespace crofton::fit

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <crofton/core/diagnostics.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 #include <memory>
 #include <string>
@@ -33,29 +34,32 @@ Result<Obb> fit_cluster(const Clusters& clusters, std::size_t i, const FitOption
 }  // namespace
 
 Result<void> fit_many(const Clusters& clusters, const FitOptions& options, Executor& executor, std::span<Obb> boxes) {
-    CROFTON_ASSERT(boxes.size() == clusters.ends.size(), "fit_many: one box per cluster");
-    if (auto valid = measure::validate(options.criterion); !valid) return valid;
-    if (clusters.ends.empty()) return {};
-    const unsigned count = executor.concurrency();
-    // Workers are neither copied nor moved, hence not a Vector.
-    const std::unique_ptr<Worker[]> workers(new Worker[count]);
-    const auto body = [&](std::size_t begin, std::size_t end, unsigned w) {
-        Worker& worker = workers[w];
-        for (std::size_t i = begin; i < end; ++i) {
-            Result<Obb> box = fit_cluster(clusters, i, options, worker);
-            boxes[i] = box ? *box : Obb();
-            if (!box && i < worker.first_bad) {
-                worker.first_bad = i;
-                worker.error = std::move(box.error());
+    return detail::recover([&]() -> Result<void> {
+        CROFTON_ASSERT(boxes.size() == clusters.ends.size(), "fit_many: one box per cluster");
+        if (auto valid = measure::validate(options.criterion); !valid) return valid;
+        if (clusters.ends.empty()) return {};
+        const unsigned count = executor.concurrency();
+        // Workers are neither copied nor moved, hence not a Vector.
+        const std::unique_ptr<Worker[]> workers(new Worker[count]);
+        const auto body = [&](std::size_t begin, std::size_t end, unsigned w) {
+            Worker& worker = workers[w];
+            for (std::size_t i = begin; i < end; ++i) {
+                Result<Obb> box = fit_cluster(clusters, i, options, worker);
+                boxes[i] = box ? *box : Obb();
+                if (!box && i < worker.first_bad) {
+                    worker.first_bad = i;
+                    worker.error = std::move(box.error());
+                }
             }
-        }
-    };
-    executor.parallel_for(clusters.ends.size(), 32, body);
-    const Worker* first = std::min_element(workers.get(), workers.get() + count,
-                                           [](const Worker& a, const Worker& b) { return a.first_bad < b.first_bad; });
-    if (first->first_bad == ~std::size_t{0}) return {};
-    return fail(first->error.code, first->first_bad,
-                "cluster " + std::to_string(first->first_bad) + ": " + first->error.message);
+        };
+        detail::recoverable_for(executor, clusters.ends.size(), 32, body);
+        const Worker* first =
+            std::min_element(workers.get(), workers.get() + count,
+                             [](const Worker& a, const Worker& b) { return a.first_bad < b.first_bad; });
+        if (first->first_bad == ~std::size_t{0}) return {};
+        return fail(first->error.code, first->first_bad,
+                    "cluster " + std::to_string(first->first_bad) + ": " + first->error.message);
+    });
 }
 
 }  // namespace crofton::fit

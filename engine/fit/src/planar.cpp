@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
@@ -77,53 +78,59 @@ Result<void> check_planar(std::span<const glm::dvec2> points) {
 }
 
 Result<Rectangle> minimal_rectangle(std::span<const glm::dvec2> points, PlanarCriterion criterion) {
-    if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
-    const auto hull = measure::convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
-    return minimal_rectangle_of_convex(*hull, criterion);
+    return detail::recover([&]() -> Result<Rectangle> {
+        if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
+        const auto hull = measure::convex_hull(points);
+        if (!hull) return tl::unexpected(hull.error());
+        return minimal_rectangle_of_convex(*hull, criterion);
+    });
 }
 
 Result<Rectangle> minimal_rectangle_of_convex(std::span<const glm::dvec2> polygon, PlanarCriterion criterion) {
-    if (auto valid = check_planar(polygon); !valid) return tl::unexpected(valid.error());
-    const bool by_area = criterion == PlanarCriterion::area;
-    const Calipers best = minimal_rectangle(polygon, by_area ? 1.0 : 0.0, by_area ? 0.0 : 1.0);
-    return around(polygon, best.direction);
+    return detail::recover([&]() -> Result<Rectangle> {
+        if (auto valid = check_planar(polygon); !valid) return tl::unexpected(valid.error());
+        const bool by_area = criterion == PlanarCriterion::area;
+        const Calipers best = minimal_rectangle(polygon, by_area ? 1.0 : 0.0, by_area ? 0.0 : 1.0);
+        return around(polygon, best.direction);
+    });
 }
 
 Result<Disc> minimal_disc(std::span<const glm::dvec2> points) {
-    if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
-    auto hull = measure::convex_hull(points);
-    if (!hull) return tl::unexpected(hull.error());
-    Vector<glm::dvec2>& corners = *hull;
-    // A fixed shuffle suffices: the order around the hull is the bad case.
-    std::uint64_t state = 0x9e3779b97f4a7c15u;
-    for (std::size_t i = corners.size(); i > 1; --i) {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        std::swap(corners[i - 1], corners[(state >> 33) % i]);
-    }
-    // Work near the origin, so that squares do not lose what the coordinates hold.
-    const glm::dvec2 origin = corners[0];
-    for (glm::dvec2& p : corners) p -= origin;
-    Disc disc;
-    const auto outside = [&](const glm::dvec2& p) {
-        return glm::distance(p, disc.center) > disc.radius * (1.0 + 1e-14);
-    };
-    for (std::size_t i = 1; i < corners.size(); ++i) {
-        if (!outside(corners[i])) continue;
-        disc = {corners[i], 0.0};
-        for (std::size_t j = 0; j < i; ++j) {
-            if (!outside(corners[j])) continue;
-            disc = through(corners[i], corners[j]);
-            for (std::size_t k = 0; k < j; ++k)
-                if (outside(corners[k])) disc = through(corners[i], corners[j], corners[k]);
+    return detail::recover([&]() -> Result<Disc> {
+        if (auto valid = check_planar(points); !valid) return tl::unexpected(valid.error());
+        auto hull = measure::convex_hull(points);
+        if (!hull) return tl::unexpected(hull.error());
+        Vector<glm::dvec2>& corners = *hull;
+        // A fixed shuffle suffices: the order around the hull is the bad case.
+        std::uint64_t state = 0x9e3779b97f4a7c15u;
+        for (std::size_t i = corners.size(); i > 1; --i) {
+            state = state * 6364136223846793005u + 1442695040888963407u;
+            std::swap(corners[i - 1], corners[(state >> 33) % i]);
         }
-    }
-    disc.center += origin;
-    disc.radius = 0.0;
-    // Differences, squares, sum and root round by less than 4 units together.
-    for (const glm::dvec2& p : points)
-        disc.radius = std::max(disc.radius, glm::distance(p, disc.center) * (1.0 + 5.0 * kUnit));
-    return disc;
+        // Work near the origin, so that squares do not lose what the coordinates hold.
+        const glm::dvec2 origin = corners[0];
+        for (glm::dvec2& p : corners) p -= origin;
+        Disc disc;
+        const auto outside = [&](const glm::dvec2& p) {
+            return glm::distance(p, disc.center) > disc.radius * (1.0 + 1e-14);
+        };
+        for (std::size_t i = 1; i < corners.size(); ++i) {
+            if (!outside(corners[i])) continue;
+            disc = {corners[i], 0.0};
+            for (std::size_t j = 0; j < i; ++j) {
+                if (!outside(corners[j])) continue;
+                disc = through(corners[i], corners[j]);
+                for (std::size_t k = 0; k < j; ++k)
+                    if (outside(corners[k])) disc = through(corners[i], corners[j], corners[k]);
+            }
+        }
+        disc.center += origin;
+        disc.radius = 0.0;
+        // Differences, squares, sum and root round by less than 4 units together.
+        for (const glm::dvec2& p : points)
+            disc.radius = std::max(disc.radius, glm::distance(p, disc.center) * (1.0 + 5.0 * kUnit));
+        return disc;
+    });
 }
 
 }  // namespace crofton::fit

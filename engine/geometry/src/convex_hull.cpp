@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <cstdio>
@@ -250,10 +251,10 @@ Result<ConvexHull> hull_of(std::span<const Point> points) {
 }  // namespace
 
 Result<ConvexHull> convex_hull(std::span<const glm::vec3> points) {
-    return hull_of(points);
+    return detail::recover([&]() -> Result<ConvexHull> { return hull_of(points); });
 }
 Result<ConvexHull> convex_hull(std::span<const glm::dvec3> points) {
-    return hull_of(points);
+    return detail::recover([&]() -> Result<ConvexHull> { return hull_of(points); });
 }
 
 }  // namespace crofton

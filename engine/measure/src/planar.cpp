@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/measure/intrinsic_volumes.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -42,26 +43,28 @@ PlanarMeasures planar_measures_of_convex_polygon(std::span<const glm::dvec2> poi
 }
 
 Result<Vector<glm::dvec2>> convex_hull(std::span<const glm::dvec2> points) {
-    if (points.empty()) return fail(ErrorCode::empty, kNoItem, "convex hull: no points");
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y))
-            return fail(ErrorCode::non_finite, i, "convex hull: a point is NaN or infinite");
-    Vector<glm::dvec2> sorted(points.begin(), points.end());
-    std::sort(sorted.begin(), sorted.end(), before);
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    if (sorted.size() < 3) return sorted;
-    Vector<glm::dvec2> hull;
-    hull.reserve(sorted.size() + 1);
-    const auto add = [&](const glm::dvec2& p, std::size_t floor) {
-        while (hull.size() >= floor + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
-            hull.pop_back();
-        hull.push_back(p);
-    };
-    for (const glm::dvec2& p : sorted) add(p, 0);
-    const std::size_t lower = hull.size() - 1;
-    for (std::size_t i = sorted.size() - 1; i-- > 0;) add(sorted[i], lower);
-    hull.pop_back();
-    return hull;
+    return detail::recover([&]() -> Result<Vector<glm::dvec2>> {
+        if (points.empty()) return fail(ErrorCode::empty, kNoItem, "convex hull: no points");
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y))
+                return fail(ErrorCode::non_finite, i, "convex hull: a point is NaN or infinite");
+        Vector<glm::dvec2> sorted(points.begin(), points.end());
+        std::sort(sorted.begin(), sorted.end(), before);
+        sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+        if (sorted.size() < 3) return sorted;
+        Vector<glm::dvec2> hull;
+        hull.reserve(sorted.size() + 1);
+        const auto add = [&](const glm::dvec2& p, std::size_t floor) {
+            while (hull.size() >= floor + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
+                hull.pop_back();
+            hull.push_back(p);
+        };
+        for (const glm::dvec2& p : sorted) add(p, 0);
+        const std::size_t lower = hull.size() - 1;
+        for (std::size_t i = sorted.size() - 1; i-- > 0;) add(sorted[i], lower);
+        hull.pop_back();
+        return hull;
+    });
 }
 
 double kinematic_measure(const PlanarMeasures& b, const PlanarMeasures& k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -264,7 +265,7 @@ Result<MeshTree> MeshTreeBuilder::build() {
 }
 
 Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {
-    return MeshTreeBuilder(mesh, options).build();
+    return detail::recover([&]() -> Result<MeshTree> { return MeshTreeBuilder(mesh, options).build(); });
 }
 
 }  // namespace crofton::mesh

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/bundle_tracer.hpp>
 #include <crofton/sampling/random.hpp>
 #include <glm/geometric.hpp>
@@ -146,23 +147,26 @@ BundleTracer::BundleTracer(BundleTracer&&) noexcept = default;
 BundleTracer& BundleTracer::operator=(BundleTracer&&) noexcept = default;
 
 Result<BundleTracer> BundleTracer::build(const TriangleMesh& mesh) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "bundle tracer: there are no triangles");
-    if (mesh.triangle_count() >= std::size_t{1} << 30)
-        return fail(ErrorCode::out_of_range, mesh.triangle_count(), "bundle tracer: 2^30 triangles or more");
-    BundleTracer tracer;
-    for (const std::uint32_t i : mesh.indices) tracer.bounds_.include(glm::dvec3(mesh.positions[i]));
-    tracer.origin_ = tracer.bounds_.center();
-    tracer.tie_ = static_cast<float>(1e-6 * glm::length(tracer.bounds_.half_extents()));
-    tracer.triangles_ = mesh.triangle_count();
-    tracer.blocks_.assign((tracer.triangles_ + detail::kDrawLanes - 1) / detail::kDrawLanes, {});
-    for (std::size_t t = 0; t < tracer.triangles_; ++t)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const glm::dvec3 p = glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]) - tracer.origin_;
-            for (int k = 0; k < 3; ++k)
-                tracer.blocks_[t / detail::kDrawLanes].corner[c][k][t % detail::kDrawLanes] = static_cast<float>(p[k]);
-        }
-    return tracer;
+    return crofton::detail::recover([&]() -> Result<BundleTracer> {
+        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "bundle tracer: there are no triangles");
+        if (mesh.triangle_count() >= std::size_t{1} << 30)
+            return fail(ErrorCode::out_of_range, mesh.triangle_count(), "bundle tracer: 2^30 triangles or more");
+        BundleTracer tracer;
+        for (const std::uint32_t i : mesh.indices) tracer.bounds_.include(glm::dvec3(mesh.positions[i]));
+        tracer.origin_ = tracer.bounds_.center();
+        tracer.tie_ = static_cast<float>(1e-6 * glm::length(tracer.bounds_.half_extents()));
+        tracer.triangles_ = mesh.triangle_count();
+        tracer.blocks_.assign((tracer.triangles_ + detail::kDrawLanes - 1) / detail::kDrawLanes, {});
+        for (std::size_t t = 0; t < tracer.triangles_; ++t)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const glm::dvec3 p = glm::dvec3(mesh.positions[mesh.indices[3 * t + c]]) - tracer.origin_;
+                for (int k = 0; k < 3; ++k)
+                    tracer.blocks_[t / detail::kDrawLanes].corner[c][k][t % detail::kDrawLanes] =
+                        static_cast<float>(p[k]);
+            }
+        return tracer;
+    });
 }
 
 std::size_t BundleTracer::bytes() const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/common.hpp>
@@ -241,11 +242,13 @@ class Mender {
 }  // namespace
 
 Result<RefinedMesh> mend_t_junctions(const TriangleMesh& mesh, double tolerance) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    if (!(tolerance >= 0.0))
-        return fail(ErrorCode::out_of_range, kNoItem, "mending: the tolerance must not be negative");
-    if (mesh.indices.empty()) return RefinedMesh{mesh, {}};
-    return Mender(mesh, tolerance).mend();
+    return crofton::detail::recover([&]() -> Result<RefinedMesh> {
+        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (!(tolerance >= 0.0))
+            return fail(ErrorCode::out_of_range, kNoItem, "mending: the tolerance must not be negative");
+        if (mesh.indices.empty()) return RefinedMesh{mesh, {}};
+        return Mender(mesh, tolerance).mend();
+    });
 }
 
 }  // namespace crofton::radiosity

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/line_tracer.hpp>
 #include <glm/geometric.hpp>
 
@@ -40,16 +41,18 @@ LineTracer::LineTracer(LineTracer&&) noexcept = default;
 LineTracer& LineTracer::operator=(LineTracer&&) noexcept = default;
 
 Result<LineTracer> LineTracer::build(const TriangleMesh& mesh) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "line tracer: there are no triangles");
-    if (mesh.triangle_count() >= std::size_t{1} << 30)
-        return fail(ErrorCode::out_of_range, mesh.triangle_count(), "line tracer: 2^30 triangles or more");
-    LineTracer tracer;
-    for (const std::uint32_t i : mesh.indices) tracer.bounds_.include(glm::dvec3(mesh.positions[i]));
-    tracer.origin_ = tracer.bounds_.center();
-    tracer.tie_ = static_cast<float>(1e-6 * glm::length(tracer.bounds_.half_extents()));
-    detail::build_tracer(mesh, tracer.origin_, tracer.nodes_, tracer.leaves_);
-    return tracer;
+    return crofton::detail::recover([&]() -> Result<LineTracer> {
+        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "line tracer: there are no triangles");
+        if (mesh.triangle_count() >= std::size_t{1} << 30)
+            return fail(ErrorCode::out_of_range, mesh.triangle_count(), "line tracer: 2^30 triangles or more");
+        LineTracer tracer;
+        for (const std::uint32_t i : mesh.indices) tracer.bounds_.include(glm::dvec3(mesh.positions[i]));
+        tracer.origin_ = tracer.bounds_.center();
+        tracer.tie_ = static_cast<float>(1e-6 * glm::length(tracer.bounds_.half_extents()));
+        detail::build_tracer(mesh, tracer.origin_, tracer.nodes_, tracer.leaves_);
+        return tracer;
+    });
 }
 
 std::size_t LineTracer::bytes() const {

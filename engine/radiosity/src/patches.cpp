@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
@@ -37,40 +38,44 @@ Result<void> check_materials(std::span<const Material> materials) {
 
 Result<Patches> make_patches(TriangleMesh mesh, std::span<const std::uint32_t> patch_of_triangle,
                              std::span<const Material> materials) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "patches: there are no triangles");
-    if (patch_of_triangle.size() != mesh.triangle_count())
-        return fail(ErrorCode::invalid_argument, patch_of_triangle.size(),
-                    "patches: not one patch number per triangle");
-    if (auto valid = check_materials(materials); !valid) return tl::unexpected(valid.error());
-    Patches patches;
-    patches.areas.assign(materials.size(), 0.0);
-    patches.triangle_areas.resize(patch_of_triangle.size());
-    for (std::size_t t = 0; t < patch_of_triangle.size(); ++t) {
-        const std::uint32_t p = patch_of_triangle[t];
-        if (p >= materials.size())
-            return fail(ErrorCode::out_of_range, t,
-                        "triangle " + std::to_string(t) + ": patch " + std::to_string(p) + " of " +
-                            std::to_string(materials.size()));
-        const double area = glm::length(area_vector(mesh, t));
-        if (!(area > 0.0) || !std::isfinite(area))
-            return fail(ErrorCode::degenerate, t, "triangle " + std::to_string(t) + ": has no area; leave it out");
-        patches.triangle_areas[t] = area;
-        patches.areas[p] += area;
-    }
-    for (std::size_t p = 0; p < materials.size(); ++p)
-        if (patches.areas[p] == 0.0)
-            return fail(ErrorCode::degenerate, p, "patch " + std::to_string(p) + ": has no triangles");
-    patches.mesh = std::move(mesh);
-    patches.patch_of_triangle.assign(patch_of_triangle.begin(), patch_of_triangle.end());
-    patches.materials.assign(materials.begin(), materials.end());
-    return patches;
+    return crofton::detail::recover([&]() -> Result<Patches> {
+        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        if (mesh.indices.empty()) return fail(ErrorCode::empty, kNoItem, "patches: there are no triangles");
+        if (patch_of_triangle.size() != mesh.triangle_count())
+            return fail(ErrorCode::invalid_argument, patch_of_triangle.size(),
+                        "patches: not one patch number per triangle");
+        if (auto valid = check_materials(materials); !valid) return tl::unexpected(valid.error());
+        Patches patches;
+        patches.areas.assign(materials.size(), 0.0);
+        patches.triangle_areas.resize(patch_of_triangle.size());
+        for (std::size_t t = 0; t < patch_of_triangle.size(); ++t) {
+            const std::uint32_t p = patch_of_triangle[t];
+            if (p >= materials.size())
+                return fail(ErrorCode::out_of_range, t,
+                            "triangle " + std::to_string(t) + ": patch " + std::to_string(p) + " of " +
+                                std::to_string(materials.size()));
+            const double area = glm::length(area_vector(mesh, t));
+            if (!(area > 0.0) || !std::isfinite(area))
+                return fail(ErrorCode::degenerate, t, "triangle " + std::to_string(t) + ": has no area; leave it out");
+            patches.triangle_areas[t] = area;
+            patches.areas[p] += area;
+        }
+        for (std::size_t p = 0; p < materials.size(); ++p)
+            if (patches.areas[p] == 0.0)
+                return fail(ErrorCode::degenerate, p, "patch " + std::to_string(p) + ": has no triangles");
+        patches.mesh = std::move(mesh);
+        patches.patch_of_triangle.assign(patch_of_triangle.begin(), patch_of_triangle.end());
+        patches.materials.assign(materials.begin(), materials.end());
+        return patches;
+    });
 }
 
 Result<Patches> make_patches(TriangleMesh mesh, std::span<const Material> materials) {
-    Vector<std::uint32_t> own(mesh.triangle_count());
-    std::iota(own.begin(), own.end(), 0u);
-    return make_patches(std::move(mesh), own, materials);
+    return crofton::detail::recover([&]() -> Result<Patches> {
+        Vector<std::uint32_t> own(mesh.triangle_count());
+        std::iota(own.begin(), own.end(), 0u);
+        return make_patches(std::move(mesh), own, materials);
+    });
 }
 
 Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec3> values,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -111,13 +112,15 @@ class Refiner {
 }  // namespace
 
 Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge, std::size_t most_triangles) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-    Refiner refiner(mesh, longest_edge);
-    while (refiner.round())
-        if (refiner.result.source.size() > most_triangles)
-            return fail(ErrorCode::budget_exceeded, refiner.result.source.size(),
-                        "refine: more than " + std::to_string(most_triangles) + " triangles; allow longer edges");
-    return std::move(refiner.result);
+    return crofton::detail::recover([&]() -> Result<RefinedMesh> {
+        if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+        Refiner refiner(mesh, longest_edge);
+        while (refiner.round())
+            if (refiner.result.source.size() > most_triangles)
+                return fail(ErrorCode::budget_exceeded, refiner.result.source.size(),
+                            "refine: more than " + std::to_string(most_triangles) + " triangles; allow longer edges");
+        return std::move(refiner.result);
+    });
 }
 
 Result<RefinedMesh> refine(const TriangleMesh& mesh, double longest_edge, std::size_t most_triangles) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -89,17 +90,19 @@ std::uint32_t Solver::triangle_of(std::size_t patch, double u) const {
 }
 
 Result<Solver> Solver::create(const Patches& patches, const SolverOptions& options) {
-    if (auto valid = check(options); !valid) return tl::unexpected(valid.error());
-    bool light = total(glm::dvec3(options.outside.sky) + glm::dvec3(options.outside.sun)) > 0.0;
-    for (const Material& m : patches.materials) light = light || total(glm::dvec3(m.emission)) > 0.0;
-    if (!light)
-        return fail(ErrorCode::empty, kNoItem,
-                    "radiosity: nothing gives light; give a patch emission, or a sky or sun");
-    auto tracer = LineTracer::build(patches.mesh);
-    if (!tracer) return tl::unexpected(tracer.error());
-    auto bundles = BundleTracer::build(patches.mesh);
-    if (!bundles) return tl::unexpected(bundles.error());
-    return Solver(patches, options, std::move(*tracer), std::move(*bundles));
+    return crofton::detail::recover([&]() -> Result<Solver> {
+        if (auto valid = check(options); !valid) return tl::unexpected(valid.error());
+        bool light = total(glm::dvec3(options.outside.sky) + glm::dvec3(options.outside.sun)) > 0.0;
+        for (const Material& m : patches.materials) light = light || total(glm::dvec3(m.emission)) > 0.0;
+        if (!light)
+            return fail(ErrorCode::empty, kNoItem,
+                        "radiosity: nothing gives light; give a patch emission, or a sky or sun");
+        auto tracer = LineTracer::build(patches.mesh);
+        if (!tracer) return tl::unexpected(tracer.error());
+        auto bundles = BundleTracer::build(patches.mesh);
+        if (!bundles) return tl::unexpected(bundles.error());
+        return Solver(patches, options, std::move(*tracer), std::move(*bundles));
+    });
 }
 
 void Solver::run(Executor& executor) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/scene/scene.hpp>
 #include <glm/geometric.hpp>
 #include <string>
@@ -39,16 +40,19 @@ Result<void> validate(const PlanarPolygon& polygon) {
 }
 
 Result<TriangleMesh> to_mesh(const PlanarPolygon& polygon, std::span<const std::array<std::uint32_t, 3>> triangles) {
-    if (auto valid = validate(polygon); !valid) return tl::unexpected(valid.error());
-    TriangleMesh mesh;
-    mesh.positions.reserve(polygon.polygon.points.size());
-    for (const glm::dvec2& p : polygon.polygon.points)
-        mesh.positions.emplace_back(polygon.origin + p.x * polygon.u + p.y * polygon.v);
-    mesh.colors.assign(mesh.positions.size(), polygon.color);
-    mesh.indices.reserve(3 * triangles.size());
-    for (const auto& triangle : triangles) mesh.indices.insert(mesh.indices.end(), triangle.begin(), triangle.end());
-    if (auto valid = crofton::validate(mesh); !valid) return tl::unexpected(valid.error());
-    return mesh;
+    return detail::recover([&]() -> Result<TriangleMesh> {
+        if (auto valid = validate(polygon); !valid) return tl::unexpected(valid.error());
+        TriangleMesh mesh;
+        mesh.positions.reserve(polygon.polygon.points.size());
+        for (const glm::dvec2& p : polygon.polygon.points)
+            mesh.positions.emplace_back(polygon.origin + p.x * polygon.u + p.y * polygon.v);
+        mesh.colors.assign(mesh.positions.size(), polygon.color);
+        mesh.indices.reserve(3 * triangles.size());
+        for (const auto& triangle : triangles)
+            mesh.indices.insert(mesh.indices.end(), triangle.begin(), triangle.end());
+        if (auto valid = crofton::validate(mesh); !valid) return tl::unexpected(valid.error());
+        return mesh;
+    });
 }
 
 }  // namespace crofton::scene

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/core/recovery.hpp>
 #include <new>
 #include <utility>
 
@@ -20,6 +22,15 @@ std::uint32_t take_id(Vector<std::uint32_t>& free, std::size_t count, Grow grow)
     return id;
 }
 
+// So that the next element needs no memory. Grows as push_back would.
+template <class... Arrays>
+void reserve_one(Arrays&... arrays) {
+    const auto reserve = [](auto& array) {
+        if (array.size() == array.capacity()) array.reserve(std::max<std::size_t>(8, 2 * array.size()));
+    };
+    (reserve(arrays), ...);
+}
+
 }  // namespace
 
 Scene::Scene(const SceneOptions& options) : state_(new (detail::allocate(sizeof(State), alignof(State))) State) {
@@ -35,67 +46,84 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Result<MeshId> Scene::add_mesh(TriangleMesh mesh, std::string_view name) {
-    State& s = *state_;
-    if (auto room = check_room(s.meshes, s.free_meshes, "meshes"); !room) return tl::unexpected(room.error());
-    auto record = make_record(std::move(mesh), name, s.options.criterion);
-    if (!record) return tl::unexpected(record.error());
-    const MeshId id = take_id(s.free_meshes, s.meshes.size(), [&] { s.meshes.emplace_back(); });
-    record->revision = ++s.last_revision;
-    s.meshes[id] = std::move(*record);
-    return id;
+    return detail::recover([&]() -> Result<MeshId> {
+        State& s = *state_;
+        if (auto room = check_room(s.meshes, s.free_meshes, "meshes"); !room) return tl::unexpected(room.error());
+        auto record = make_record(std::move(mesh), name, s.options.criterion);
+        if (!record) return tl::unexpected(record.error());
+        reserve_one(s.meshes);
+        const MeshId id = take_id(s.free_meshes, s.meshes.size(), [&] { s.meshes.emplace_back(); });
+        record->revision = ++s.last_revision;
+        s.meshes[id] = std::move(*record);
+        return id;
+    });
 }
 
 Result<MeshId> Scene::add_polygon(PlanarPolygon polygon, std::span<const std::array<std::uint32_t, 3>> triangles,
                                   std::string_view name) {
-    auto mesh = to_mesh(polygon, triangles);
-    if (!mesh) return tl::unexpected(mesh.error());
-    auto id = add_mesh(std::move(*mesh), name);
-    if (id) state_->meshes[*id].polygon = std::move(polygon);
-    return id;
+    return detail::recover([&]() -> Result<MeshId> {
+        auto mesh = to_mesh(polygon, triangles);
+        if (!mesh) return tl::unexpected(mesh.error());
+        auto id = add_mesh(std::move(*mesh), name);
+        if (id) state_->meshes[*id].polygon = std::move(polygon);
+        return id;
+    });
 }
 
 Result<NodeId> Scene::add_node(NodeId parent, const Transform& local, std::uint32_t layer_mask, std::string_view name) {
-    State& s = *state_;
-    if (auto room = check_room(s.nodes, s.free_nodes, "nodes"); !room) return tl::unexpected(room.error());
-    if (parent != kNone)
-        if (auto known = check_node(s.nodes, parent, "parent node"); !known) return tl::unexpected(known.error());
-    if (auto valid = validate(local, s.free_nodes.empty() ? s.nodes.size() : s.free_nodes.back()); !valid)
-        return tl::unexpected(valid.error());
-    const NodeId id = take_id(s.free_nodes, s.nodes.size(), [&] {
-        s.nodes.emplace_back();
-        s.locals.emplace_back();
-        s.worlds.emplace_back();
-        s.node_names.emplace_back();
+    return detail::recover([&]() -> Result<NodeId> {
+        State& s = *state_;
+        if (auto room = check_room(s.nodes, s.free_nodes, "nodes"); !room) return tl::unexpected(room.error());
+        if (parent != kNone)
+            if (auto known = check_node(s.nodes, parent, "parent node"); !known) return tl::unexpected(known.error());
+        if (auto valid = validate(local, s.free_nodes.empty() ? s.nodes.size() : s.free_nodes.back()); !valid)
+            return tl::unexpected(valid.error());
+        // All that needs memory comes first: without any, the scene stays as it was.
+        String own_name(name);
+        reserve_one(s.nodes, s.locals, s.worlds, s.node_names);
+        s.order.reserve_one();
+        s.dirty.resize(s.order.size() + 1);
+        const NodeId id = take_id(s.free_nodes, s.nodes.size(), [&] {
+            s.nodes.emplace_back();
+            s.locals.emplace_back();
+            s.worlds.emplace_back();
+            s.node_names.emplace_back();
+        });
+        s.nodes[id].own_mask = layer_mask;
+        s.locals[id] = local;
+        s.node_names[id] = std::move(own_name);
+        s.link_to_parent(id, parent);
+        s.append_to_order(id);
+        s.mark_dirty(id);
+        return id;
     });
-    s.nodes[id].own_mask = layer_mask;
-    s.locals[id] = local;
-    s.node_names[id] = name;
-    s.link_to_parent(id, parent);
-    s.append_to_order(id);
-    s.mark_dirty(id);
-    return id;
 }
 
 Result<InstanceId> Scene::add_instance(NodeId node, MeshId mesh) {
-    State& s = *state_;
-    if (auto room = check_room(s.instances, s.free_instances, "instances"); !room) return tl::unexpected(room.error());
-    if (auto known = check_node(s.nodes, node); !known) return tl::unexpected(known.error());
-    if (auto known = check_mesh(s.meshes, mesh); !known) return tl::unexpected(known.error());
-    const InstanceId id = take_id(s.free_instances, s.instances.size(), [&] {
-        s.instances.emplace_back();
-        s.boxes.emplace_back();
-        s.masks.push_back(0);
-        s.touched.resize(s.instances.size());
+    return detail::recover([&]() -> Result<InstanceId> {
+        State& s = *state_;
+        if (auto room = check_room(s.instances, s.free_instances, "instances"); !room)
+            return tl::unexpected(room.error());
+        if (auto known = check_node(s.nodes, node); !known) return tl::unexpected(known.error());
+        if (auto known = check_mesh(s.meshes, mesh); !known) return tl::unexpected(known.error());
+        reserve_one(s.instances, s.boxes, s.masks);
+        s.touched.resize(s.instances.size() + 1);
+        const InstanceId id = take_id(s.free_instances, s.instances.size(), [&] {
+            s.instances.emplace_back();
+            s.boxes.emplace_back();
+            s.masks.push_back(0);
+            s.touched.resize(s.instances.size());
+        });
+        s.boxes[id] = Obb();
+        Instance& instance = s.instances[id];
+        instance = Instance();
+        instance.node = node;
+        instance.next_on_node = std::exchange(s.nodes[node].first_instance, id);
+        if (instance.next_on_node != kNone) s.instances[instance.next_on_node].previous_on_node = id;
+        s.link_to_mesh(id, mesh);
+        s.touched.insert(id);
+        return id;
     });
-    s.boxes[id] = Obb();
-    Instance& instance = s.instances[id];
-    instance = Instance();
-    instance.node = node;
-    instance.next_on_node = std::exchange(s.nodes[node].first_instance, id);
-    if (instance.next_on_node != kNone) s.instances[instance.next_on_node].previous_on_node = id;
-    s.link_to_mesh(id, mesh);
-    s.touched.insert(id);
-    return id;
 }
 
 std::size_t Scene::node_count() const {

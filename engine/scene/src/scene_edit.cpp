@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 #include <utility>
 
@@ -92,15 +93,17 @@ Result<void> Scene::set_instance_layers(InstanceId instance, std::uint32_t layer
 }
 
 Result<void> Scene::replace_mesh(MeshId mesh, TriangleMesh replacement) {
-    State& s = *state_;
-    if (auto known = check_mesh(s.meshes, mesh); !known) return known;
-    auto made = make_record(std::move(replacement), mesh_name(mesh), s.options.criterion);
-    if (!made) return tl::unexpected(made.error());
-    made->revision = ++s.last_revision;
-    made->first_instance = s.meshes[mesh].first_instance;
-    s.meshes[mesh] = std::move(*made);
-    s.touch_instances_of(mesh);
-    return {};
+    return detail::recover([&]() -> Result<void> {
+        State& s = *state_;
+        if (auto known = check_mesh(s.meshes, mesh); !known) return known;
+        auto made = make_record(std::move(replacement), mesh_name(mesh), s.options.criterion);
+        if (!made) return tl::unexpected(made.error());
+        made->revision = ++s.last_revision;
+        made->first_instance = s.meshes[mesh].first_instance;
+        s.meshes[mesh] = std::move(*made);
+        s.touch_instances_of(mesh);
+        return {};
+    });
 }
 
 Result<void> Scene::set_vertices(MeshId mesh, std::span<const glm::vec3> positions) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Nodes in an order in which parents come before their children, kept under changes.
 #pragma once
+#include <algorithm>
 #include <crofton/scene/scene.hpp>
 
 namespace crofton::scene {
@@ -13,6 +14,11 @@ class TopologicalOrder {
     // kNone in a gap.
     [[nodiscard]] NodeId node_at(std::size_t position) const { return nodes_[position]; }
     [[nodiscard]] bool wants_compaction() const { return nodes_.size() > 64 && nodes_.size() / 2 > live_; }
+
+    // So that the next append needs no memory.
+    void reserve_one() {
+        if (nodes_.size() == nodes_.capacity()) nodes_.reserve(std::max<std::size_t>(8, 2 * nodes_.size()));
+    }
 
     // Returns the node's position.
     std::uint32_t append(NodeId node) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
@@ -277,46 +278,54 @@ PatchResult describe(const PlanarPatch& patch, std::string refused, bool lighter
 
 Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double tolerance,
                                                 std::span<const VertexValues> values) {
-    if (auto valid = validate(mesh); !valid) return tl::unexpected<Error>(valid.error());
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (values[i].values.size() != values[i].components * mesh.positions.size())
-            return fail(ErrorCode::invalid_argument, i,
-                        "vertex values " + std::to_string(i) + ": not `components` for each vertex");
-    return PatchFinder(mesh, tolerance, values).find();
+    return detail::recover([&]() -> Result<Vector<PlanarPatch>> {
+        if (auto valid = validate(mesh); !valid) return tl::unexpected<Error>(valid.error());
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (values[i].values.size() != values[i].components * mesh.positions.size())
+                return fail(ErrorCode::invalid_argument, i,
+                            "vertex values " + std::to_string(i) + ": not `components` for each vertex");
+        return PatchFinder(mesh, tolerance, values).find();
+    });
 }
 
 Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const PatchOptions& options) {
-    auto patches = find_planar_patches(mesh, options.tolerance, options.values);
-    if (!patches) return tl::unexpected<Error>(patches.error());
-    PatchReport report;
-    Triangulator triangulator;
-    Triangulation result;
-    for (const PlanarPatch& patch : *patches) {
-        ++report.patches;
-        report.triangles += patch.triangles.size();
-        report.weight_before += patch.weight;
-        const auto begin = std::chrono::steady_clock::now();
-        const auto done = triangulator.triangulate(patch.polygon, options.triangulation, result);
-        if (!done && done.error().code == ErrorCode::cancelled) return tl::unexpected<Error>(done.error());
-        std::string refused = done ? mismatch(mesh, patch, result) : done.error().message;
-        const bool usable = refused.empty();
-        report.refused += !usable;
-        if (!usable || (options.triangulation.method == Method::minimum_weight && !result.optimal)) ++report.unproven;
-        // Differences below the rounding of the projection are none.
-        const bool lighter = usable && result.weight < patch.weight * (1.0 - 1e-12);
-        report.weight_after += lighter ? result.weight : patch.weight;
-        report.results.push_back(describe(patch, std::move(refused), lighter, result));
-        const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
-        report.results.back().microseconds = time.count();
-        if (!lighter) continue;
-        ++report.improved;
-        for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                mesh.indices[3 * std::size_t{patch.triangles[i]} + k] = patch.vertices[result.triangles[i][k]];
+    return detail::recover([&]() -> Result<PatchReport> {
+        auto patches = find_planar_patches(mesh, options.tolerance, options.values);
+        if (!patches) return tl::unexpected<Error>(patches.error());
+        PatchReport report;
+        Triangulator triangulator;
+        Triangulation result;
+        Vector<std::uint32_t> indices = mesh.indices;  // the mesh changes when nothing can fail any more
+        for (const PlanarPatch& patch : *patches) {
+            ++report.patches;
+            report.triangles += patch.triangles.size();
+            report.weight_before += patch.weight;
+            const auto begin = std::chrono::steady_clock::now();
+            const auto done = triangulator.triangulate(patch.polygon, options.triangulation, result);
+            if (!done && (done.error().code == ErrorCode::cancelled || done.error().code == ErrorCode::out_of_memory))
+                return tl::unexpected<Error>(done.error());
+            std::string refused = done ? mismatch(mesh, patch, result) : done.error().message;
+            const bool usable = refused.empty();
+            report.refused += !usable;
+            if (!usable || (options.triangulation.method == Method::minimum_weight && !result.optimal))
+                ++report.unproven;
+            // Differences below the rounding of the projection are none.
+            const bool lighter = usable && result.weight < patch.weight * (1.0 - 1e-12);
+            report.weight_after += lighter ? result.weight : patch.weight;
+            report.results.push_back(describe(patch, std::move(refused), lighter, result));
+            const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
+            report.results.back().microseconds = time.count();
+            if (!lighter) continue;
+            ++report.improved;
+            for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    indices[3 * std::size_t{patch.triangles[i]} + k] = patch.vertices[result.triangles[i][k]];
+                }
             }
         }
-    }
-    return report;
+        mesh.indices.swap(indices);
+        return report;
+    });
 }
 
 }  // namespace crofton::triangulate

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <crofton/core/recovery.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <limits>
+#include <memory>
 #include <new>
 
 #include "domain/domain.hpp"
@@ -62,29 +64,38 @@ void write(const Domain& domain, Triangulation& result) {
 
 Result<void> Triangulator::triangulate(const Polygon& polygon, const TriangulateOptions& options,
                                        Triangulation& result) {
-    result.triangles.clear();
-    result.weight = 0.0;
-    result.optimal = false;
-    result.gap = std::numeric_limits<double>::infinity();
-    Watch watch(options);
-    if (auto built = workspace_->domain.build(polygon); !built) return built;
-    if (options.method == Method::minimum_weight) {
-        const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
-        if (!solved) return tl::unexpected<Error>(solved.error());
-        if (!result.optimal) workspace_->complete(result);
-        return {};
-    }
-    if (options.method == Method::ear) {
-        const Domain& domain = workspace_->domain;
-        result.weight = workspace_->ear_clipping.run(domain, result.triangles) * domain.scale();
-        if (result.triangles.size() != domain.inside_count()) {
-            result.triangles.clear();
-            return fail(ErrorCode::internal, kNoItem, "a walk without ears");
+    auto done = detail::recover([&]() -> Result<void> {
+        result.triangles.clear();
+        result.weight = 0.0;
+        result.optimal = false;
+        result.gap = std::numeric_limits<double>::infinity();
+        Watch watch(options);
+        if (auto built = workspace_->domain.build(polygon); !built) return built;
+        if (options.method == Method::minimum_weight) {
+            const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
+            if (!solved) return tl::unexpected<Error>(solved.error());
+            if (!result.optimal) workspace_->complete(result);
+            return {};
         }
+        if (options.method == Method::ear) {
+            const Domain& domain = workspace_->domain;
+            result.weight = workspace_->ear_clipping.run(domain, result.triangles) * domain.scale();
+            if (result.triangles.size() != domain.inside_count()) {
+                result.triangles.clear();
+                return fail(ErrorCode::internal, kNoItem, "a walk without ears");
+            }
+            return {};
+        }
+        write(workspace_->domain, result);
         return {};
+    });
+    if (!done && done.error().code == ErrorCode::out_of_memory) {
+        // What was half built must not be met by the next call. An empty workspace has no memory of its own.
+        std::destroy_at(workspace_.get());
+        std::construct_at(workspace_.get());
+        result.triangles.clear();
     }
-    write(workspace_->domain, result);
-    return {};
+    return done;
 }
 
 // The lightest of what is known, where the search has not come to its end: its best triangulation, if it has one, ear
@@ -115,12 +126,14 @@ void Triangulator::Workspace::complete(Triangulation& result) {
 }
 
 Result<Triangulation> triangulate(const Polygon& polygon, const TriangulateOptions& options) {
-    Triangulator triangulator;
-    Triangulation result;
-    if (auto done = triangulator.triangulate(polygon, options, result); !done) {
-        return tl::unexpected<Error>(std::move(done.error()));
-    }
-    return result;
+    return detail::recover([&]() -> Result<Triangulation> {
+        Triangulator triangulator;
+        Triangulation result;
+        if (auto done = triangulator.triangulate(polygon, options, result); !done) {
+            return tl::unexpected<Error>(std::move(done.error()));
+        }
+        return result;
+    });
 }
 
 }  // namespace crofton::triangulate

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "assets/file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
+#include <crofton/bake/write_file.hpp>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 namespace crofton::assets {
 namespace {
@@ -37,31 +41,62 @@ bool is_special(const std::string& path) {
            !std::filesystem::is_directory(status);
 }
 
-// `path` is for the message. A plain file that could not be written in full is removed.
-Result<void> write_to(const std::string& target, const std::string& path, std::string_view contents) {
-    File file(std::fopen(target.c_str(), "wb"));
-    if (!file) return system_error(path, "cannot create");
-    const bool written = std::fwrite(contents.data(), 1, contents.size(), file.get()) == contents.size();
-    const bool closed = std::fclose(file.release()) == 0;
-    if (written && closed) return {};
-    auto error = system_error(path, "cannot write");
-    if (!is_special(target)) std::remove(target.c_str());
-    return error;
+Result<std::string> read_open(File file, const std::string& path, std::uint64_t limit) {
+    if (!file) return system_error(path, "cannot open");
+    std::string contents;
+    char block[1 << 16];
+    for (std::size_t count; (count = std::fread(block, 1, sizeof block, file.get())) > 0;) {
+        if (contents.size() + count > limit) return in_file(path, "", over_limit("bytes", limit).value());
+        contents.append(block, count);
+    }
+    if (std::ferror(file.get())) return system_error(path, "cannot read");
+    return contents;
+}
+
+// The file that `name` leads to, links followed, where that is below the folder. Backslashes count as slashes, so that
+// a name is refused on every system or on none.
+Result<std::string> path_below(const std::string& folder, const std::string& name) {
+    const auto refused = [&](const char* why) {
+        return fail(ErrorCode::io, kNoItem, "'" + name.substr(0, 200) + "' " + why);
+    };
+    if (name.empty() || name.find('\0') != name.npos) return refused("is no file's name");
+    if (name[0] == '/' || name[0] == '\\' || (name.size() > 1 && name[1] == ':'))
+        return refused("is an absolute path; only files below the folder of the file that names it are read");
+    for (std::size_t begin = 0; begin <= name.size();) {
+        const std::size_t end = std::min(name.find_first_of("/\\", begin), name.size());
+        if (name.substr(begin, end - begin) == "..")
+            return refused("leads out of its folder; only files below the folder of the file that names it are read");
+        begin = end + 1;
+    }
+    std::error_code error;
+    const auto base = std::filesystem::canonical(folder.empty() ? "." : folder, error);
+    const auto path = error ? base : std::filesystem::canonical(folder + name, error);
+    if (error) return fail(ErrorCode::io, kNoItem, folder + name + ": cannot open: " + error.message());
+    const auto [end_of_base, rest] = std::mismatch(base.begin(), base.end(), path.begin(), path.end());
+    if (end_of_base != base.end() || rest == path.end())
+        return refused("is a link that leads out of its folder; only files below it are read");
+    return path.string();
 }
 
 }  // namespace
 
-Result<std::string> read_file(const std::string& path) {
+Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) return fail(ErrorCode::io, kNoItem, path + ": is a folder");
-    const File file(std::fopen(path.c_str(), "rb"));
-    if (!file) return system_error(path, "cannot open");
-    std::string contents;
-    char block[1 << 16];
-    for (std::size_t count; (count = std::fread(block, 1, sizeof block, file.get())) > 0;)
-        contents.append(block, count);
-    if (std::ferror(file.get())) return system_error(path, "cannot read");
-    return contents;
+    return read_open(File(std::fopen(path.c_str(), "rb")), path, limit);
+}
+
+Result<std::string> read_file_below(const std::string& folder, const std::string& name, std::uint64_t limit) {
+    const auto path = path_below(folder, name);
+    if (!path) return tl::unexpected(path.error());
+    // Opening does not wait for the other end of a pipe; what was opened is what is looked at.
+    const int number = ::open(path->c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    File file(number < 0 ? nullptr : ::fdopen(number, "rb"));
+    if (!file) return system_error(folder + name, "cannot open");
+    struct stat status {};
+    if (fstat(number, &status) != 0) return system_error(folder + name, "cannot open");
+    if (!S_ISREG(status.st_mode)) return fail(ErrorCode::io, kNoItem, folder + name + ": is no regular file");
+    return read_open(std::move(file), folder + name, limit);
 }
 
 Result<void> write_file(const std::string& path, std::string_view contents) {
@@ -70,16 +105,7 @@ Result<void> write_file(const std::string& path, std::string_view contents) {
         if (!written || std::fflush(stdout) != 0) return system_error("standard output", "cannot write");
         return {};
     }
-    const std::string target = behind_links(path);
-    if (is_special(target)) return write_to(target, path, contents);
-    const std::string partial = target + ".partial";
-    if (auto written = write_to(partial, path, contents); !written) return written;
-    if (std::rename(partial.c_str(), target.c_str()) != 0) {
-        auto error = system_error(path, "cannot write");
-        std::remove(partial.c_str());
-        return error;
-    }
-    return {};
+    return bake::write_file(path, std::as_bytes(std::span(contents)));
 }
 
 Result<void> check_writable(const std::string& path) {

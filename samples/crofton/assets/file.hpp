@@ -5,14 +5,20 @@
 #include <string>
 #include <string_view>
 
+#include "assets/read_limits.hpp"
+
 namespace crofton::assets {
 
-// The whole of a file. Errors name the path and the system's reason.
-[[nodiscard]] Result<std::string> read_file(const std::string& path);
+// The whole of a file that the user named; it may be a pipe. Errors name the path and the system's reason: a folder,
+// more than `limit` bytes.
+[[nodiscard]] Result<std::string> read_file(const std::string& path, std::uint64_t limit = ReadLimits{}.bytes);
 
-// Writes `contents` to `path` through a temporary file beside it, renamed when complete, so that no partial file is
-// left; "-" writes to stdout. A link stays a link, and what is no plain file (a pipe, /dev/null) is written to
-// directly. Errors name the path and the system's reason.
+// The whole of a file that another file named, below `folder` ("" is the current one). Absolute names, "..", links
+// that lead out of the folder, and what is no regular file (a pipe, a device) are refused.
+[[nodiscard]] Result<std::string> read_file_below(const std::string& folder, const std::string& name,
+                                                  std::uint64_t limit = ReadLimits{}.bytes);
+
+// bake::write_file, the old file or all of the new one; "-" writes to stdout.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view contents);
 
 // Whether write_file can be expected to work there, asked before long work: the folder exists and may be written to.

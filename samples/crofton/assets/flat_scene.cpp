@@ -3,10 +3,21 @@
 
 #include <glm/geometric.hpp>
 
+#include "assets/file.hpp"
+
 namespace crofton::assets {
 
-FlatScene flat_scene(const SceneSource& source) {
+std::uint64_t instanced_triangles(const scene::Scene& scene) {
+    std::uint64_t sum = 0;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        if (!scene.is_removed(i)) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
+    return sum;
+}
+
+Result<FlatScene> flat_scene(const SceneSource& source, const ReadLimits& limits) {
     const scene::Scene& scene = source.scene;
+    if (instanced_triangles(scene) > limits.triangles)
+        return in_file(source.name, "its instances have", over_limit("triangles", limits.triangles).value());
     FlatScene all;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i)) continue;

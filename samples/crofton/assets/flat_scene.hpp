@@ -13,7 +13,11 @@ struct FlatScene {
     std::vector<glm::vec3> emission;  // by triangle
 };
 
-// All instances' triangles; those of no area are left out. The scene has been updated.
-[[nodiscard]] FlatScene flat_scene(const SceneSource& source);
+// All instances' triangles; those of no area are left out. The scene has been updated. Errors: more than the limit of
+// triangles, which instances multiply.
+[[nodiscard]] Result<FlatScene> flat_scene(const SceneSource& source, const ReadLimits& limits = {});
+
+// Those of all instances together.
+[[nodiscard]] std::uint64_t instanced_triangles(const scene::Scene& scene);
 
 }  // namespace crofton::assets

@@ -2,7 +2,6 @@
 #include "assets/gltf_color.hpp"
 
 #include <stb/stb_image.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +12,9 @@
 namespace crofton::assets {
 namespace {
 
-constexpr int kMaxSide = 16384;
+using Json = nlohmann::ordered_json;
+
+constexpr int kMaxKeptSide = 1024;
 
 int wrap(float coordinate, int size) {
     const float turns = coordinate - std::floor(coordinate);
@@ -39,41 +40,66 @@ std::vector<float> footprints(const std::vector<float>& uv, const TriangleMesh& 
 
 }  // namespace
 
-bool TexturePyramid::decode(const unsigned char* bytes, std::size_t size) {
-    int width = 0, height = 0, channels = 0;
-    if (size > std::size_t{1} << 30) return false;
-    const int length = static_cast<int>(size);
-    if (!stbi_info_from_memory(bytes, length, &width, &height, &channels)) return false;
-    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) return false;
-    unsigned char* pixels = stbi_load_from_memory(bytes, length, &width, &height, &channels, 4);
-    if (!pixels) return false;
-    Level level{width, height, {}};
-    level.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+// One texel for 2 × 2, or for 2 × 1 where one side has come down to 1.
+TexturePyramid::Level TexturePyramid::half(const Level& fine) {
+    Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
+    coarse.texels.reserve(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
+    const auto at = [&](int x, int y) {
+        return fine
+            .texels[static_cast<std::size_t>(std::min(y, fine.height - 1)) * static_cast<std::size_t>(fine.width) +
+                    static_cast<std::size_t>(std::min(x, fine.width - 1))];
+    };
+    for (int y = 0; y < coarse.height; ++y)
+        for (int x = 0; x < coarse.width; ++x)
+            coarse.texels.push_back(
+                0.25f * (at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) + at(2 * x + 1, 2 * y + 1)));
+    return coarse;
+}
+
+// The finest level that is kept: averages of blocks of 2^n × 2^n pixels.
+TexturePyramid::Level TexturePyramid::finest(const unsigned char* pixels, int width, int height) {
     float linear[256];
     for (int v = 0; v < 256; ++v) linear[v] = linear_from_srgb(static_cast<float>(v) / 255.0f);
-    for (std::size_t i = 0; i < level.texels.size(); ++i) {
-        const unsigned char* p = pixels + 4 * i;
-        const float alpha = static_cast<float>(p[3]) / 255.0f;
-        level.texels[i] = glm::vec4(linear[p[0]] * alpha, linear[p[1]] * alpha, linear[p[2]] * alpha, alpha);
-    }
+    int block = 1;
+    while (width / block > kMaxKeptSide || height / block > kMaxKeptSide) block *= 2;
+    Level level{std::max(1, width / block), std::max(1, height / block), {}};
+    level.texels.reserve(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+    for (int y = 0; y < level.height; ++y)
+        for (int x = 0; x < level.width; ++x) {
+            const int right = std::min(width, (x + 1) * block), bottom = std::min(height, (y + 1) * block);
+            glm::vec4 sum(0.0f);
+            for (int j = y * block; j < bottom; ++j)
+                for (int i = x * block; i < right; ++i) {
+                    const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
+                    const unsigned char* p = pixels + 4 * (at + static_cast<std::size_t>(i));
+                    const float alpha = static_cast<float>(p[3]) / 255.0f;
+                    sum += glm::vec4(linear[p[0]] * alpha, linear[p[1]] * alpha, linear[p[2]] * alpha, alpha);
+                }
+            level.texels.push_back(sum / static_cast<float>((right - x * block) * (bottom - y * block)));
+        }
+    return level;
+}
+
+Result<void> TexturePyramid::decode(std::string_view bytes, const ReadLimits& limits) {
+    int width = 0, height = 0, channels = 0;
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+    const int length = static_cast<int>(std::min(bytes.size(), std::size_t{1} << 30));
+    if (!stbi_info_from_memory(data, length, &width, &height, &channels) || width < 1 || height < 1)
+        return fail(ErrorCode::unsupported, kNoItem, "not an image we can read");
+    if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > limits.pixels)
+        return fail(ErrorCode::budget_exceeded, kNoItem,
+                    std::to_string(width) + " x " + std::to_string(height) + " is " +
+                        over_limit("pixels", limits.pixels).value().message);
+    unsigned char* pixels = stbi_load_from_memory(data, length, &width, &height, &channels, 4);
+    if (!pixels) return fail(ErrorCode::parse, kNoItem, "damaged, not an image we can read");
+    levels_.push_back(finest(pixels, width, height));
     stbi_image_free(pixels);
-    levels_.push_back(std::move(level));
-    while (levels_.back().width > 1 || levels_.back().height > 1) {
-        const Level& fine = levels_.back();
-        Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
-        coarse.texels.reserve(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
-        const auto at = [&](int x, int y) {
-            return fine
-                .texels[static_cast<std::size_t>(std::min(y, fine.height - 1)) * static_cast<std::size_t>(fine.width) +
-                        static_cast<std::size_t>(std::min(x, fine.width - 1))];
-        };
-        for (int y = 0; y < coarse.height; ++y)
-            for (int x = 0; x < coarse.width; ++x)
-                coarse.texels.push_back(0.25f * (at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) +
-                                                 at(2 * x + 1, 2 * y + 1)));
-        levels_.push_back(std::move(coarse));
-    }
-    return true;
+    while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
+    return {};
+}
+
+std::uint64_t TexturePyramid::texels() const {
+    return levels_.empty() ? 0 : levels_[0].texels.size();
 }
 
 glm::vec3 TexturePyramid::sample(const glm::vec2& uv, float width) const {
@@ -90,32 +116,41 @@ glm::vec3 TexturePyramid::sample(const glm::vec2& uv, float width) const {
     return all.w > 1e-3f ? glm::vec3(all) / all.w : glm::vec3(0.5f);
 }
 
-const TexturePyramid* MaterialColors::texture(int index) {
-    if (index < 0 || static_cast<std::size_t>(index) >= model_.textures.size()) return nullptr;
-    const int source = model_.textures[static_cast<std::size_t>(index)].source;
-    if (source < 0 || static_cast<std::size_t>(source) >= model_.images.size()) return nullptr;
-    const auto [entry, added] = images_.try_emplace(source);
-    if (added) {
-        const auto& bytes = model_.images[static_cast<std::size_t>(source)].image;
-        if (bytes.empty() || !entry->second.decode(bytes.data(), bytes.size()))
-            warnings.push_back("image " + std::to_string(source) +
-                               ": missing or not an image we can read; drawn without it");
-    }
-    return entry->second.empty() ? nullptr : &entry->second;
+Result<void> MaterialColors::decode(std::size_t image, TexturePyramid& pyramid) {
+    if (texels_ >= document_.limits.pixels) return over_limit("pixels", document_.limits.pixels);
+    const auto bytes = image_bytes(document_, image, folder_);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (auto decoded = pyramid.decode(*bytes, document_.limits); !decoded) return decoded;
+    texels_ += pyramid.texels();
+    return {};
 }
 
-void MaterialColors::apply(int material, const std::vector<float>& uv, const std::vector<float>& rgba,
+const TexturePyramid* MaterialColors::texture(const Json& reference) {
+    const auto index = whole_number(reference, "index", kNoNumber);
+    const Json* texture = index ? entry(document_.root, "textures", *index) : nullptr;
+    const auto source = texture ? whole_number(*texture, "source", kNoNumber) : Result<std::size_t>(kNoNumber);
+    if (!source || *source == kNoNumber) return nullptr;
+    const auto [found, added] = images_.try_emplace(*source);
+    if (added)
+        if (const auto decoded = decode(*source, found->second); !decoded)
+            warnings.push_back("image " + std::to_string(*source) + ": " + decoded.error().message +
+                               "; drawn without it");
+    return found->second.empty() ? nullptr : &found->second;
+}
+
+void MaterialColors::apply(const Json* material, const std::vector<float>& uv, const std::vector<float>& rgba,
                            const std::string& name, TriangleMesh& mesh) {
     glm::vec3 factor = color_for_name(name);
     const TexturePyramid* image = nullptr;
-    if (material >= 0 && static_cast<std::size_t>(material) < model_.materials.size()) {
-        const auto& pbr = model_.materials[static_cast<std::size_t>(material)].pbrMetallicRoughness;
+    if (material) {
         factor = glm::vec3(1.0f);
-        for (int k = 0; k < 3 && static_cast<std::size_t>(k) < pbr.baseColorFactor.size(); ++k) {
-            const float value = static_cast<float>(pbr.baseColorFactor[static_cast<std::size_t>(k)]);
-            factor[k] = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1.0f;
-        }
-        if (uv.size() == 2 * mesh.positions.size()) image = texture(pbr.baseColorTexture.index);
+        const Json* pbr = member(*material, "pbrMetallicRoughness");
+        const Json* given = pbr ? member(*pbr, "baseColorFactor") : nullptr;
+        for (std::size_t k = 0; k < 3 && given && given->is_array() && k < given->size(); ++k)
+            if (given->at(k).is_number())
+                factor[static_cast<int>(k)] = std::clamp(given->at(k).get<float>(), 0.0f, 1.0f);
+        const Json* reference = pbr ? member(*pbr, "baseColorTexture") : nullptr;
+        if (reference && uv.size() == 2 * mesh.positions.size()) image = texture(*reference);
     }
     mesh.colors.assign(mesh.positions.size(), factor);
     if (image) {

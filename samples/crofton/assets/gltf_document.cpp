@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "assets/gltf_document.hpp"
 
-#include <filesystem>
+#include <algorithm>
 #include <limits>
-#include <map>
 
 #include "assets/data_uri.hpp"
 #include "assets/file.hpp"
+#include "assets/gltf_compression.hpp"
+#include "assets/gltf_files.hpp"
 #include "assets/json_syntax.hpp"
 
 namespace crofton::assets {
@@ -16,8 +17,7 @@ using Json = nlohmann::ordered_json;
 
 // Of the binary container.
 constexpr std::string_view kMagic = "glTF", kJsonChunk = "JSON", kBinaryChunk{"BIN\0", 4};
-// Of arrays and objects: what walks a document recurses this deep.
-constexpr int kDeepest = 200;
+constexpr const char* kVersion1 = "is glTF version 1.0, where 2.0 is needed; convert it, for example by gltf-pipeline";
 
 std::uint32_t read_u32(std::string_view bytes, std::size_t at) {
     std::uint32_t value = 0;
@@ -39,6 +39,7 @@ struct Container {
 Result<Container> open_container(std::string_view file) {
     const auto bad = [](const std::string& why) { return fail(ErrorCode::parse, kNoItem, why); };
     if (file.size() < 20) return bad("too short for a binary glTF file");
+    if (read_u32(file, 4) == 1) return fail(ErrorCode::unsupported, kNoItem, kVersion1);
     if (read_u32(file, 4) != 2)
         return bad("binary glTF version " + std::to_string(read_u32(file, 4)) + ", where 2 is needed");
     if (read_u32(file, 8) > file.size())
@@ -69,20 +70,6 @@ Result<Container> open_container(std::string_view file) {
     return container;
 }
 
-bool nested_too_deeply(std::string_view text) {
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string && c == '\\') ++i;
-        if (c == '"') in_string = !in_string;
-        if (in_string) continue;
-        if ((c == '{' || c == '[') && ++depth > kDeepest) return true;
-        if (c == '}' || c == ']') --depth;
-    }
-    return false;
-}
-
 Result<Json> parse_json(std::string_view text) {
     Json root = Json::parse(text.begin(), text.end(), nullptr, false);
     if (root.is_discarded()) {
@@ -93,6 +80,11 @@ Result<Json> parse_json(std::string_view text) {
     }
     const Json* asset = member(root, "asset");
     const Json* version = asset ? member(*asset, "version") : nullptr;
+    // glTF 1.0 has objects where 2.0 has arrays, and may go without a version.
+    const Json* meshes = member(root, "meshes");
+    if ((version && version->is_string() && version->get_ref<const std::string&>().substr(0, 2) == "1.") ||
+        (meshes && meshes->is_object()))
+        return fail(ErrorCode::unsupported, kNoItem, kVersion1);
     if (!version || !version->is_string()) return fail(ErrorCode::parse, kNoItem, "no glTF: asset.version is missing");
     if (version->get_ref<const std::string&>().substr(0, 2) != "2.")
         return fail(ErrorCode::unsupported, kNoItem,
@@ -100,147 +92,67 @@ Result<Json> parse_json(std::string_view text) {
     return root;
 }
 
-const std::string* uri_of(const Json& object) {
-    const Json* uri = member(object, "uri");
-    return uri && uri->is_string() ? &uri->get_ref<const std::string&>() : nullptr;
-}
-
-std::size_t length_of(const Json& object, const char* key) {
-    const Json* list = member(object, key);
-    return list && list->is_array() ? list->size() : 0;
-}
-
-// What a document refers to in files beside it.
-class FilesBeside {
-  public:
-    FilesBeside(std::string folder, GltfDocument& document) : folder_(std::move(folder)), document_(document) {}
-
-    Result<void> read_buffers(const std::optional<std::string_view>& binary) {
-        const std::size_t count = length_of(document_.root, "buffers");
-        for (std::size_t i = 0; i < count; ++i) {
-            auto bytes = buffer(document_.root["buffers"][i], i == 0 ? binary : std::nullopt);
-            if (!bytes) {
-                bytes.error().item = i;
-                bytes.error().message = "buffer " + std::to_string(i) + ": " + bytes.error().message;
-                return tl::unexpected(bytes.error());
-            }
-            document_.buffers.push_back(std::move(*bytes));
-        }
-        return {};
-    }
-
-    void take_in_images() {
-        const std::size_t count = length_of(document_.root, "images");
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::string* uri = uri_of(document_.root["images"][i]);
-            if (uri && !has_scheme(*uri)) take_in_image(document_.root["images"][i], i, *uri);
-        }
-    }
-
-  private:
-    [[nodiscard]] std::string path_of(const std::string& uri) const {
-        const std::string name = decode_percent(uri);
-        return name.substr(0, 1) == "/" ? name : folder_ + name;
-    }
-
-    // A file's name comes from whoever made the asset: devices and pipes are not opened.
-    [[nodiscard]] Result<std::string> read_beside(const std::string& uri) const {
-        const std::string path = path_of(uri);
-        std::error_code ignored;
-        if (!std::filesystem::is_regular_file(path, ignored))
-            return fail(ErrorCode::io, kNoItem, path + ": there is no such file");
-        return read_file(path);
-    }
-
-    // Without a URI and a chunk (the place of what is compressed elsewhere) it holds nothing.
-    Result<std::string> buffer(Json& description, const std::optional<std::string_view>& binary) {
-        if (!description.is_object()) return fail(ErrorCode::parse, kNoItem, "is no object");
-        const auto length = whole_number(description, "byteLength", 0);
-        if (!length) return tl::unexpected(length.error());
-        const std::string* uri = uri_of(description);
-        if (!uri && !binary) return std::string();
-        Result<std::string> bytes;
-        if (!uri)
-            bytes = std::string(*binary);
-        else if (is_data_uri(*uri))
-            bytes = decode_data_uri(*uri);
-        else if (has_scheme(*uri))
-            bytes = fail(ErrorCode::unsupported, kNoItem, "'" + uri->substr(0, 80) + "' is not a file");
-        else
-            bytes = read_beside(*uri);
-        if (!bytes) return bytes;
-        if (bytes->size() < *length)
-            return fail(ErrorCode::out_of_range, kNoItem,
-                        std::to_string(bytes->size()) + " bytes, where byteLength is " + std::to_string(*length));
-        bytes->resize(*length);
-        return bytes;
-    }
-
-    static const char* type_of(std::string_view bytes) {
-        const auto begins = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
-        if (begins("\x89PNG")) return "image/png";
-        if (begins("\xFF\xD8\xFF")) return "image/jpeg";
-        if (begins("\xABKTX 20")) return "image/ktx2";
-        if (begins("RIFF") && bytes.substr(8, 4) == "WEBP") return "image/webp";
-        if (begins("DDS ")) return "image/vnd-ms.dds";
-        return nullptr;
-    }
-
-    void take_in_image(Json& image, std::size_t number, const std::string& uri) {
-        const auto warn = [&](const std::string& why) {
-            document_.warnings.push_back("image " + std::to_string(number) + ": " + why + "; its URI stays as it is");
-        };
-        const std::string path = path_of(uri);
-        if (!views_.contains(path)) {
-            const auto bytes = read_beside(uri);
-            if (!bytes) return warn(bytes.error().message);
-            const char* type = type_of(*bytes);
-            if (!type) return warn(path + ": of unknown type");
-            views_[path] = {append_view(document_, *bytes), type};
-        }
-        const auto& [view, type] = views_[path];
-        image.erase("uri");
-        image["bufferView"] = view;
-        image["mimeType"] = type;
-    }
-
-    struct ImageView {
-        std::size_t view = 0;
-        const char* type = "";
-    };
-    std::string folder_;
-    GltfDocument& document_;
-    std::map<std::string, ImageView> views_;
-};
-
 Result<Container> open_file(std::string_view file, const std::string& path) {
-    Container container;
-    if (file.substr(0, kMagic.size()) == kMagic) {
-        auto opened = open_container(file);
-        if (!opened) return opened;
-        container = std::move(*opened);
-    } else if (extension(path) == "glb") {
+    if (file.substr(0, kMagic.size()) == kMagic) return open_container(file);
+    if (extension(path) == "glb")
         return fail(ErrorCode::parse, kNoItem, "is no binary glTF file: it does not begin with glTF");
-    } else {
-        container.json = file;
-    }
-    if (nested_too_deeply(container.json))
-        return fail(ErrorCode::parse, kNoItem, "its JSON is nested deeper than " + std::to_string(kDeepest));
+    Container container;
+    container.json = file;
     return container;
 }
 
-Result<GltfDocument> read_document(std::string_view file, const std::string& path) {
+// An accessor's elements; 0 where there cannot be so many, which whoever reads them says.
+std::uint64_t count_of(const GltfDocument& document, const Json* accessor) {
+    const auto number = accessor ? as_whole_number(*accessor) : std::nullopt;
+    const Json* found = number ? entry(document.root, "accessors", *number) : nullptr;
+    const Json* value = found ? member(*found, "count") : nullptr;
+    const auto count = value ? as_whole_number(*value) : std::nullopt;
+    if (!count) return 0;
+    std::uint64_t most = document.limits.triangles;
+    if (member(*found, "bufferView")) {
+        most = 0;
+        for (const std::string& buffer : document.buffers) most = std::max<std::uint64_t>(most, buffer.size());
+    }
+    return *count <= most ? *count : 0;
+}
+
+// What all primitives together ask for: they may share accessors, so a small file may ask for much.
+Result<void> check_counts(const GltfDocument& document) {
+    const Json& root = document.root;
+    const ReadLimits& limits = document.limits;
+    if (entry_count(root, "nodes") > limits.nodes) return over_limit("nodes", limits.nodes);
+    std::uint64_t triangles = 0, vertices = 0;
+    for (std::size_t m = 0; const Json* mesh = entry(root, "meshes", m); ++m)
+        for (std::size_t p = 0; const Json* primitive = entry(*mesh, "primitives", p); ++p) {
+            const Json* attributes = member(*primitive, "attributes");
+            const std::uint64_t count = count_of(document, attributes ? member(*attributes, "POSITION") : nullptr);
+            const Json* indices = member(*primitive, "indices");
+            const auto mode = whole_number(*primitive, "mode", kGltfTriangles);
+            const std::uint64_t corners = indices ? count_of(document, indices) : count;
+            vertices += count;
+            triangles += mode && *mode > kGltfTriangles ? corners : corners / 3;
+            if (triangles > limits.triangles || vertices / 3 > limits.triangles)
+                return over_limit("triangles", limits.triangles);
+        }
+    return {};
+}
+
+Result<GltfDocument> read_document(std::string_view file, const std::string& path, const DocumentOptions& options) {
     const auto opened = open_file(file, path);
     if (!opened) return tl::unexpected(opened.error());
     const Container& container = *opened;
+    if (auto shape = check_json_shape(container.json, options.limits); !shape) return tl::unexpected(shape.error());
     auto root = parse_json(container.json);
     if (!root) return tl::unexpected(root.error());
     GltfDocument document;
     document.root = std::move(*root);
     document.other_chunks = container.other_chunks;
-    FilesBeside files(folder(path), document);
-    if (auto read = files.read_buffers(container.binary); !read) return tl::unexpected(read.error());
-    files.take_in_images();
+    document.limits = options.limits;
+    if (auto read = read_buffers(document, folder(path), container.binary, options.whole_buffers); !read)
+        return tl::unexpected(read.error());
+    if (auto plain = decompress(document); !plain) return tl::unexpected(plain.error());
+    if (auto counts = check_counts(document); !counts) return tl::unexpected(counts.error());
+    if (options.images) take_in_images(document, folder(path));
     return document;
 }
 
@@ -258,7 +170,18 @@ const Json* member(const Json& object, const char* key) {
 }
 
 const Json* entry(const Json& object, const char* key, std::size_t index) {
-    return index < length_of(object, key) ? &object.find(key)->at(index) : nullptr;
+    return index < entry_count(object, key) ? &object.find(key)->at(index) : nullptr;
+}
+
+std::size_t entry_count(const Json& object, const char* key) {
+    const Json* list = member(object, key);
+    return list && list->is_array() ? list->size() : 0;
+}
+
+std::string label(const char* what, std::size_t index, const Json& object) {
+    const Json* name = member(object, "name");
+    const bool named = name && name->is_string() && !name->get_ref<const std::string&>().empty();
+    return what + (" " + std::to_string(index)) + (named ? " '" + name->get<std::string>() + "'" : "");
 }
 
 std::optional<std::size_t> as_whole_number(const Json& value) {
@@ -273,22 +196,12 @@ Result<std::size_t> whole_number(const Json& object, const char* key, std::size_
     return fail(ErrorCode::parse, kNoItem, std::string(key) + " is no whole number of at least 0");
 }
 
-Result<std::string_view> gltf_json(std::string_view file, const std::string& path) {
-    const auto opened = open_file(file, path);
-    if (!opened) return tl::unexpected(opened.error());
-    return opened->json;
-}
-
-Result<GltfDocument> read_gltf_document(const std::string& path) {
-    const auto file = read_file(path);
+Result<GltfDocument> read_gltf_document(const std::string& path, const DocumentOptions& options) {
+    const auto file = read_file(path, options.limits.bytes);
     if (!file) return tl::unexpected(file.error());
-    auto document = read_document(*file, path);
+    auto document = read_document(*file, path, options);
     if (!document) return in_file(path, "", document.error());
     return document;
-}
-
-void take_in_images(GltfDocument& document, const std::string& folder) {
-    FilesBeside(folder, document).take_in_images();
 }
 
 Result<std::string> write_glb(const GltfDocument& document) {

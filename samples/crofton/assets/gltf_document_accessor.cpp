@@ -128,8 +128,11 @@ Result<Elements> find(const GltfDocument& document, std::size_t accessor, std::o
     if (has_view)
         if (auto found = locate(document, *description, layout); !found) return tl::unexpected(found.error());
     if (has_view && !member(*description, "sparse")) return place(layout);
-    // Without a view nothing but the caller's count bounds what would be made up.
-    if (!has_view && !count) return bad(ErrorCode::unsupported, "has no buffer view");
+    // Without a view nothing in the file bounds how many zeros it asks for.
+    if (!has_view && *given > document.limits.triangles)
+        return bad(ErrorCode::budget_exceeded, std::to_string(*given) + " elements without a buffer view: " +
+                                                   over_limit("triangles", document.limits.triangles).value().message);
+    if (!has_view && *given == 0) return bad(ErrorCode::empty, "holds nothing");
     if (has_view)
         if (const auto base = place(layout); !base) return base;
     return assemble(document, *description, layout, has_view, storage);

@@ -63,7 +63,7 @@ class OwnBytes {
 
     void add_accessor(std::size_t number, const Json& accessor, std::vector<bool>& seen) {
         own_[number] = false;
-        if (member(accessor, "sparse")) return;
+        if (member(accessor, "sparse") || !member(accessor, "bufferView")) return;
         std::string unused;
         const auto elements = accessor_elements(document_, number, std::nullopt, unused);
         if (!elements) return;
@@ -108,6 +108,8 @@ class OwnBytes {
     std::vector<Extent> extents_;
 };
 
+constexpr const char* kNotReached = "was not done before the interruption";
+
 class PatchRun {
   public:
     PatchRun(GltfDocument& document, const PatchSettings& settings) : document_(document), settings_(settings) {}
@@ -115,9 +117,14 @@ class PatchRun {
     Result<std::vector<PrimitivePatches>> run() {
         if (auto done = gather(); !done) return tl::unexpected(done.error());
         const OwnBytes own(document_);
+        bool go_on = true;
         for (std::size_t g = 0; g < groups_.size(); ++g) {
+            if (!go_on) {
+                groups_[g].outcome.left_alone = kNotReached;
+                continue;
+            }
             if (auto done = solve(groups_[g]); !done) return tl::unexpected(done.error());
-            if (settings_.progress) settings_.progress(g + 1, groups_.size());
+            if (settings_.progress) go_on = settings_.progress(g + 1, groups_.size());
         }
         std::vector<PrimitivePatches> result(count_);
         for (Group& group : groups_) {
@@ -197,7 +204,10 @@ class PatchRun {
         const auto start = Clock::now();
         auto report = triangulate::retriangulate_planar_patches(geometry->mesh, options);
         outcome.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-        if (!report && report.error().code == ErrorCode::cancelled) return tl::unexpected(report.error());
+        if (!report && report.error().code == ErrorCode::cancelled) {
+            outcome.left_alone = kNotReached;
+            return {};
+        }
         if (!report) {
             outcome.error = report.error();
             return {};

@@ -15,7 +15,8 @@ struct PatchSettings {
     triangulate::TriangulateOptions triangulation;
     double tolerance = -1.0;            // from a patch's plane; negative: a millionth of each mesh's size
     double attribute_tolerance = 1e-4;  // how far attributes may leave one linear function of the position; see below
-    std::function<void(std::size_t done, std::size_t of)> progress = {};
+    // Returning false leaves the rest as it is.
+    std::function<bool(std::size_t done, std::size_t of)> progress = {};
 };
 
 // What became of one primitive of a mesh.

@@ -135,11 +135,15 @@ class PrimitiveReader {
 
 }  // namespace
 
-std::string reason_to_leave(const Json& primitive) {
+std::string reason_to_draw_nothing(const Json& primitive) {
     const auto mode = whole_number(primitive, "mode", kGltfTriangles);
     if (mode && *mode < kGltfTriangles) return *mode == 0 ? "is made of points" : "is made of lines";
     const Json* attributes = member(primitive, "attributes");
-    if (!attributes || !member(*attributes, "POSITION")) return "has no positions";
+    return attributes && member(*attributes, "POSITION") ? "" : "has no positions";
+}
+
+std::string reason_to_leave(const Json& primitive) {
+    if (std::string reason = reason_to_draw_nothing(primitive); !reason.empty()) return reason;
     if (const Json* extensions = member(primitive, "extensions"); extensions && extensions->is_object())
         for (const auto& item : extensions->items())
             if (item.key().find("compression") == std::string::npos &&
@@ -156,24 +160,6 @@ Result<PrimitiveGeometry> read_primitive(const GltfDocument& document, const Jso
                 return fail(ErrorCode::unsupported, kNoItem,
                             "compressed by " + item.key() + ", which is not supported");
     return PrimitiveReader(document, primitive, tolerances).read();
-}
-
-Result<void> check_primitives(const GltfDocument& document) {
-    constexpr double kPositionsOnly = std::numeric_limits<double>::infinity();
-    for (std::size_t m = 0; const Json* mesh = entry(document.root, "meshes", m); ++m) {
-        const Json* name = member(*mesh, "name");
-        for (std::size_t p = 0; const Json* primitive = entry(*mesh, "primitives", p); ++p) {
-            if (!reason_to_leave(*primitive).empty()) continue;
-            const auto read = read_primitive(document, *primitive, {0.0, kPositionsOnly});
-            if (read) continue;
-            Error error = read.error();
-            error.message = "mesh " + std::to_string(m) +
-                            (name && name->is_string() ? " '" + name->get<std::string>() + "'" : std::string()) +
-                            ": primitive " + std::to_string(p) + ": " + error.message;
-            return tl::unexpected<Error>(std::move(error));
-        }
-    }
-    return {};
 }
 
 double patch_tolerance(const TriangleMesh& mesh, double tolerance) {

@@ -21,6 +21,9 @@ struct PrimitiveGeometry {
     double position_tolerance = 0.0;                // from the plane of a patch
 };
 
+// Why a primitive shows no triangles (points, lines, no positions); empty where it may show some.
+[[nodiscard]] std::string reason_to_draw_nothing(const nlohmann::ordered_json& primitive);
+
 // Why a primitive's triangles are not to be touched (points, lines, no positions, an extension that may count on
 // them); empty where they may be.
 [[nodiscard]] std::string reason_to_leave(const nlohmann::ordered_json& primitive);
@@ -34,10 +37,6 @@ struct ValueTolerances {
 [[nodiscard]] Result<PrimitiveGeometry> read_primitive(const GltfDocument& document,
                                                        const nlohmann::ordered_json& primitive,
                                                        const ValueTolerances& tolerances);
-
-// The first primitive of triangles whose indices or positions cannot be read, as an error that names mesh and
-// primitive.
-[[nodiscard]] Result<void> check_primitives(const GltfDocument& document);
 
 // `tolerance`, or where it is negative a millionth of the mesh's size.
 [[nodiscard]] double patch_tolerance(const TriangleMesh& mesh, double tolerance);

@@ -41,4 +41,26 @@ std::optional<std::size_t> syntax_error_position(std::string_view text) {
     return std::min(check.position, text.size());
 }
 
+Result<void> check_json_shape(std::string_view text, const ReadLimits& limits) {
+    constexpr std::uint64_t kValuesPerNode = 16;
+    std::uint64_t depth = 0, values = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string && c == '\\') ++i;
+        if (c == '"') in_string = !in_string;
+        if (in_string) continue;
+        values += c == ',' || c == '{' || c == '[';
+        if ((c == '{' || c == '[') && ++depth > limits.nesting)
+            return fail(ErrorCode::budget_exceeded, kNoItem,
+                        "its JSON is nested deeper than " + std::to_string(limits.nesting) +
+                            ", the limit: --max-nesting raises it");
+        if ((c == '}' || c == ']') && depth > 0) --depth;
+    }
+    if (values / kValuesPerNode <= limits.nodes) return {};
+    return fail(ErrorCode::budget_exceeded, kNoItem,
+                "its JSON has " + std::to_string(values) + " values, more than 16 for each of " +
+                    std::to_string(limits.nodes) + " nodes, the limit: --max-nodes raises it");
+}
+
 }  // namespace crofton::assets

@@ -5,6 +5,15 @@
 #include "assets/scene_source.hpp"
 
 namespace crofton::assets {
+namespace {
+
+Result<SceneSource> checked(Result<SceneSource> source, const std::string& path, const LoadOptions& options) {
+    if (options.strict && source && !source->warnings.empty())
+        return fail(ErrorCode::parse, kNoItem, path + ": " + source->warnings.front() + " (refused: --strict)");
+    return source;
+}
+
+}  // namespace
 
 Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options) {
     const std::string kind = extension(source);
@@ -20,9 +29,9 @@ Result<SceneSource> load_scene(const std::string& source, const LoadOptions& opt
     if (kind == "crofton")
         return fail(ErrorCode::unsupported, kNoItem,
                     source + ": is what 'crofton bake' writes for engines to load; name the scene that it was made of");
-    if (kind == "glb" || kind == "gltf") return load_gltf(source, options);
-    if (kind == "obj") return load_obj(source, options);
-    if (kind == "wad") return load_wad(source, options);
+    if (kind == "glb" || kind == "gltf") return checked(load_gltf(source, options), source, options);
+    if (kind == "obj") return checked(load_obj(source, options), source, options);
+    if (kind == "wad") return checked(load_wad(source, options), source, options);
     return fail(ErrorCode::unsupported, kNoItem,
                 source + ": unknown kind of scene; known are town, room and files .glb, .gltf, .obj and .wad");
 }

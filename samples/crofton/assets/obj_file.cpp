@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assets/obj_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -73,15 +74,30 @@ void read_materials(std::string_view text, Materials& materials) {
     }
 }
 
+// What is no text of bytes below 128 and UTF-8, said before a line of it makes no sense. Takes off a UTF-8 mark.
+Result<void> check_encoding(std::string_view& text) {
+    const auto begins = [&](std::string_view mark) { return text.substr(0, mark.size()) == mark; };
+    if (begins("\xFF\xFE") || begins("\xFE\xFF"))
+        return fail(ErrorCode::unsupported, kNoItem, "is UTF-16 text; save it as UTF-8");
+    if (begins("\xEF\xBB\xBF")) text.remove_prefix(3);
+    const std::size_t zero = text.find('\0');
+    if (zero == std::string_view::npos) return {};
+    return fail(ErrorCode::parse, zero, "is no text: byte " + std::to_string(zero) + " is 0");
+}
+
+constexpr std::size_t kMostWarnings = 20;
+constexpr std::size_t kLinesPerLook = 1 << 14;  // at the clock
+
 class ObjReader {
   public:
-    ObjReader(std::string path, std::string_view text, double largest)
-        : path_(std::move(path)), text_(text), largest_(largest) {}
+    ObjReader(std::string path, std::string_view text, const ObjOptions& options)
+        : path_(std::move(path)), text_(text), options_(options), deadline_(options.limits) {}
 
     Result<ObjFile> read() {
         file_.parts.emplace_back();
         while (!text_.empty()) {
-            ++line_;
+            if (++line_ % kLinesPerLook == 0)
+                if (auto in_time = deadline_.check(); !in_time) return in_file(path_, "", in_time.error());
             std::string_view line = next_line(text_);
             const std::string_view key = next_word(line);
             Result<void> done;
@@ -98,9 +114,13 @@ class ObjReader {
             else if (key == "usemtl")
                 use_material(next_word(line));
             else if (key == "mtllib")
-                load_library(next_word(line));
-            if (!done) return tl::unexpected(done.error());
+                done = load_library(next_word(line));
+            if (!done && (!options_.leave_out || done.error().code == ErrorCode::budget_exceeded))
+                return in_file(path_, "", done.error());
+            if (!done) left_out(done.error());
         }
+        if (!bad_vertices_.empty()) drop_bad_vertices();
+        if (unnamed_ > 0) file_.warnings.push_back(std::to_string(unnamed_) + " more lines make no sense: left out");
         if (dangling_ > 0)
             file_.warnings.push_back(std::to_string(dangling_) +
                                      " corners of faces name texture coordinates or normals that are not there");
@@ -113,15 +133,34 @@ class ObjReader {
     };
 
     Result<void> bad(ErrorCode code, const std::string& why) const {
-        return fail(code, line_, path_ + ": line " + std::to_string(line_) + ": " + why);
+        return fail(code, line_, "line " + std::to_string(line_) + ": " + why);
     }
 
+    void left_out(const Error& why) {
+        if (file_.warnings.size() < kMostWarnings)
+            file_.warnings.push_back(why.message + ": left out");
+        else
+            ++unnamed_;
+    }
+
+    // A bad one keeps its number until the end, and faces that name it are left out.
     Result<void> read_vertex(std::string_view line) {
+        if (file_.positions.size() / 3 >= options_.limits.triangles)
+            return over_limit("triangles", options_.limits.triangles);
+        auto read = read_good_vertex(line);
+        if (read || !options_.leave_out) return read;
+        bad_vertices_.push_back(static_cast<std::uint32_t>(file_.positions.size()));
+        file_.positions.emplace_back(0.0);
+        file_.colors.emplace_back(-1.0f);
+        return read;
+    }
+
+    Result<void> read_good_vertex(std::string_view line) {
         glm::dvec3 p;
         glm::vec3 c(-1.0f);
         for (int i = 0; i < 3; ++i) {
             const std::string_view word = next_word(line);
-            if (!parse(word, p[i]) || std::abs(p[i]) > largest_)
+            if (!parse(word, p[i]) || std::abs(p[i]) > options_.largest)
                 return bad(ErrorCode::parse, "vertex " + std::to_string(file_.positions.size() + 1) + ": '" +
                                                  std::string(word.substr(0, 40)) + "' is not a finite number");
         }
@@ -182,6 +221,9 @@ class ObjReader {
             return tl::unexpected(bad(ErrorCode::out_of_range, "face: vertex " + std::to_string(index) + " of " +
                                                                    std::to_string(file_.positions.size()))
                                       .error());
+        if (std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), corner.position))
+            return tl::unexpected(
+                bad(ErrorCode::parse, "face: vertex " + std::to_string(index) + " makes no sense").error());
         std::string_view rest = word.substr(number.size());
         corner.texcoord = optional_index(rest, file_.texcoords.size());
         corner.normal = optional_index(rest, file_.normals.size());
@@ -189,18 +231,34 @@ class ObjReader {
     }
 
     Result<void> read_face(std::string_view line) {
-        Corner first, previous;
-        std::size_t count = 0;
-        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++count) {
+        face_.clear();
+        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
             const auto corner = read_corner(word);
             if (!corner) return tl::unexpected(corner.error());
-            if (count == 0) first = *corner;
-            if (count >= 2)
-                for (const Corner& c : {first, previous, *corner}) add_corner(file_.parts.back(), c);
-            previous = *corner;
+            face_.push_back(*corner);
         }
-        if (count < 3) return bad(ErrorCode::parse, "face: fewer than three vertices");
+        if (face_.size() < 3) return bad(ErrorCode::parse, "face: fewer than three vertices");
+        triangles_ += face_.size() - 2;
+        if (triangles_ > options_.limits.triangles) return over_limit("triangles", options_.limits.triangles);
+        for (std::size_t i = 2; i < face_.size(); ++i)
+            for (const Corner& c : {face_[0], face_[i - 1], face_[i]}) add_corner(file_.parts.back(), c);
         return {};
+    }
+
+    // No face names them.
+    void drop_bad_vertices() {
+        std::vector<std::uint32_t> number(file_.positions.size());
+        std::uint32_t kept = 0;
+        for (std::uint32_t v = 0; v < number.size(); ++v) {
+            if (std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), v)) continue;
+            file_.positions[kept] = file_.positions[v];
+            file_.colors[kept] = file_.colors[v];
+            number[v] = kept++;
+        }
+        file_.positions.resize(kept);
+        file_.colors.resize(kept);
+        for (ObjFile::Part& part : file_.parts)
+            for (std::uint32_t& index : part.indices) index = number[index];
     }
 
     static void add_corner(ObjFile::Part& part, const Corner& corner) {
@@ -238,28 +296,36 @@ class ObjReader {
         part.material = std::string(name);
     }
 
-    void load_library(std::string_view name) {
-        const auto text = read_file(folder(path_) + std::string(name));
+    Result<void> load_library(std::string_view name) {
+        if (auto in_time = deadline_.check(); !in_time) return in_time;
+        const auto text = read_file_below(folder(path_), std::string(name), options_.limits.bytes);
         if (text)
             read_materials(*text, materials_);
-        else
+        else if (file_.warnings.size() < kMostWarnings)
             file_.warnings.push_back("line " + std::to_string(line_) + ": " + text.error().message);
+        return {};
     }
 
     std::string path_;
     std::string_view text_;
-    double largest_;
-    std::size_t line_ = 0, dangling_ = 0;
+    ObjOptions options_;
+    Deadline deadline_;
+    std::size_t line_ = 0, dangling_ = 0, unnamed_ = 0;
+    std::uint64_t triangles_ = 0;
+    std::vector<std::uint32_t> bad_vertices_;  // ascending
+    std::vector<Corner> face_;
     Materials materials_;
     ObjFile file_;
 };
 
 }  // namespace
 
-Result<ObjFile> read_obj(const std::string& path, double largest) {
-    const auto text = read_file(path);
-    if (!text) return tl::unexpected(text.error());
-    return ObjReader(path, *text, largest).read();
+Result<ObjFile> read_obj(const std::string& path, const ObjOptions& options) {
+    const auto file = read_file(path, options.limits.bytes);
+    if (!file) return tl::unexpected(file.error());
+    std::string_view text = *file;
+    if (auto readable = check_encoding(text); !readable) return in_file(path, "", readable.error());
+    return ObjReader(path, text, options).read();
 }
 
 }  // namespace crofton::assets

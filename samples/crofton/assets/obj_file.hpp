@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "assets/read_limits.hpp"
+
 namespace crofton::assets {
 
 struct ObjFile {
@@ -33,8 +35,15 @@ struct ObjFile {
     std::vector<std::string> warnings;  // material libraries, texture coordinates and normals that are not there
 };
 
-// Errors name the file, the line and the reason: numbers that are none, NaN or beyond ±`largest` (a float's range
-// unless the caller computes in doubles), faces of fewer than three corners or with vertices that are not there.
-[[nodiscard]] Result<ObjFile> read_obj(const std::string& path, double largest = std::numeric_limits<float>::max());
+struct ObjOptions {
+    double largest = std::numeric_limits<float>::max();  // coordinate; larger where the caller computes in doubles
+    ReadLimits limits = {};
+    bool leave_out = false;  // lines that make no sense become warnings, and faces with such vertices are left out
+};
+
+// Errors name the file, the line and the reason: numbers that are none, NaN or too large, faces of fewer than three
+// corners or with vertices that are not there, a limit; files that are no text, or UTF-16. Material libraries are read
+// from below the file's folder only.
+[[nodiscard]] Result<ObjFile> read_obj(const std::string& path, const ObjOptions& options = {});
 
 }  // namespace crofton::assets

@@ -30,7 +30,7 @@ TriangleMesh mesh_of(const ObjFile& file, const ObjFile::Part& part, std::vector
 }  // namespace
 
 Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options) {
-    auto read = read_obj(path);
+    auto read = read_obj(path, {.limits = options.limits, .leave_out = !options.strict});
     if (!read) return tl::unexpected(read.error());
     ObjFile& file = *read;
     SceneSource source{file_name(path), scene::Scene({options.criterion}), {}, {}, std::move(file.warnings), {}};
@@ -50,7 +50,9 @@ Result<SceneSource> load_obj(const std::string& path, const LoadOptions& options
         }
     }
     if (source.scene.instance_count() == 0)
-        return fail(ErrorCode::empty, kNoItem, path + ": holds no faces, so there is nothing to draw");
+        return fail(ErrorCode::empty, kNoItem,
+                    path + ": holds no faces, so there is nothing to draw" +
+                        (source.warnings.empty() ? "" : ": " + source.warnings.front()));
     return source;
 }
 

@@ -9,13 +9,17 @@
 #include <string>
 #include <vector>
 
+#include "assets/read_limits.hpp"
+
 namespace crofton::assets {
 
 struct LoadOptions {
     measure::Criterion criterion = measure::minimal_perimeter();  // for the boxes around meshes
-    std::string map;                                              // which level of a WAD; empty: the first
+    std::string map = {};                                         // which level of a WAD; empty: the first
     std::uint64_t seed = 1;                                       // of the town
     std::uint32_t instances = 0;  // of the town, roughly, at most 1,000,000; 0: about 3,000
+    ReadLimits limits = {};       // of a file
+    bool strict = false;          // a file of which anything would be left out is refused
 };
 
 // A scene with what one needs to visit it. +y is up, lengths are metres where the format says so.
@@ -41,8 +45,9 @@ struct SceneSource {
 };
 
 // "town", "room" (an interior to light), or a file by its extension: .glb, .gltf, .obj, .wad. Errors name the file, the
-// item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw. Of a glTF file,
-// nodes with NaN or huge transforms and primitives with bad vertices or indices are left out, with a warning each.
+// item in it and the reason: missing or damaged file, unknown extension, unknown map, nothing to draw, beyond a limit.
+// What is bad in a file (a node with a NaN, a primitive, face or sector that makes no sense, an image that cannot be
+// read) is left out, with a warning each that names it; with `strict` the first one is an error.
 [[nodiscard]] Result<SceneSource> load_scene(const std::string& source, const LoadOptions& options = {});
 
 [[nodiscard]] Result<SceneSource> make_town(const LoadOptions& options);

@@ -31,22 +31,41 @@ glm::vec3 lit(const std::string& texture, int light) {
 class LevelBuilder {
   public:
     LevelBuilder(const WadLevel& level, const LoadOptions& options)
-        : level_(level), source_{level.name, scene::Scene({options.criterion}), {}, {}, {}, {}} {}
+        : level_(level), limits_(options.limits), deadline_(options.limits), source_{level.name,
+                                                                                     scene::Scene({options.criterion}),
+                                                                                     {},
+                                                                                     {},
+                                                                                     {},
+                                                                                     {}} {}
 
     Result<SceneSource> build() {
         const auto root = source_.scene.add_node(scene::kNone, {}, ~0u, level_.name);
         if (!root) return tl::unexpected(root.error());
         root_ = *root;
         const auto sectors = sector_polygons(level_);
-        for (std::size_t s = 0; s < sectors.size(); ++s) add_sector(s, sectors[s]);
-        for (std::size_t l = 0; l < level_.lines.size(); ++l) add_walls(l);
+        for (std::size_t s = 0; s < sectors.size(); ++s) {
+            if (auto good = check_limits(); !good) return tl::unexpected(good.error());
+            add_sector(s, sectors[s]);
+        }
+        for (std::size_t l = 0; l < level_.lines.size(); ++l) {
+            if (auto good = check_limits(); !good) return tl::unexpected(good.error());
+            add_walls(l);
+        }
         order_walk();
         if (source_.scene.instance_count() == 0)
-            return fail(ErrorCode::empty, kNoItem, "its sectors and lines show nothing");
+            return fail(ErrorCode::empty, kNoItem,
+                        "its sectors and lines show nothing" +
+                            (source_.warnings.empty() ? "" : ": " + source_.warnings.front()));
         return std::move(source_);
     }
 
   private:
+    [[nodiscard]] Result<void> check_limits() const {
+        if (source_.scene.instance_count() >= limits_.nodes) return over_limit("nodes", limits_.nodes);
+        if (triangles_ > limits_.triangles) return over_limit("triangles", limits_.triangles);
+        return deadline_.check();
+    }
+
     void warn(const std::string& what, std::size_t number, const std::string& why) {
         source_.warnings.push_back(what + " " + std::to_string(number) + ": " + why + "; left out");
     }
@@ -55,11 +74,12 @@ class LevelBuilder {
         if (!sector.problem.empty()) warn("sector", number, sector.problem);
         const WadLevel::Sector& s = level_.sectors[number];
         for (const Polygon& polygon : sector.polygons) {
-            const auto triangulation = triangulate::triangulate(polygon);
+            const auto triangulation = triangulate::triangulate(polygon, {.seconds = limits_.seconds});
             if (!triangulation) {
                 warn("sector", number, triangulation.error().message);
                 continue;
             }
+            triangles_ += triangulation->triangles.size();
             if (!is_sky(s.floor_texture))
                 add_flat(number, polygon, *triangulation, s.floor, lit(s.floor_texture, s.light), true);
             if (!is_sky(s.ceiling_texture) && s.ceiling > s.floor)
@@ -165,6 +185,9 @@ class LevelBuilder {
     }
 
     const WadLevel& level_;
+    ReadLimits limits_;
+    Deadline deadline_;
+    std::uint64_t triangles_ = 0;
     SceneSource source_;
     scene::NodeId root_ = scene::kNone;
 };
@@ -172,7 +195,7 @@ class LevelBuilder {
 }  // namespace
 
 Result<SceneSource> load_wad(const std::string& path, const LoadOptions& options) {
-    const auto bytes = read_file(path);
+    const auto bytes = read_file(path, options.limits.bytes);
     if (!bytes) return tl::unexpected(bytes.error());
     const auto level = read_level(*bytes, options.map);
     if (!level) return in_file(path, "", level.error());

@@ -13,6 +13,7 @@
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -25,6 +26,7 @@ struct BakeOptions {
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
+    ReadOptions read;
 };
 
 // Time on the wall, and on all of the process's cores: on a busy machine only the second one says much.
@@ -89,18 +91,20 @@ class BakeRun {
                                 {ErrorCode::invalid_argument, kNoItem,
                                  "is no .crofton file to check; to bake a scene, say where to: -o FILE"});
         const Stopwatch watch;
-        const auto baked = bake::BakedScene::open(options_.scene, executor());
+        const auto baked = bake::BakedScene::open(options_.scene, executor(), {.largest = options_.read.limits.bytes});
         const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
         if (!baked) return report_error("", baked.error());
         return show(options_, "loaded", times, options_.scene, *baked, std::filesystem::file_size(options_.scene));
     }
 
     int write() {
-        auto source = assets::load_scene(options_.scene,
-                                         {.map = options_.map, .seed = options_.seed, .instances = options_.instances});
+        auto source = assets::load_scene(options_.scene, {.map = options_.map,
+                                                          .seed = options_.seed,
+                                                          .instances = options_.instances,
+                                                          .limits = options_.read.limits,
+                                                          .strict = options_.read.strict});
         if (!source) return report_error("", source.error());
-        for (const std::string& warning : source->warnings)
-            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+        print_warnings(source->warnings);
         source->scene.update(executor());
         const Stopwatch watch;
         const auto file = bake::bake(source->scene, executor());
@@ -141,6 +145,7 @@ void add_bake_command(CommandLine& line) {
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
+    add_read_options(command, options->read);
     command.action([options] { return BakeRun(*options).run(); });
 }
 

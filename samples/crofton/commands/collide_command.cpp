@@ -19,6 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Request {
+    ReadOptions read;
     std::string a, b, pose, mode = "any", json_path;
 };
 
@@ -93,8 +94,8 @@ Result<RigidTransform> pose_of(const std::string& argument) {
     return pose;
 }
 
-Result<mesh::MeshTree> tree_of(const std::string& path, double& milliseconds) {
-    const auto mesh = load_mesh(path);
+Result<mesh::MeshTree> tree_of(const std::string& path, const ReadOptions& options, double& milliseconds) {
+    const auto mesh = load_mesh(path, options);
     if (!mesh) return tl::unexpected<Error>(mesh.error());
     const auto start = Clock::now();
     auto tree = mesh::MeshTree::build(*mesh);
@@ -159,9 +160,9 @@ int run(const Request& request) {
     const auto pose = pose_of(request.pose);
     if (!pose) return report_error("", pose.error());
     double build = 0.0;
-    const auto a = tree_of(request.a, build);
+    const auto a = tree_of(request.a, request.read, build);
     if (!a) return report_error("", a.error());
-    const auto b = tree_of(request.b, build);
+    const auto b = tree_of(request.b, request.read, build);
     if (!b) return report_error("", b.error());
     const auto start = Clock::now();
     Answer answer = ask(request.mode, *a, *b, *pose);
@@ -214,6 +215,7 @@ void add_collide_command(CommandLine& line) {
         "  crofton collide bunny.obj cow.obj\n"
         "  crofton collide bunny.obj bunny.obj --pose 0.05,0,0,1,0,0,0 --mode all --json -\n"
         "  crofton collide a.obj b.obj --pose pose.txt --mode distance");
+    add_read_options(command, request->read);
     command.action([request] { return run(*request); });
 }
 

@@ -17,7 +17,7 @@ class Option;
 namespace crofton::cli {
 
 // Exit statuses, the same for every sub-command.
-enum ExitStatus : int { kSuccess = 0, kCheckFailed = 1, kBadInput = 2 };
+enum ExitStatus : int { kSuccess = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 130 };
 
 // One option or positional argument. Each function adds a demand, checked before the sub-command runs, and returns the
 // option itself.

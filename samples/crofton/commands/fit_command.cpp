@@ -26,6 +26,7 @@ struct Request {
     bool planar = false;
     std::string bounds, views;
     double region = 20.0, triangle_cost = 1.0;
+    ReadOptions read;
 };
 
 class Stopwatch {
@@ -67,7 +68,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
 Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& criterion, const Request& request) {
     FittedMesh mesh;
     mesh.file = file;
-    const auto points = load_points(file);
+    const auto points = load_points(file, request.read);
     if (!points) return tl::unexpected(points.error());
     const std::span<const glm::dvec3> span(*points);
     const auto named = [&](const Error& error) { return fail(error.code, error.item, file + ": " + error.message); };
@@ -111,7 +112,7 @@ int run(const Request& request) {
         const auto status = run_fit_views({request.files, request.views, request.json_path});
         return status ? *status : report_error("", status.error());
     }
-    const auto criterion = parse_criterion(request.criterion);
+    const auto criterion = parse_criterion(request.criterion, request.read);
     if (!criterion) return report_error("", criterion.error());
     if (!request.bounds.empty()) {
         if (!request.svg_path.empty())
@@ -188,6 +189,7 @@ void add_fit_command(CommandLine& line) {
         "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg\n"
         "  crofton fit *.obj --bounds best --criterion frustum:1.0472,1.7778,0.1,1000\n"
         "  crofton fit --planar counties.poly --svg bounds.svg");
+    add_read_options(command, request->read);
     command.action([request] { return run(*request); });
 }
 

@@ -34,8 +34,8 @@ std::vector<double> numbers(const std::string& text, std::size_t count) {
     return values;
 }
 
-Result<measure::Criterion> partner(const std::string& path) {
-    const auto points = load_points(path);
+Result<measure::Criterion> partner(const std::string& path, const ReadOptions& options) {
+    const auto points = load_points(path, options);
     if (!points) return tl::unexpected(points.error());
     const std::span<const glm::dvec3> span(*points);
     const auto hull = convex_hull(span);
@@ -61,7 +61,7 @@ Result<measure::Criterion> partner(const std::string& path) {
 
 }  // namespace
 
-Result<measure::Criterion> parse_criterion(const std::string& text) {
+Result<measure::Criterion> parse_criterion(const std::string& text, const ReadOptions& options) {
     const std::size_t colon = text.find(':');
     const std::string name = text.substr(0, colon), rest = colon == std::string::npos ? "" : text.substr(colon + 1);
     if (colon == std::string::npos) {
@@ -88,7 +88,7 @@ Result<measure::Criterion> parse_criterion(const std::string& text) {
         if (v.empty()) return bad(text, "weights are three numbers, of volume, area and mean curvature");
         criterion = measure::Criterion{v[0], v[1], v[2]};
     } else if (name == "partner") {
-        criterion = partner(rest);
+        criterion = partner(rest, options);
     }
     if (!criterion)
         return criterion.error().message.starts_with("--criterion") ? criterion : bad(text, criterion.error().message);

@@ -4,6 +4,8 @@
 #include <crofton/measure/criterion.hpp>
 #include <string>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 inline constexpr const char* kCriterionSyntax =
@@ -11,6 +13,6 @@ inline constexpr const char* kCriterionSyntax =
     "weights:A,B,C";
 
 // Errors say what is wrong with the text; `partner` reads its file, whose convex hull is the partner.
-[[nodiscard]] Result<measure::Criterion> parse_criterion(const std::string& text);
+[[nodiscard]] Result<measure::Criterion> parse_criterion(const std::string& text, const ReadOptions& options = {});
 
 }  // namespace crofton::cli

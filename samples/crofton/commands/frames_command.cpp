@@ -10,10 +10,12 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "assets/flat_scene.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "frames_output.hpp"
 #include "html_report.hpp"
+#include "interrupt.hpp"
 #include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
@@ -21,6 +23,7 @@
 #include "pipeline/pipeline.hpp"
 #include "pipeline/verify.hpp"
 #include "progress_bar.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -38,6 +41,7 @@ struct FramesOptions {
     bool draw = false, no_draw = false, verify = false;
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
+    ReadOptions read;
 };
 
 // As many pictures as a reader looks at.
@@ -63,26 +67,23 @@ Result<std::unique_ptr<Drawing>> make_drawing(const pipeline::DrawList& list, co
     return std::make_unique<Drawing>(Drawing{std::move(*device), std::move(*rasterizer), {}});
 }
 
-std::uint64_t triangles_of(const scene::Scene& scene) {
-    std::uint64_t sum = 0;
-    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-        if (!scene.is_removed(i)) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
-    return sum;
-}
-
 class FramesRun {
   public:
     explicit FramesRun(FramesOptions options) : options_(std::move(options)) {}
 
     Result<int> run() {
+        catch_interrupts();
         if (auto prepared = prepare(); !prepared) return tl::unexpected(prepared.error());
         std::optional<pipeline::Verification> verification;
         if (options_.verify) verification.emplace();
         std::vector<FrameStatistics> frames;
+        const SceneFacts facts{source_->name, source_->scene.node_count(), source_->scene.instance_count(),
+                               assets::instanced_triangles(source_->scene)};
         {
+            FramesStream stream(options_.output, facts, path_.cameras.size());
             const auto count = static_cast<std::uint32_t>(path_.cameras.size());
             ProgressBar bar("frames", count);
-            for (std::uint32_t index = 0; index < count; ++index) {
+            for (std::uint32_t index = 0; index < count && !interrupted(); ++index) {
                 auto frame = run_frame(index);
                 if (!frame)
                     return fail(frame.error().code, frame.error().item,
@@ -95,18 +96,23 @@ class FramesRun {
                     frame->visible_ids.clear();
                     frame->colliding_ids.clear();
                 }
+                stream.add(*frame);
                 frames.push_back(std::move(*frame));
                 bar.set(index + 1);
             }
         }
-        const SceneFacts facts{source_->name, source_->scene.node_count(), source_->scene.instance_count(),
-                               triangles_of(source_->scene)};
+        if (frames.empty()) return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first frame");
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
             return tl::unexpected(written.error());
         if (auto written = write_report(facts, frames, verification); !written) return tl::unexpected(written.error());
         if (verification)
             for (const std::string& message : verification->messages)
                 std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
+        if (frames.size() < path_.cameras.size()) {
+            std::fprintf(stderr, "crofton: interrupted after %zu of %zu frames, which are written\n", frames.size(),
+                         path_.cameras.size());
+            return kInterrupted;
+        }
         return verification && verification->mismatches() > 0 ? kCheckFailed : kSuccess;
     }
 
@@ -129,19 +135,22 @@ class FramesRun {
         typical.far_distance = 200.0;
         const auto criterion = pipeline::criterion_for(*bounds, typical);
         if (!criterion) return tl::unexpected(criterion.error());
-        auto source = assets::load_scene(
-            options_.scene,
-            {.criterion = *criterion, .map = options_.map, .seed = options_.seed, .instances = options_.instances});
+        auto source = assets::load_scene(options_.scene, {.criterion = *criterion,
+                                                          .map = options_.map,
+                                                          .seed = options_.seed,
+                                                          .instances = options_.instances,
+                                                          .limits = options_.read.limits,
+                                                          .strict = options_.read.strict});
         if (!source) return tl::unexpected(source.error());
         source_.emplace(std::move(*source));
-        for (const std::string& warning : source_->warnings)
-            std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+        print_warnings(source_->warnings);
         source_->scene.update(executor());
         focus_ = pipeline::focus_of(source_->scene);
         if (source_->walk.empty() && options_.camera == "street")
             source_->walk = pipeline::find_pedestrian_path(source_->scene, focus_);
-        auto path = pipeline::make_camera_path({options_.camera, options_.frames.value_or(0), options_.seed, aspect},
-                                               focus_, source_->walk);
+        auto path = pipeline::make_camera_path(
+            {options_.camera, options_.frames.value_or(0), options_.seed, aspect, options_.read.limits}, focus_,
+            source_->walk);
         if (!path) return tl::unexpected(path.error());
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
@@ -207,6 +216,8 @@ class FramesRun {
         if (!drawing_ || (options_.output.png.empty() && !report)) return {};
         if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return read;
         if (report) report_pictures_.push_back({index, drawing_->image});
+        if (index == 0 && !options_.output.png.empty())
+            if (auto removed = remove_old_pictures(options_.output.png); !removed) return removed;
         return options_.output.png.empty() ? Result<void>{}
                                            : write_picture(options_.output.png, index, drawing_->image);
     }
@@ -247,7 +258,8 @@ constexpr const char* kExamples =
     "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
     "clipping leaves (clipped); pairs of instances whose boxes meet; microseconds to update, cull, collide\n"
     "(hits) and draw.\n\n"
-    "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written.\n\n"
+    "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written,\n"
+    "130 interrupted: what was done by then is written.\n\n"
     "Examples:\n"
     "  crofton frames                                     the built-in town, 120 frames around it\n"
     "  crofton frames town --camera street --verify       every frame checked by brute force\n"
@@ -287,6 +299,7 @@ void add_frames_command(CommandLine& line) {
     command.option("--png", options->output.png, "Write a picture per frame into this folder");
     command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
         .writable_file();
+    add_read_options(command, options->read);
     command.action([options] {
         const auto status = FramesRun(*options).run();
         return status ? *status : report_error("", status.error());

@@ -38,26 +38,17 @@ std::string row_of(const FrameStatistics& f) {
                   static_cast<unsigned long long>(f.colliding_pairs), f.update_us, f.cull_us, f.collide_us, f.draw_us);
 }
 
-void print_table(const SceneFacts& scene, std::span<const FrameStatistics> frames,
+void print_means(const SceneFacts& scene, std::span<const FrameStatistics> frames,
                  const std::optional<pipeline::Verification>& verification) {
-    std::string text =
-        format("%s: %llu nodes, %llu instances, %llu triangles\n\n", scene.name.c_str(),
-               static_cast<unsigned long long>(scene.nodes), static_cast<unsigned long long>(scene.instances),
-               static_cast<unsigned long long>(scene.triangles));
-    text +=
-        " frame   visible straddle   improper     nodes  submitted     passed    clipped  pairs update us  cull us  "
-        "hits us   draw us\n";
-    const std::size_t step = std::max<std::size_t>(1, (frames.size() + kMaxRows - 1) / kMaxRows);
-    for (std::size_t i = 0; i < frames.size(); i += step) text += row_of(frames[i]);
     const auto mean = [&](auto value) {
         double sum = 0.0;
         for (const FrameStatistics& frame : frames) sum += static_cast<double>(value(frame));
         return sum / static_cast<double>(frames.size());
     };
-    text += format("\nmean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n",
-                   frames.size(), mean([](const auto& f) { return f.visible; }),
-                   static_cast<unsigned long long>(scene.instances), mean([](const auto& f) { return f.straddling; }),
-                   mean([](const auto& f) { return f.improper; }));
+    std::string text = format(
+        "\nmean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n", frames.size(),
+        mean([](const auto& f) { return f.visible; }), static_cast<unsigned long long>(scene.instances),
+        mean([](const auto& f) { return f.straddling; }), mean([](const auto& f) { return f.improper; }));
     text += format("triangles: %.0f submitted, %.0f meet the frustum; colliding pairs: %.2f\n",
                    mean([](const auto& f) { return f.triangles_submitted; }),
                    mean([](const auto& f) { return f.triangles_passed; }),
@@ -115,9 +106,46 @@ Result<void> check_writable(const FramesOutput& output, const std::string& repor
     return {};
 }
 
+Result<void> remove_old_pictures(const std::string& folder) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        const std::size_t digits = name.rfind("frame_", 0) == 0 ? name.find_first_not_of("0123456789", 6) : 0;
+        if (digits < 10 || digits == name.npos) continue;
+        const std::string rest = name.substr(digits);
+        if (rest == ".png" || rest == ".png.partial") std::filesystem::remove(entry.path(), error);
+        if (error) break;
+    }
+    if (error) return fail(ErrorCode::io, kNoItem, folder + ": cannot remove old pictures: " + error.message());
+    return {};
+}
+
 Result<void> write_picture(const std::string& folder, std::uint32_t index, const render::Image& image) {
     return write_file((std::filesystem::path(folder) / format("frame_%04u.png", index)).string(),
                       pipeline::encode_png(image));
+}
+
+FramesStream::FramesStream(const FramesOutput& output, const SceneFacts& scene, std::size_t count)
+    : table_(output.json != "-" && output.csv != "-"),
+      csv_(output.csv == "-"),
+      step_(std::max<std::size_t>(1, (count + kMaxRows - 1) / kMaxRows)) {
+    if (!table_) return;
+    std::printf(
+        "%s: %llu nodes, %llu instances, %llu triangles\n\n"
+        " frame   visible straddle   improper     nodes  submitted     passed    clipped  pairs update us  cull us  "
+        "hits us   draw us\n",
+        scene.name.c_str(), static_cast<unsigned long long>(scene.nodes),
+        static_cast<unsigned long long>(scene.instances), static_cast<unsigned long long>(scene.triangles));
+}
+
+void FramesStream::add(const FrameStatistics& frame) {
+    const std::size_t number = added_++;
+    if (table_ && number % step_ == 0) std::fputs(row_of(frame).c_str(), stdout);
+    if (csv_) {
+        const std::string lines = pipeline::to_csv({&frame, 1});
+        std::fputs(lines.c_str() + (number == 0 ? 0 : lines.find('\n') + 1), stdout);
+    }
+    if (table_ || csv_) std::fflush(stdout);
 }
 
 Result<void> write_results(const FramesOutput& output, const SceneFacts& scene, std::span<const FrameStatistics> frames,
@@ -133,9 +161,9 @@ Result<void> write_results(const FramesOutput& output, const SceneFacts& scene, 
         for (const FrameStatistics& frame : frames) document["frames"].push_back(to_json(frame, output.ids));
         if (auto written = write_json(output.json, document); !written) return written;
     }
-    if (!output.csv.empty())
+    if (!output.csv.empty() && output.csv != "-")
         if (auto written = write_file(output.csv, pipeline::to_csv(frames)); !written) return written;
-    if (output.json != "-" && output.csv != "-") print_table(scene, frames, verification);
+    if (output.json != "-" && output.csv != "-") print_means(scene, frames, verification);
     return {};
 }
 

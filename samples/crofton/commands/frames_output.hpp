@@ -29,10 +29,25 @@ struct SceneFacts {
 // Before the work: no two outputs go to the same place, and the pictures' folder is made. `report`: the page's file.
 [[nodiscard]] Result<void> check_writable(const FramesOutput& output, const std::string& report);
 
+// Pictures of an earlier run (frame_0000.png and so on, also unfinished ones) are removed from the folder, so that they
+// do not pass for this one's.
+[[nodiscard]] Result<void> remove_old_pictures(const std::string& folder);
+
 // FOLDER/frame_0000.png
 [[nodiscard]] Result<void> write_picture(const std::string& folder, std::uint32_t index, const render::Image& image);
 
-// JSON and CSV where wanted, and the table to stdout unless one of them goes there.
+// What goes to stdout frame by frame, so that a run that is ended leaves what it has: the table, or the lines of CSV.
+class FramesStream {
+  public:
+    FramesStream(const FramesOutput& output, const SceneFacts& scene, std::size_t count);
+    void add(const pipeline::FrameStatistics& frame);
+
+  private:
+    bool table_, csv_;
+    std::size_t step_, added_ = 0;  // so many frames to a row of the table
+};
+
+// JSON and CSV into files where wanted; JSON, or the means below the table, to stdout.
 [[nodiscard]] Result<void> write_results(const FramesOutput& output, const SceneFacts& scene,
                                          std::span<const pipeline::FrameStatistics> frames,
                                          const std::optional<pipeline::Verification>& verification);

@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "lines_factors.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -21,6 +22,7 @@ using radiosity::LineMethod;
 
 struct Options {
     std::vector<std::string> scenes;
+    ReadOptions read;
     std::string scene = "town", map, json;
     std::uint64_t blocks = 32, seed = 1, patches = 1000;
     std::uint32_t repeats = 12;
@@ -96,10 +98,15 @@ Result<void> run(const Options& options) {
     assets::LoadOptions load;
     load.map = options.map;
     load.seed = options.seed;
+    load.limits = options.read.limits;
+    load.strict = options.read.strict;
     auto source = assets::load_scene(options.scene, load);
     if (!source) return tl::unexpected(source.error());
+    print_warnings(source->warnings);
     source->scene.update();
-    const TriangleMesh mesh = assets::flat_scene(*source).mesh;
+    const auto flat = assets::flat_scene(*source, options.read.limits);
+    if (!flat) return tl::unexpected(flat.error());
+    const TriangleMesh& mesh = flat->mesh;
     const Vector<radiosity::Material> materials(mesh.triangle_count());
     const auto patches = radiosity::make_patches(mesh, materials);
     if (!patches) return tl::unexpected(patches.error());
@@ -177,6 +184,7 @@ void add_lines_command(CommandLine& line) {
     command.option("--seed", options->seed, "Seed of the lines and of the town").show_default();
     command.option("--map", options->map, "Which level of a .wad");
     command.option("--json", options->json, "Write the comparison as JSON; - for stdout").writable_file();
+    add_read_options(command, options->read);
     command.action([options, blocks] {
         if (options->factors) {
             const auto status = run_factors({options->scenes, options->map, options->json,

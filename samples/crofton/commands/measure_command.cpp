@@ -24,6 +24,7 @@ namespace {
 struct MeasureOptions {
     std::string file, json;
     std::uint64_t lines = 100'000, seed = 1;
+    ReadOptions read;
 };
 
 // The mean of what was added, with its standard error.
@@ -127,7 +128,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
 }
 
 Result<void> run(const MeasureOptions& options) {
-    const auto mesh = load_mesh(options.file);
+    const auto mesh = load_mesh(options.file, options.read);
     if (!mesh) return tl::unexpected(mesh.error());
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
     const auto hull = convex_hull(points);
@@ -182,6 +183,7 @@ void add_measure_command(CommandLine& line) {
         .show_default();
     command.option("--seed", options->seed, "The same seed gives the same lines").show_default();
     command.option("--json", options->json, "Write the table as JSON; - for stdout").writable_file();
+    add_read_options(command, options->read);
     command.action([options] {
         const auto done = run(*options);
         return done ? kSuccess : report_error("", done.error());

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "assets/file.hpp"
+#include "assets/flat_scene.hpp"
 #include "assets/obj_file.hpp"
 #include "assets/scene_source.hpp"
 
@@ -12,10 +13,14 @@ namespace {
 
 // Calls visit(mesh, world) for each instance.
 template <class Visit>
-Result<void> for_each_instance(const std::string& path, Visit visit) {
-    auto source = assets::load_scene(path);
+Result<void> for_each_instance(const std::string& path, const ReadOptions& options, Visit visit) {
+    auto source = assets::load_scene(path, {.limits = options.limits, .strict = options.strict});
     if (!source) return tl::unexpected<Error>(source.error());
+    print_warnings(source->warnings);
     source->scene.update();
+    if (assets::instanced_triangles(source->scene) > options.limits.triangles)
+        return assets::in_file(path, "its instances have",
+                               assets::over_limit("triangles", options.limits.triangles).value());
     for (scene::InstanceId i = 0; i < source->scene.instance_count(); ++i)
         visit(source->scene.mesh(source->scene.mesh_of(i)), source->scene.world(source->scene.node_of(i)));
     return {};
@@ -26,8 +31,8 @@ Result<TriangleMesh> with_triangles(TriangleMesh mesh, const std::string& path) 
     return mesh;
 }
 
-Result<TriangleMesh> load_obj_mesh(const std::string& path) {
-    const auto file = assets::read_obj(path);
+Result<TriangleMesh> load_obj_mesh(const std::string& path, const ReadOptions& options) {
+    const auto file = assets::read_obj(path, {.limits = options.limits});
     if (!file) return tl::unexpected<Error>(file.error());
     TriangleMesh mesh;
     mesh.positions.assign(file->positions.begin(), file->positions.end());
@@ -38,10 +43,10 @@ Result<TriangleMesh> load_obj_mesh(const std::string& path) {
 
 }  // namespace
 
-Result<TriangleMesh> load_mesh(const std::string& path) {
-    if (assets::extension(path) == "obj") return load_obj_mesh(path);
+Result<TriangleMesh> load_mesh(const std::string& path, const ReadOptions& options) {
+    if (assets::extension(path) == "obj") return load_obj_mesh(path, options);
     TriangleMesh all;
-    const auto loaded = for_each_instance(path, [&](const TriangleMesh& mesh, const scene::Transform& world) {
+    const auto loaded = for_each_instance(path, options, [&](const TriangleMesh& mesh, const scene::Transform& world) {
         const auto base = static_cast<std::uint32_t>(all.positions.size());
         for (const glm::vec3& p : mesh.positions) all.positions.push_back(glm::vec3(world * glm::dvec3(p)));
         for (const std::uint32_t index : mesh.indices) all.indices.push_back(base + index);
@@ -50,13 +55,13 @@ Result<TriangleMesh> load_mesh(const std::string& path) {
     return with_triangles(std::move(all), path);
 }
 
-Result<std::vector<glm::dvec3>> load_points(const std::string& path) {
+Result<std::vector<glm::dvec3>> load_points(const std::string& path, const ReadOptions& options) {
     std::vector<glm::dvec3> points;
     if (assets::extension(path) == "obj") {
-        auto file = assets::read_obj(path, std::numeric_limits<double>::max());
+        auto file = assets::read_obj(path, {.largest = std::numeric_limits<double>::max(), .limits = options.limits});
         if (!file) return tl::unexpected<Error>(file.error());
         points = std::move(file->positions);
-    } else if (const auto loaded = for_each_instance(path,
+    } else if (const auto loaded = for_each_instance(path, options,
                                                      [&](const TriangleMesh& mesh, const scene::Transform& world) {
                                                          for (const glm::vec3& p : mesh.positions)
                                                              points.push_back(world * glm::dvec3(p));

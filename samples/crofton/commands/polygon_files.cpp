@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/file.hpp"
+#include "assets/json_syntax.hpp"
 #include "assets/sector_polygons.hpp"
 #include "assets/wad_file.hpp"
 #include "report.hpp"
@@ -20,7 +21,8 @@ tl::unexpected<Error> damaged(const std::string& path, const std::string& what) 
 
 class PolyReader {
   public:
-    PolyReader(const std::string& path, const std::string& text) : path_(path), at_(text.c_str()) {}
+    PolyReader(const std::string& path, const std::string& text, const assets::ReadLimits& limits)
+        : path_(path), at_(text.c_str()), limits_(limits) {}
 
     Result<PolygonFile> read() {
         PolygonFile file;
@@ -38,6 +40,8 @@ class PolyReader {
                     glm::dvec2 p;
                     if (!number(p.x) || !number(p.y))
                         return damaged(path_, where("expected a coordinate of " + named.name));
+                    if (++points_ > limits_.triangles)
+                        return assets::in_file(path_, "", assets::over_limit("triangles", limits_.triangles).value());
                     named.polygon.points.push_back(p);
                 }
                 named.polygon.ring_ends.push_back(static_cast<std::uint32_t>(named.polygon.points.size()));
@@ -72,7 +76,9 @@ class PolyReader {
 
     const std::string& path_;
     const char* at_;
+    assets::ReadLimits limits_;
     std::size_t line_ = 1;
+    std::uint64_t points_ = 0;
 };
 
 bool append_rings(const json& rings, bool drop_closing_point, Polygon& polygon) {
@@ -166,7 +172,8 @@ class GeoJsonReader {
     PolygonFile& file_;
 };
 
-Result<PolygonFile> read_json(const std::string& path, const std::string& text) {
+Result<PolygonFile> read_json(const std::string& path, const std::string& text, const assets::ReadLimits& limits) {
+    if (auto shape = assets::check_json_shape(text, limits); !shape) return assets::in_file(path, "", shape.error());
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded()) return damaged(path, "not JSON, or a number that double cannot hold");
     PolygonFile file;
@@ -182,7 +189,11 @@ Result<PolygonFile> read_json(const std::string& path, const std::string& text) 
     return file;
 }
 
-Result<PolygonFile> read_wad(const std::string& path, const std::string& text, const std::string& map) {
+// Levels may share their lumps, so that a small file has many large ones.
+Result<PolygonFile> read_wad(const std::string& path, const std::string& text, const std::string& map,
+                             const assets::ReadLimits& limits) {
+    const assets::Deadline deadline(limits);
+    std::uint64_t points = 0;
     std::vector<std::string> levels{map};
     if (map.empty()) {
         const auto names = assets::list_levels(text);
@@ -192,14 +203,18 @@ Result<PolygonFile> read_wad(const std::string& path, const std::string& text, c
     PolygonFile file;
     file.one_plane = levels.size() == 1;
     for (const std::string& name : levels) {
+        if (auto in_time = deadline.check(); !in_time) return assets::in_file(path, "", in_time.error());
         const auto level = assets::read_level(text, name);
         if (!level) return assets::in_file(path, "", level.error());
+        if (points > limits.triangles)
+            return assets::in_file(path, "", assets::over_limit("triangles", limits.triangles).value());
         const auto sectors = assets::sector_polygons(*level);
         for (std::size_t s = 0; s < sectors.size(); ++s) {
             const std::string sector = level->name + "_s" + std::to_string(s);
             if (!sectors[s].problem.empty()) file.warnings.push_back(sector + ": " + sectors[s].problem);
             for (std::size_t i = 0; i < sectors[s].polygons.size(); ++i) {
                 file.polygons.push_back({sector + "_" + std::to_string(i), sectors[s].polygons[i]});
+                points += sectors[s].polygons[i].points.size();
             }
         }
     }
@@ -213,13 +228,13 @@ bool is_polygon_file(const std::string& path) {
     return extension == "poly" || extension == "json" || extension == "geojson" || extension == "wad";
 }
 
-Result<PolygonFile> read_polygons(const std::string& path, const std::string& map) {
-    const auto text = read_file(path);
+Result<PolygonFile> read_polygons(const std::string& path, const std::string& map, const assets::ReadLimits& limits) {
+    const auto text = read_file(path, limits.bytes);
     if (!text) return tl::unexpected(text.error());
     const std::string extension = assets::extension(path);
-    auto file = extension == "poly"  ? PolyReader(path, *text).read()
-                : extension == "wad" ? read_wad(path, *text, map)
-                                     : read_json(path, *text);
+    auto file = extension == "poly"  ? PolyReader(path, *text, limits).read()
+                : extension == "wad" ? read_wad(path, *text, map, limits)
+                                     : read_json(path, *text, limits);
     if (file && file->polygons.empty()) return fail(ErrorCode::empty, kNoItem, path + ": holds no polygon");
     return file;
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "assets/read_limits.hpp"
+
 namespace crofton::cli {
 
 struct NamedPolygon {
@@ -21,8 +23,10 @@ struct PolygonFile {
 
 // .poly ("P name rings", then a line "n x y x y …" per ring), .json (earcut's rings [[[x, y], …], …], or GeoJSON with
 // Polygon and MultiPolygon geometries anywhere in it; the repeated closing points are left out), .geojson, .wad (every
-// sector of every level, or of `map`). Errors name the file, the item in it and the reason.
-[[nodiscard]] Result<PolygonFile> read_polygons(const std::string& path, const std::string& map);
+// sector of every level, or of `map`). Errors name the file, the item in it and the reason; a limit that is passed, of
+// which `triangles` counts a polygon's points.
+[[nodiscard]] Result<PolygonFile> read_polygons(const std::string& path, const std::string& map,
+                                                const assets::ReadLimits& limits = {});
 [[nodiscard]] bool is_polygon_file(const std::string& path);
 
 }  // namespace crofton::cli

@@ -10,10 +10,12 @@
 
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "progress_bar.hpp"
 #include "radiosity_output.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 
 namespace crofton::cli {
@@ -22,6 +24,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Options {
+    ReadOptions read;
     std::string scene, method = "global", out, png, json, checkpoint, map;
     std::uint64_t lines = 20'000'000, seed = 1;
     double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
@@ -58,7 +61,7 @@ Result<Camera> camera_for(const assets::SceneSource& source, std::uint64_t seed)
         return camera;
     }
     auto path =
-        pipeline::make_camera_path({"orbit", 8, seed, 16.0 / 9.0}, pipeline::focus_of(source.scene), source.walk);
+        pipeline::make_camera_path({"orbit", 8, seed, 16.0 / 9.0, {}}, pipeline::focus_of(source.scene), source.walk);
     if (!path) return tl::unexpected(path.error());
     return path->cameras.front();
 }
@@ -81,7 +84,7 @@ Result<void> solve(const Options& options, radiosity::Solver& solver, Executor& 
         return options.error > 0.0 ? solver.relative_error() <= options.error : solver.lines_traced() >= options.lines;
     };
     ProgressBar bar("radiosity", 1000);
-    while (!done()) {
+    while (!done() && !interrupted()) {
         solver.run(executor);
         const double share = options.error > 0.0
                                  ? std::pow(options.error / solver.relative_error(), 2.0)
@@ -90,34 +93,43 @@ Result<void> solve(const Options& options, radiosity::Solver& solver, Executor& 
         if (options.checkpoint.empty()) continue;
         if (auto saved = save_checkpoint(options.checkpoint, solver); !saved) return saved;
     }
+    if (solver.runs() == 0) return fail(ErrorCode::cancelled, kNoItem, "interrupted before the first run");
     return {};
 }
 
-Result<void> run(const Options& options) {
+Result<int> run(const Options& options) {
+    catch_interrupts();
     const auto parameters = solver_options(options);
     if (!parameters) return tl::unexpected(parameters.error());
     assets::LoadOptions load;
     load.map = options.map;
     load.seed = options.seed;
+    load.limits = options.read.limits;
+    load.strict = options.read.strict;
     auto source = assets::load_scene(options.scene, load);
     if (!source) return tl::unexpected(source.error());
+    print_warnings(source->warnings);
     source->scene.update();
-    const auto lit = lit_scene(assets::flat_scene(*source), options.edge);
+    const auto flat = assets::flat_scene(*source, options.read.limits);
+    if (!flat) return tl::unexpected(flat.error());
+    const auto lit = lit_scene(*flat, options.edge);
     if (!lit) return tl::unexpected(lit.error());
     auto solver = radiosity::Solver::create(lit->patches, *parameters);
     if (!solver) return tl::unexpected(solver.error());
     ThreadPool pool(options.threads);
     const auto start = Clock::now();
-    if (auto solved = solve(options, *solver, pool); !solved) return solved;
+    if (auto solved = solve(options, *solver, pool); !solved) return tl::unexpected(solved.error());
+    const bool cut_short = interrupted();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const TriangleMesh picture = baked(*lit, *solver, options.exposure);
     if (!options.out.empty())
-        if (auto written = write_glb(options.out, picture); !written) return written;
+        if (auto written = write_glb(options.out, picture); !written) return tl::unexpected(written.error());
     if (!options.png.empty()) {
         const auto camera = camera_for(*source, options.seed);
         if (!camera) return tl::unexpected(camera.error());
         const float sky = static_cast<float>(std::min(1.0, options.sky));
-        if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written) return written;
+        if (auto written = write_lit_picture(options.png, picture, *camera, 1280, 720, sky); !written)
+            return tl::unexpected(written.error());
     }
     const auto tracer = radiosity::LineTracer::build(lit->patches.mesh);
     if (!tracer) return tl::unexpected(tracer.error());
@@ -146,11 +158,19 @@ Result<void> run(const Options& options) {
         {"seconds", seconds},
         {"visibility",
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};
-    if (!options.json.empty()) return write_json(options.json, report);
+    if (cut_short)
+        std::fprintf(stderr, "crofton: interrupted: what %llu runs found is written%s\n",
+                     static_cast<unsigned long long>(solver->runs()),
+                     options.checkpoint.empty() ? "; with --checkpoint the next run would go on from here" : "");
+    const int status = cut_short ? kInterrupted : kSuccess;
+    if (!options.json.empty()) {
+        if (auto written = write_json(options.json, report); !written) return tl::unexpected(written.error());
+        return status;
+    }
     std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
                 lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
                 static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
-    return {};
+    return status;
 }
 
 }  // namespace
@@ -191,9 +211,10 @@ void add_radiosity_command(CommandLine& line) {
     command
         .option("--checkpoint", options->checkpoint, "Save after every run to this file; go on from it where it exists")
         .writable_file();
+    add_read_options(command, options->read);
     command.action([options] {
         const auto done = run(*options);
-        return done ? kSuccess : report_error("", done.error());
+        return done ? *done : report_error("", done.error());
     });
 }
 

@@ -9,10 +9,12 @@
 
 #include "assets/file.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "json/json.hpp"
 #include "polygon_files.hpp"
 #include "polygon_svg.hpp"
 #include "progress_bar.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 #include "triangulate_compare.hpp"
 #include "triangulate_meshes.hpp"
@@ -31,6 +33,7 @@ struct TriangulateOptions {
     bool no_indices = false, compare = false, has_tolerance = false;
     std::uint64_t frusta = 100'000;
     std::size_t least_vertices = 5;
+    ReadOptions read;
 };
 
 Result<Method> method_from(const std::string& name) {
@@ -42,7 +45,7 @@ Result<Method> method_from(const std::string& name) {
 }
 
 triangulate::TriangulateOptions limits_of(const TriangulateOptions& options, Method method) {
-    triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds};
+    triangulate::TriangulateOptions limits{.method = method, .seconds = options.seconds, .progress = go_on};
     constexpr double kMost = 1e12;
     limits.work = options.work < kMost ? static_cast<std::uint64_t>(1e6 * options.work) : limits.kUnlimitedWork;
     return limits;
@@ -92,9 +95,11 @@ void print_table(const TriangulateOptions& options, const Totals& t) {
 }
 
 Result<int> run_polygons(const TriangulateOptions& options, Method method) {
-    const auto file = read_polygons(options.file, options.map);
+    const auto file = read_polygons(options.file, options.map, options.read.limits);
     if (!file) return tl::unexpected(file.error());
-    for (const auto& warning : file->warnings) std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());
+    print_warnings(file->warnings);
+    if (options.read.strict && !file->warnings.empty())
+        return fail(ErrorCode::parse, kNoItem, options.file + ": " + file->warnings.front() + " (refused: --strict)");
     const auto& polygons = file->polygons;
     std::vector<Triangulation> results(polygons.size());
     Json entries = Json::array();
@@ -102,13 +107,15 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     triangulate::Triangulator triangulator;
     {
         ProgressBar bar("triangulate", polygons.size());
-        for (std::size_t i = 0; i < polygons.size(); ++i) {
+        for (std::size_t i = 0; i < polygons.size() && !interrupted(); ++i) {
             const auto start = Clock::now();
             const auto done = triangulator.triangulate(polygons[i].polygon, limits_of(options, method), results[i]);
             const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
             if (done) {
                 totals.add(polygons[i].polygon, results[i], time);
                 entries.push_back(to_json(polygons[i], results[i], time, options.no_indices));
+            } else if (done.error().code == ErrorCode::cancelled) {
+                break;
             } else {
                 ++totals.refused;
                 const bool named = polygons[i].name != assets::file_name(options.file);
@@ -141,10 +148,16 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
         if (auto written = write_json(options.json, document); !written) return tl::unexpected(written.error());
     }
     if (options.json != "-" && options.svg != "-") print_table(options, totals);
+    if (totals.polygons + totals.refused < polygons.size()) {
+        std::fprintf(stderr, "crofton: interrupted after %zu of %zu polygons, which are written\n",
+                     totals.polygons + totals.refused, polygons.size());
+        return kInterrupted;
+    }
     return totals.refused ? kBadInput : kSuccess;
 }
 
 Result<int> run(const TriangulateOptions& options) {
+    catch_interrupts();
     const auto method = method_from(options.method);
     if (!method) return tl::unexpected(method.error());
     if (options.json == "-" && options.svg == "-") {
@@ -172,7 +185,7 @@ Result<int> run(const TriangulateOptions& options) {
         if (!options.svg.empty() || !options.out.empty() || options.frusta == 0)
             return fail(ErrorCode::invalid_argument, kNoItem, "--compare needs --frusta, and writes no --svg or --out");
         return run_compare({options.file, options.map, options.json, limits_of(options, *method), options.tolerance,
-                            options.frusta, options.least_vertices});
+                            options.frusta, options.read, options.least_vertices});
     }
     if (is_polygon_file(options.file)) {
         if (!options.out.empty())
@@ -182,7 +195,7 @@ Result<int> run(const TriangulateOptions& options) {
     if (!options.svg.empty())
         return fail(ErrorCode::invalid_argument, kNoItem, "--svg is for polygons: .poly, .json, .geojson, .wad");
     return run_meshes({options.file, options.method, limits_of(options, *method), options.json, options.out,
-                       options.tolerance, options.attribute_tolerance, options.no_indices});
+                       options.tolerance, options.attribute_tolerance, options.no_indices, options.read});
 }
 
 constexpr const char* kExamples =
@@ -238,6 +251,7 @@ void add_triangulate_command(CommandLine& line) {
     command.option("--svg", options->svg, "Draw the polygons, at most 400 of them; - for stdout").writable_file();
     command.option("--out", options->out, "Write the asset with its patches triangulated anew, as .glb; - for stdout")
         .writable_file();
+    add_read_options(command, options->read);
     command.action([options, tolerance] {
         options->has_tolerance = tolerance.given();
         const auto status = run(*options);

@@ -32,12 +32,13 @@ Result<std::vector<Polygon>> gather(const CompareRun& run) {
         if (polygon.points.size() >= run.least_vertices) result.push_back(polygon);
     };
     if (is_polygon_file(run.file)) {
-        const auto file = read_polygons(run.file, run.map);
+        const auto file = read_polygons(run.file, run.map, run.read.limits);
         if (!file) return tl::unexpected(file.error());
         for (const auto& named : file->polygons) add(named.polygon);
         return result;
     }
-    const auto source = assets::load_scene(run.file, {.map = run.map});
+    const auto source =
+        assets::load_scene(run.file, {.map = run.map, .limits = run.read.limits, .strict = run.read.strict});
     if (!source) return tl::unexpected(source.error());
     for (scene::MeshId m = 0; m < source->scene.mesh_count(); ++m) {
         const TriangleMesh& mesh = source->scene.mesh(m);

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 struct CompareRun {
@@ -14,6 +16,7 @@ struct CompareRun {
     triangulate::TriangulateOptions limits;  // of each method
     double tolerance = -1.0;
     std::uint64_t frusta = 100'000;
+    ReadOptions read;
     std::size_t least_vertices = 5;  // smaller polygons leave little choice
 };
 

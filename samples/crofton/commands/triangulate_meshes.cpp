@@ -10,6 +10,7 @@
 #include "assets/gltf_patches.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "json/json.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
@@ -22,15 +23,15 @@ using assets::PrimitivePatches;
 // So many lines say what was left alone and why; the JSON has all of them.
 constexpr std::size_t kMostReasons = 20;
 
-Result<assets::GltfDocument> document_of(const std::string& file) {
+Result<assets::GltfDocument> document_of(const std::string& file, const ReadOptions& options) {
     const std::string kind = assets::extension(file);
-    if (kind == "glb" || kind == "gltf") return assets::read_gltf_document(file);
+    if (kind == "glb" || kind == "gltf") return assets::read_gltf_document(file, {.limits = options.limits});
     if (kind == "obj") {
-        const auto obj = assets::read_obj(file);
+        const auto obj = assets::read_obj(file, {.limits = options.limits});
         if (!obj) return tl::unexpected(obj.error());
         return assets::gltf_from_obj(*obj, assets::folder(file));
     }
-    auto source = assets::load_scene(file);
+    auto source = assets::load_scene(file, {.limits = options.limits, .strict = options.strict});
     if (!source) return tl::unexpected(source.error());
     source->scene.update();
     auto document = assets::gltf_from_scene(source->scene);
@@ -189,7 +190,7 @@ Result<int> run_meshes(const MeshRun& run) {
     if (!run.out.empty() && run.out != "-" && assets::extension(run.out) != "glb")
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "--out writes binary glTF: name it .glb, not '" + run.out + "'");
-    auto document = document_of(run.file);
+    auto document = document_of(run.file, run.read);
     if (!document) return tl::unexpected(document.error());
     for (const auto& warning : document->warnings)
         std::fprintf(stderr, "crofton: warning: %s: %s\n", run.file.c_str(), warning.c_str());
@@ -200,6 +201,7 @@ Result<int> run_meshes(const MeshRun& run) {
         settings.progress = [&](std::size_t done, std::size_t of) {
             if (!bar) bar.emplace("triangulate", of);
             bar->set(done);
+            return !interrupted();
         };
         auto done = assets::retriangulate_patches(*document, settings);
         if (!done) return assets::in_file(run.file, "", done.error());
@@ -221,6 +223,10 @@ Result<int> run_meshes(const MeshRun& run) {
     if (!run.json.empty())
         if (auto written = write_report(run, meshes, total); !written) return tl::unexpected(written.error());
     if (run.json != "-" && run.out != "-") print_table(meshes, total, outcomes);
+    if (interrupted()) {
+        std::fprintf(stderr, "crofton: interrupted: what was not reached is written as it was\n");
+        return kInterrupted;
+    }
     return total.refused ? kBadInput : kSuccess;
 }
 

@@ -5,6 +5,8 @@
 #include <crofton/triangulate/triangulate.hpp>
 #include <string>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 struct MeshRun {
@@ -14,6 +16,7 @@ struct MeshRun {
     double tolerance = -1.0;  // negative: a millionth of each mesh's size
     double attribute_tolerance = 1e-4;
     bool no_indices = false;
+    ReadOptions read;
 };
 
 // Exit status: kBadInput where a primitive could not be read, the others being done all the same. Prints a table unless

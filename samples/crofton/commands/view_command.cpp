@@ -6,6 +6,7 @@
 #include "frames_output.hpp"
 #include "pipeline/bounds.hpp"
 #include "pipeline/pipeline.hpp"
+#include "read_options.hpp"
 #include "report.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/viewer.hpp"
@@ -17,6 +18,7 @@ struct ViewArguments {
     viewer::ViewerOptions options;
     std::string size = "1280x720", bounds = "obb-perimeter", cull = "tree";
     bool no_window = false;
+    ReadOptions read;
 };
 
 Result<void> run(ViewArguments arguments) {
@@ -27,6 +29,8 @@ Result<void> run(ViewArguments arguments) {
     const auto mode = pipeline::cull_mode_from(arguments.cull);
     if (!mode) return tl::unexpected(mode.error());
     viewer::ViewerOptions& options = arguments.options;
+    options.scene.limits = arguments.read.limits;
+    options.scene.strict = arguments.read.strict;
     options.width = size->width;
     options.height = size->height;
     options.settings.method = {*bounds, *mode};
@@ -86,6 +90,7 @@ void add_view_command(CommandLine& line) {
     command.option("--device", options.device, "part of the Vulkan device's name, or cpu");
     command.flag("--validation", options.validation, "check every Vulkan call (needs the validation layer)");
     command.flag("--no-window", arguments->no_window, "draw without any display");
+    add_read_options(command, arguments->read);
     command.action([arguments] {
         const auto done = run(*arguments);
         return done ? kSuccess : report_error("", done.error());

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <random>
 
+#include "assets/file.hpp"
+#include "assets/json_syntax.hpp"
 #include "json/json.hpp"
 
 namespace crofton::pipeline {
@@ -147,7 +148,7 @@ Result<CameraPath> make_camera_path(const PathOptions& options, const Aabb& boun
         if (!std::filesystem::exists(options.kind))
             return fail(ErrorCode::invalid_argument, kNoItem,
                         "camera: '" + options.kind + "' is neither orbit, street, random nor a file");
-        auto recorded = load_camera_path(options.kind);
+        auto recorded = load_camera_path(options.kind, options.limits);
         if (!recorded || options.frames == 0) return recorded;
         const std::size_t length = recorded->cameras.size();
         recorded->cameras.resize(options.frames);
@@ -218,12 +219,12 @@ Result<Camera> camera_from_json(const Json& entry, std::uint64_t item) {
     return camera;
 }
 
-Result<CameraPath> load_camera_path(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return fail(ErrorCode::io, kNoItem, path + ": cannot open");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+Result<CameraPath> load_camera_path(const std::string& path, const assets::ReadLimits& limits) {
+    const auto text = assets::read_file(path, limits.bytes);
+    if (!text) return tl::unexpected(text.error());
+    if (auto shape = assets::check_json_shape(*text, limits); !shape) return assets::in_file(path, "", shape.error());
     Json document;
-    if (!parse_json(text, document)) return fail(ErrorCode::parse, kNoItem, path + ": not valid JSON");
+    if (!parse_json(*text, document)) return fail(ErrorCode::parse, kNoItem, path + ": not valid JSON");
     const Json* list = &document;
     for (const char* name : {"cameras", "frames"})
         if (const Json* found = document.find(name)) list = found;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "assets/read_limits.hpp"
 #include "json/json.hpp"
 
 namespace crofton::pipeline {
@@ -23,6 +24,7 @@ struct PathOptions {
     std::uint32_t frames = 0;    // 0: as many as the file has; kBuiltInFrames of the others
     std::uint64_t seed = 1;
     double aspect = 16.0 / 9.0;
+    assets::ReadLimits limits = {};  // of the file
 };
 inline constexpr std::uint32_t kBuiltInFrames = 120;
 
@@ -46,6 +48,6 @@ struct CameraPath {
 
 // A recorded path: an array of cameras, {"cameras": […]}, or the output of `crofton frames --json`. An entry may have
 // "scene_frame"; where it has none, it shows the scene frame of its own number.
-[[nodiscard]] Result<CameraPath> load_camera_path(const std::string& path);
+[[nodiscard]] Result<CameraPath> load_camera_path(const std::string& path, const assets::ReadLimits& limits = {});
 
 }  // namespace crofton::pipeline

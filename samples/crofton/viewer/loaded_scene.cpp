@@ -58,6 +58,8 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
     options.map = request.map;
     options.seed = request.seed;
     options.instances = request.instances;
+    options.limits = request.limits;
+    options.strict = request.strict;
     auto source = assets::load_scene(request.source, options);
     if (!source) return tl::unexpected(std::move(source.error()));
     if (method.triangulation != Triangulation::loaded)

@@ -16,6 +16,8 @@ struct SceneRequest {
     std::string map;
     std::uint64_t seed = 1;
     std::uint32_t instances = 0;
+    assets::ReadLimits limits = {};
+    bool strict = false;
 };
 
 class LoadedScene {

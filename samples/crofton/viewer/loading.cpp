@@ -176,6 +176,7 @@ Result<void> Session::load_replay() {
     const bool built_in = !std::filesystem::exists(path.kind);
     path.frames = options_.frames > 0 ? options_.frames : built_in ? 600 : 0;
     path.aspect = static_cast<double>(options_.width) / options_.height;
+    path.limits = options_.scene.limits;
     std::vector<glm::dvec3> walk = loaded_->source().walk;
     if (walk.empty() && path.kind == "street")
         walk = pipeline::find_pedestrian_path(loaded_->scene(), loaded_->focus());

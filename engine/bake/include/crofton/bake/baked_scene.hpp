@@ -14,13 +14,23 @@
 
 namespace crofton::bake {
 
-// A file as memory, without reading it first.
+// A file as memory, without reading it first where the caller can trust whoever may write to it.
 
-// Read-only. Where files cannot be mapped it is read into memory instead. Do not shorten the file meanwhile.
+// `map`: pages come from the file when they are used. Nobody may shorten or change the file meanwhile: reading what was
+// cut off ends the program (SIGBUS on POSIX). Replacing it, as write_file does, is safe.
+// `read`: the file is copied into memory first; what then happens to it does no harm.
+enum class FileAccess : std::uint8_t { map, read };
+
+struct FileOptions {
+    FileAccess access = FileAccess::map;              // where files cannot be mapped they are read
+    std::uint64_t largest = std::uint64_t{64} << 30;  // bytes; a larger file is refused (out_of_range)
+};
+
+// Read-only.
 class MappedFile {
   public:
-    // Errors name the path and the system's reason.
-    [[nodiscard]] static Result<MappedFile> open(const std::string& path);
+    // Errors name the path and the system's reason. Folders, pipes and devices are refused.
+    [[nodiscard]] static Result<MappedFile> open(const std::string& path, const FileOptions& options = {});
     ~MappedFile();
     MappedFile(MappedFile&& other) noexcept;
     MappedFile& operator=(MappedFile&& other) noexcept;
@@ -29,8 +39,9 @@ class MappedFile {
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
   private:
-    explicit MappedFile(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    MappedFile(std::span<const std::byte> bytes, bool mapped) : bytes_(bytes), mapped_(mapped) {}
     std::span<const std::byte> bytes_;
+    bool mapped_ = false;
 };
 
 // A scene made ready at build time: boxes, tree, triangulations and meshes, in one file that is used where it lies.
@@ -79,8 +90,10 @@ struct PolygonView {
 // Spans point into the file and live as long as this. Const calls from any thread.
 class BakedScene {
   public:
-    // Maps the file and checks it whole. Errors name the path and what is damaged, of another version or byte order.
-    [[nodiscard]] static Result<BakedScene> open(const std::string& path, Executor& executor = serial_executor());
+    // Maps the file, or reads it, and checks it whole. Errors name the path and what is damaged, too large, of another
+    // version or byte order. A mapped file must not be shortened or changed meanwhile: see FileAccess.
+    [[nodiscard]] static Result<BakedScene> open(const std::string& path, Executor& executor = serial_executor(),
+                                                 const FileOptions& options = {});
     // From memory that starts at a multiple of 64 and outlives this.
     [[nodiscard]] static Result<BakedScene> from_memory(std::span<const std::byte> file,
                                                         Executor& executor = serial_executor());

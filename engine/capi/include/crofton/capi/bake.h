@@ -34,12 +34,17 @@ typedef struct crofton_baked_node {
     uint32_t reserved;
 } crofton_baked_node;
 
-/* Writes the scene as of its last update into a file. Where that fails no file is left behind. `jobs` or NULL. */
+/* Writes the scene as of its last update into a file: all of it, flushed to the disk, or the old file stays as it was.
+ * Whoever has the old file open keeps its contents. `jobs` or NULL. */
 CROFTON_API crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, const crofton_jobs* jobs);
 
 /* Maps a file and checks it whole. `tree` lies over the instances, item i being instance i; it is a handle of its own,
- * which may change and outlive `baked`. `jobs` or NULL. */
+ * which may change and outlive `baked`. Do not shorten or change the file meanwhile: reading what was cut off ends the
+ * program (SIGBUS). Replacing it, as crofton_scene_bake does, is safe. `jobs` or NULL. */
 CROFTON_API crofton_status crofton_baked_scene_open(const char* path, const crofton_jobs* jobs,
+                                                    crofton_baked_scene** baked, crofton_tree** tree);
+/* As crofton_baked_scene_open, with the file read into memory first: what then happens to the file does no harm. */
+CROFTON_API crofton_status crofton_baked_scene_read(const char* path, const crofton_jobs* jobs,
                                                     crofton_baked_scene** baked, crofton_tree** tree);
 CROFTON_API crofton_status crofton_baked_scene_destroy(crofton_baked_scene* baked);
 

@@ -39,7 +39,8 @@ typedef enum crofton_status {
     CROFTON_INTERNAL = 13,        /* our mistake: please report it */
     CROFTON_BAD_HANDLE = 14,      /* NULL, of another kind, or destroyed already */
     CROFTON_WRONG_SIZE = 15,      /* a struct's `size` is not what this library knows */
-    CROFTON_BUSY = 16             /* another thread is using the handle (with thread checks on) */
+    CROFTON_BUSY = 16,            /* another thread is using the handle (with thread checks on) */
+    CROFTON_OUT_OF_MEMORY = 17    /* the memory hook had none; the call changed nothing */
 } crofton_status;
 
 /* What went wrong in this thread's last failed call, and which item of its input (CROFTON_NO_ITEM: none in particular).

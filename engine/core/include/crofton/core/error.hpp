@@ -23,6 +23,7 @@ enum class ErrorCode : std::uint8_t {
     unavailable,       // a device or driver is missing
     stale_handle,      // a handle of something that has been removed
     internal,          // our mistake: please report it
+    out_of_memory,     // the memory hook had none; the operation changed nothing
 };
 
 [[nodiscard]] const char* to_string(ErrorCode code);

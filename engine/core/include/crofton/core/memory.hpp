@@ -7,9 +7,10 @@
 
 namespace crofton {
 
-// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two; a
-// host without memory frees some and retries, and where it returns nullptr the program ends with a message
-// (std::abort).
+// Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two, or
+// nullptr where the host has none. Then what builds, loads, bakes, fits or triangulates returns
+// ErrorCode::out_of_memory and has changed nothing (docs/testing.md has the list); elsewhere the program ends with a
+// message (std::abort).
 struct MemoryHooks {
     void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment);
     void (*release)(void* user, void* memory, std::size_t bytes, std::size_t alignment);
@@ -23,6 +24,7 @@ void reset_memory_hooks();
 
 namespace detail {
 [[nodiscard]] void* allocate(std::size_t bytes, std::size_t alignment);
+[[nodiscard]] void* try_allocate(std::size_t bytes, std::size_t alignment);  // nullptr where the host has no memory
 void release(void* memory, std::size_t bytes, std::size_t alignment);
 }  // namespace detail
 

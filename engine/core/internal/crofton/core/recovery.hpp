@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Operations that hand back an Error where the host has no memory, instead of ending the program.
+#pragma once
+#include <atomic>
+#include <crofton/core/error.hpp>
+#include <crofton/core/executor.hpp>
+#include <new>
+
+namespace crofton::detail {
+
+// While one lives, a failed allocation of this thread throws std::bad_alloc; otherwise it ends the program with a
+// message. The engine is compiled with exceptions for this one purpose: none crosses the API.
+class Recovery {
+  public:
+    Recovery();
+    ~Recovery();
+    Recovery(const Recovery&) = delete;
+    Recovery& operator=(const Recovery&) = delete;
+};
+
+// The operation's result, or ErrorCode::out_of_memory. What the operation had built is destroyed by then; an object
+// that it changes must be changed by steps that cannot fail, after all that can.
+template <class Operation>
+[[nodiscard]] auto recover(Operation&& operation) -> decltype(operation()) {
+    const Recovery recovery;
+    try {
+        return operation();
+    } catch (const std::bad_alloc&) {
+        return fail(ErrorCode::out_of_memory, kNoItem, "out of memory");  // short: the text itself allocates nothing
+    }
+}
+
+// As executor.parallel_for within an operation: an allocation that fails in a body, on whichever thread, is thrown
+// here after all bodies have returned. Bodies that have not begun by then are left out.
+template <class Body>
+void recoverable_for(Executor& executor, std::size_t count, std::size_t grain, Body&& body) {
+    std::atomic<bool> failed{false};
+    executor.parallel_for(count, grain, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        if (failed.load(std::memory_order_relaxed)) return;
+        const Recovery recovery;
+        try {
+            body(begin, end, worker);
+        } catch (const std::bad_alloc&) {
+            failed.store(true, std::memory_order_relaxed);
+        }
+    });
+    if (failed.load(std::memory_order_relaxed)) throw std::bad_alloc();
+}
+
+}  // namespace crofton::detail

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "read_options.hpp"
+
+#include <cstdio>
+
+namespace crofton::cli {
+
+void add_read_options(Command& command, ReadOptions& options) {
+    assets::ReadLimits& limits = options.limits;
+    const auto whole = [&](const char* name, std::uint64_t& limit, const char* help) {
+        command.option(name, limit, help).whole_between(1, std::uint64_t{1} << 48).show_default();
+    };
+    whole("--max-bytes", limits.bytes, "Refuse a file larger than this, with all that it refers to");
+    whole("--max-triangles", limits.triangles, "Refuse a file of more triangles, or points of polygons");
+    whole("--max-pixels", limits.pixels, "Leave out images of more pixels");
+    whole("--max-nodes", limits.nodes, "Refuse a file of more nodes or instances");
+    command.option("--max-nesting", limits.nesting, "Refuse JSON that is nested deeper")
+        .whole_between(1, 10'000)
+        .show_default();
+    command.option("--max-seconds", limits.seconds, "Give up reading after so long").positive().show_default();
+    command.flag("--strict", options.strict, "Refuse a file of which anything would be left out");
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+    constexpr std::size_t kMost = 20;
+    for (std::size_t i = 0; i < warnings.size() && i < kMost; ++i)
+        std::fprintf(stderr, "crofton: warning: %s\n", warnings[i].c_str());
+    if (warnings.size() > kMost) std::fprintf(stderr, "crofton: warning: and %zu more\n", warnings.size() - kMost);
+}
+
+}  // namespace crofton::cli

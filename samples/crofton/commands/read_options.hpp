@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// How much a file may ask for, as options that every sub-command which reads files has.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "assets/read_limits.hpp"
+#include "command_line.hpp"
+
+namespace crofton::cli {
+
+struct ReadOptions {
+    assets::ReadLimits limits;
+    bool strict = false;
+};
+
+// --max-bytes, --max-triangles, --max-pixels, --max-nodes, --max-nesting, --max-seconds and --strict. `options` must
+// outlive the parsing.
+void add_read_options(Command& command, ReadOptions& options);
+
+// "crofton: warning: …" to stderr, a line each; at most 20, and how many there are besides.
+void print_warnings(const std::vector<std::string>& warnings);
+
+}  // namespace crofton::cli

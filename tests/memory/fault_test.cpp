@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+// Every allocation of every operation that builds, loads, bakes, fits or triangulates fails once: an Error, no leak,
+// nothing changed.
+#include <doctest/doctest.h>
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/patches.hpp>
+#include <crofton/radiosity/solver.hpp>
+#include <crofton/scene/scene.hpp>
+#include <crofton/triangulate/triangulate.hpp>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <random>
+
+#include "failing_memory.hpp"
+
+using namespace crofton;
+
+void* operator new(std::size_t bytes) {
+    void* memory = crofton::testing::allocate_or_fail(bytes, alignof(std::max_align_t));
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+    void* memory = crofton::testing::allocate_or_fail(bytes, static_cast<std::size_t>(alignment));
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+// Does not fail: standard algorithms ask here for scratch that they can do without.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+    const std::int64_t left = crofton::testing::allocations_left.exchange(crofton::testing::kNever);
+    void* memory = crofton::testing::allocate_or_fail(bytes, alignof(std::max_align_t));
+    crofton::testing::allocations_left = left;
+    return memory;
+}
+void operator delete(void* memory) noexcept {
+    crofton::testing::release(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    crofton::testing::release(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    crofton::testing::release(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    crofton::testing::release(memory);
+}
+
+namespace {
+
+using Outcome = std::optional<ErrorCode>;  // nothing: it succeeded
+
+template <class T>
+Outcome outcome_of(const Result<T>& result) {
+    return result ? Outcome() : Outcome(result.error().code);
+}
+
+int failures_tried = 0;
+
+// Runs the operation with its first allocation failing, then its second, until it makes no more. `unchanged` looks at
+// what the operation might have changed.
+template <class Operation, class Unchanged>
+void sweep(const char* name, const Operation& operation, const Unchanged& unchanged) {
+    CAPTURE(std::string(name));
+    REQUIRE_FALSE(operation());  // with all memory, and warm
+    for (std::int64_t n = 0;; ++n) {
+        CAPTURE(n);
+        const std::int64_t before = testing::live_blocks;
+        testing::has_failed = false;
+        testing::allocations_left = n;
+        const Outcome outcome = operation();
+        testing::allocations_left = testing::kNever;
+        const std::int64_t after = testing::live_blocks;
+        if (!testing::has_failed) {
+            REQUIRE_FALSE(outcome);
+            REQUIRE(n > 0);
+            return;
+        }
+        ++failures_tried;
+        REQUIRE(outcome);
+        CHECK(to_string(*outcome) == to_string(ErrorCode::out_of_memory));
+        REQUIRE(after == before);
+        REQUIRE(unchanged());
+    }
+}
+
+template <class Operation>
+void sweep(const char* name, const Operation& operation) {
+    sweep(name, operation, [] { return true; });
+}
+
+Vector<glm::vec3> points(std::size_t count) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    Vector<glm::vec3> result(count);
+    for (glm::vec3& p : result) p = {uniform(random), uniform(random), uniform(random)};
+    return result;
+}
+
+Vector<Obb> boxes(std::size_t count) {
+    Vector<Obb> result(count);
+    const auto centers = points(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i].center = 100.0 * glm::dvec3(centers[i]);
+        result[i].half_extents = {1.0f, 0.5f, 0.25f};
+    }
+    return result;
+}
+
+// A flat grid of 2 n² triangles.
+TriangleMesh grid(std::uint32_t n) {
+    TriangleMesh mesh;
+    for (std::uint32_t y = 0; y <= n; ++y)
+        for (std::uint32_t x = 0; x <= n; ++x)
+            mesh.positions.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
+    for (std::uint32_t y = 0; y < n; ++y)
+        for (std::uint32_t x = 0; x < n; ++x) {
+            const std::uint32_t a = y * (n + 1) + x, b = a + n + 1;
+            for (const std::uint32_t i : {a, a + 1, b, b, a + 1, b + 1}) mesh.indices.push_back(i);
+        }
+    mesh.colors.assign(mesh.positions.size(), glm::vec3(0.5f));
+    return mesh;
+}
+
+// A star with a square hole.
+Polygon star() {
+    Polygon polygon;
+    for (int i = 0; i < 24; ++i) {
+        const double radius = i % 2 == 0 ? 10.0 : 6.0, angle = i * 0.2617993877991494;
+        polygon.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    polygon.ring_ends.push_back(24);
+    for (const auto& p : {glm::dvec2(-1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1), glm::dvec2(1, -1)})
+        polygon.points.push_back(p);
+    polygon.ring_ends.push_back(28);
+    return polygon;
+}
+
+// What is passed by value is copied while memory lasts.
+template <class T>
+T copy_of(const T& value) {
+    const std::int64_t left = testing::allocations_left.exchange(testing::kNever);
+    T copy(value);
+    testing::allocations_left = left;
+    return copy;
+}
+
+scene::Scene small_scene() {
+    scene::Scene scene;
+    const auto mesh = scene.add_mesh(grid(2), "grid with a name that is too long for a small string").value();
+    for (int i = 0; i < 40; ++i) {
+        scene::Transform place;
+        place.translation.x = 5.0 * i;
+        const auto node = scene.add_node(scene::kNone, place, ~0u, "node with a name that is too long for one").value();
+        static_cast<void>(scene.add_instance(node, mesh).value());
+    }
+    scene.update();
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("memory/fault") {
+    TEST_CASE("hulls and measures") {
+        const testing::FailingMemory memory;
+        const auto cloud = points(300);
+        const Vector<glm::dvec3> precise(cloud.begin(), cloud.end());
+        const Vector<glm::dvec2> flat{{0, 0}, {2, 0}, {2, 1}, {1, 3}, {0, 1}};
+        sweep("convex_hull, float", [&] { return outcome_of(convex_hull(std::span<const glm::vec3>(cloud))); });
+        sweep("convex_hull, double", [&] { return outcome_of(convex_hull(std::span<const glm::dvec3>(precise))); });
+        sweep("intrinsic_volumes_of_hull", [&] { return outcome_of(measure::intrinsic_volumes_of_hull(precise)); });
+        sweep("intrinsic_volumes_of_polytope", [&] {
+            static const auto hull = convex_hull(std::span<const glm::dvec3>(precise));
+            return outcome_of(measure::intrinsic_volumes_of_polytope(precise, hull->triangles));
+        });
+    }
+
+    TEST_CASE("boxes: fast, exact, many at once on threads, merged") {
+        const testing::FailingMemory memory;
+        const auto cloud = points(300);
+        const std::span<const glm::vec3> span(cloud);
+        const Vector<glm::dvec3> precise(cloud.begin(), cloud.end());
+        sweep("fit_obb, float", [&] { return outcome_of(fit::fit_obb(span)); });
+        sweep("fit_obb, double", [&] { return outcome_of(fit::fit_obb(std::span<const glm::dvec3>(precise))); });
+        sweep("fit_exact", [&] { return outcome_of(fit::fit_exact(span, {.gap = 1e-2})); });
+        const auto many = boxes(20);
+        sweep("merge", [&] { return outcome_of(fit::merge(many, measure::minimal_perimeter())); });
+        Vector<std::uint32_t> indices(300), ends;
+        for (std::uint32_t i = 0; i < 300; ++i) indices[i] = i;
+        for (std::uint32_t i = 5; i <= 300; i += 5) ends.push_back(i);
+        Vector<Obb> fitted(ends.size());
+        ThreadPool pool(3);
+        for (Executor* executor : {&serial_executor(), static_cast<Executor*>(&pool)})
+            sweep("fit_many", [&] { return outcome_of(fit::fit_many({span, indices, ends}, {}, *executor, fitted)); });
+    }
+
+    TEST_CASE("trees: built on one thread and on several, stored and taken back; of triangles") {
+        const testing::FailingMemory memory;
+        const auto many = boxes(3000);
+        ThreadPool pool(3);
+        for (Executor* executor : {&serial_executor(), static_cast<Executor*>(&pool)})
+            sweep("BoxTree::build", [&] { return outcome_of(boxtree::BoxTree::build(many, {}, *executor)); });
+        const auto bytes = boxtree::BoxTree::build(many).value().serialise();
+        sweep("BoxTree::deserialise", [&] { return outcome_of(boxtree::BoxTree::deserialise(bytes)); });
+        const TriangleMesh mesh = grid(12);
+        sweep("MeshTree::build", [&] { return outcome_of(mesh::MeshTree::build(mesh)); });
+        sweep("MeshTree::build, refittable",
+              [&] { return outcome_of(mesh::MeshTree::build(mesh, {.refittable = true})); });
+    }
+
+    TEST_CASE("triangulations; a Triangulator answers as before after one that failed") {
+        const testing::FailingMemory memory;
+        const Polygon polygon = star();
+        for (const auto method :
+             {triangulate::Method::ear, triangulate::Method::delaunay, triangulate::Method::minimum_weight}) {
+            sweep("triangulate", [&] { return outcome_of(triangulate::triangulate(polygon, {.method = method})); });
+            const auto expected = triangulate::triangulate(polygon, {.method = method}).value();
+            for (std::int64_t n = 0;; ++n) {
+                triangulate::Triangulator triangulator;
+                triangulate::Triangulation result;
+                testing::has_failed = false;
+                testing::allocations_left = n;
+                const bool done = triangulator.triangulate(polygon, {.method = method}, result).has_value();
+                testing::allocations_left = testing::kNever;
+                REQUIRE(done != testing::has_failed);
+                ++failures_tried;
+                REQUIRE(triangulator.triangulate(polygon, {.method = method}, result).has_value());
+                REQUIRE(result.triangles == expected.triangles);
+                if (done) break;
+            }
+        }
+        const TriangleMesh mesh = grid(4);
+        sweep("find_planar_patches", [&] { return outcome_of(triangulate::find_planar_patches(mesh)); });
+        TriangleMesh changed = mesh;
+        sweep(
+            "retriangulate_planar_patches",
+            [&] { return outcome_of(triangulate::retriangulate_planar_patches(changed)); },
+            [&] { return changed.positions.size() == mesh.positions.size() && validate(changed).has_value(); });
+    }
+
+    TEST_CASE("scenes: what is added is there as a whole or not at all") {
+        const testing::FailingMemory memory;
+        const TriangleMesh mesh = grid(3);
+        for (const int before : {0, 7, 8, 40}) {
+            // Each try begins with a scene of its own, as success would change it.
+            for (std::int64_t n = 0;; ++n) {
+                scene::Scene scene;
+                const auto own = scene.add_mesh(mesh, "m").value();
+                const auto root = scene.add_node(scene::kNone, {}).value();
+                for (int i = 0; i < before; ++i)
+                    static_cast<void>(scene.add_instance(scene.add_node(root, {}).value(), own).value());
+                const auto counts = [&] {
+                    return std::array{scene.mesh_count(), scene.node_count(), scene.instance_count()};
+                };
+                const auto old = counts();
+                TriangleMesh copy = mesh;
+                testing::has_failed = false;
+                testing::allocations_left = n;
+                const auto added_mesh = scene.add_mesh(std::move(copy), "a name that is too long for a small string");
+                const bool mesh_failed = testing::has_failed;
+                const auto added_node = scene.add_node(root, {}, ~0u, "a name that is too long for a small string");
+                const bool node_failed = testing::has_failed && !mesh_failed;
+                const auto added = scene.add_instance(root, own);
+                testing::allocations_left = testing::kNever;
+                const bool failed = testing::has_failed;
+                CHECK(added_mesh.has_value() == !mesh_failed);
+                CHECK(added_node.has_value() == !node_failed);
+                CHECK(added.has_value() == !(failed && !mesh_failed && !node_failed));
+                CHECK(counts() == std::array{old[0] + added_mesh.has_value(), old[1] + added_node.has_value(),
+                                             old[2] + added.has_value()});
+                // The scene lives on.
+                const auto node = scene.add_node(root, {}).value();
+                static_cast<void>(scene.add_instance(node, own).value());
+                scene.update();
+                for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+                    REQUIRE(validate(scene.world_boxes()[i]));
+                failures_tried += failed;
+                if (!failed) break;
+            }
+        }
+    }
+
+    TEST_CASE("baking, and opening what was baked, mapped or read") {
+        const testing::FailingMemory memory;
+        const scene::Scene scene = small_scene();
+        ThreadPool pool(2);
+        sweep("bake", [&] { return outcome_of(bake::bake(scene)); });
+        sweep("bake on threads", [&] { return outcome_of(bake::bake(scene, pool)); });
+        const auto bytes = bake::bake(scene).value();
+        sweep("BakedScene::from_memory", [&] { return outcome_of(bake::BakedScene::from_memory(bytes)); });
+        const auto path = (std::filesystem::temp_directory_path() / "crofton-memory-XXXXXX").string();
+        std::ofstream(path, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        for (const auto access : {bake::FileAccess::map, bake::FileAccess::read})
+            sweep("BakedScene::open",
+                  [&] { return outcome_of(bake::BakedScene::open(path, serial_executor(), {.access = access})); });
+        std::filesystem::remove(path);
+    }
+
+    TEST_CASE("light: patches, tracers, solvers") {
+        const testing::FailingMemory memory;
+        const TriangleMesh mesh = grid(4);
+        const Vector<radiosity::Material> materials(mesh.triangle_count(), {glm::vec3(1.0f), glm::vec3(0.5f)});
+        sweep("make_patches", [&] { return outcome_of(radiosity::make_patches(copy_of(mesh), materials)); });
+        sweep("refine", [&] { return outcome_of(radiosity::refine(mesh, 0.4)); });
+        sweep("mend_t_junctions", [&] { return outcome_of(radiosity::mend_t_junctions(mesh, 1e-4)); });
+        sweep("LineTracer::build", [&] { return outcome_of(radiosity::LineTracer::build(mesh)); });
+        const auto patches = radiosity::make_patches(TriangleMesh(mesh), materials).value();
+        sweep("Solver::create", [&] { return outcome_of(radiosity::Solver::create(patches)); });
+        MESSAGE(failures_tried << " allocations failed in all");
+    }
+}
