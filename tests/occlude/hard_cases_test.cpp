@@ -92,6 +92,33 @@ TEST_SUITE("occlude/hard cases") {
                    .hides(box_of({0.0, 0.0, -5.0}, {0.5f, 0.5f, 0.5f})));
     }
 
+    TEST_CASE("boxes about the near plane, tilted any way, cover no more than what is drawn of them") {
+        Random random(25);
+        std::size_t covered = 0, passed = 0;
+        for (int trial = 0; trial < 1500; ++trial) {
+            OcclusionScene scene;
+            scene.camera = camera_at(random, 0.0);
+            scene.size = {24, 16};
+            const double close = scene.camera.near_distance;
+            for (int i = 0; i < 3; ++i) {
+                const glm::dvec3 at = point_in_view(random, scene.camera, close * random.uniform(0.5, 1.5));
+                scene.occluders.push_back(box_at(random, at, 0.1 * close, 2.0 * close));
+            }
+            const auto buffer = picture(scene.occluders, *occlude::occlusion_view_of(scene.camera), scene.size);
+            for (std::uint32_t y = 0; y < scene.size.height; ++y)
+                for (std::uint32_t x = 0; x < scene.size.width; ++x) {
+                    const float nearness = buffer.nearness(x, y);
+                    if (nearness < -1e38f) continue;
+                    ++covered;
+                    const double u = random.uniform(), v = random.uniform();
+                    const auto ray = ray_through(scene, x + u, y + v, distance_of(scene.camera, nearness));
+                    passed += oracle::is_free(ray, scene.occluders);
+                }
+        }
+        CHECK(covered > 10'000);
+        CHECK(passed == 0);
+    }
+
     TEST_CASE("tiles seen in parallel, edge to edge, hide what each is above") {
         Camera camera;
         camera.position = {0.0, 50.0, 0.0};

@@ -77,7 +77,7 @@ class Preparation {
         end_row_ = static_cast<std::uint32_t>(std::clamp(std::ceil(high_ + map_.half_height), 0.0, 1.0 * map_.height));
     }
 
-    // Faces that certainly look towards the eye, and are not certainly before a cut.
+    // Faces that certainly look towards the eye and reach beyond the cuts.
     bool add_faces() {
         out_.seen.assign(body_.faces.size(), 0);
         out_.left.clear();
@@ -89,6 +89,7 @@ class Preparation {
             const MappedPoint& b = body_.points[body_.mirrored ? face.c : face.b];
             const MappedPoint& c = body_.points[body_.mirrored ? face.b : face.c];
             FacePlane plane;
+            if (crossing_ && !reaches_beyond(a) && !reaches_beyond(b) && !reaches_beyond(c)) continue;
             if (!find_plane(a, b, c, bounds_, plane)) continue;
             out_.seen[f] = 1;
             any = true;
@@ -96,6 +97,13 @@ class Preparation {
             if (crossing_ && !cut_face(plane.nearness, plane.error)) return false;
         }
         return any;
+    }
+
+    // Certainly beyond the cuts. A face none of whose corners is must not count: its plane, drawn out, may come beyond.
+    [[nodiscard]] bool reaches_beyond(const MappedPoint& p) const {
+        bool beyond = true;
+        for (int c = 0; c < map_.cut_count; ++c) beyond = beyond && p.cut[c] > kMapError * body_.sizes.cut[c];
+        return beyond;
     }
 
     // False where floats cannot hold the plane.
