@@ -153,7 +153,7 @@ TriangleMesh surface_of(const StoredBox& box) {
     constexpr std::uint32_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& f : kFaces)
-        for (const std::size_t i : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(f[turned ? 3 - i : i]);
+        for (const std::size_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(f[turned ? 3 - i : i]);
     return mesh;
 }
 

@@ -70,10 +70,12 @@ struct FoundOccluders {
 
 // Boxes and convex bodies lie inside the solid that a closed piece bounds, proven: no triangle of the piece meets the
 // open body (separating axes with error bounds, or exact predicates), and its centre is inside by an exact count of
-// crossings. Sides::front: a piece is closed where the sides of its triangles cancel, and its inside is where it
-// winds round at least once, so that every ray into it meets a front face. Sides::both: where every edge has an
-// even number of triangles, and its inside is where rays cross it an odd number of times. Patches are subsets of the
-// mesh's triangles. So all that an occluder hides is hidden by the mesh, from any eye outside `piece_bounds`.
+// crossings. Sides::front: a piece is closed where the sides of its triangles cancel, and its inside is where it winds
+// round at least once, so that every ray into it meets a front face. Sides::both: where every edge has an even number
+// of triangles, and its inside is where rays cross it an odd number of times. Walled boxes lie behind walls across the
+// mesh's own axes that no straight path passes, recesses such as windows set back included, decided exactly; meshes of
+// more than 100,000 triangles get none. Patches are subsets of the mesh's triangles. So all that an occluder hides is
+// hidden by the mesh, from any eye that piece_bounds and eyes_within allow (docs/notes/occluder_finding.md).
 // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed in
 // rejected. The result depends on the mesh and the options alone; greedy, so not the best for the budget.
 // Errors: an index count that is no multiple of three; 2^28 triangles or more; no valid triangle (empty); an option out
