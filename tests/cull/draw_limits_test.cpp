@@ -128,6 +128,16 @@ TEST_SUITE("cull/draw_limits") {
             {.radii = 5.0, .drawn_before = drawn, .longer = std::numeric_limits<double>::infinity()}, box, 0));
     }
 
+    TEST_CASE("on its limit an item is kept, one step of a double beyond it is not") {
+        Obb box{.center = {0.0, 0.0, 15.0}, .half_extents = {1.0f, 2.0f, 2.0f}};  // radius 3
+        CHECK(cull::is_worth_drawing({.radii = 5.0}, box, 0));
+        CHECK(cull::is_worth_drawing({.least_radius = 3.0}, box, 0));
+        CHECK(!cull::is_worth_drawing({.least_radius = std::nextafter(3.0, 4.0)}, box, 0));
+        CHECK(!cull::is_worth_drawing({.radii = std::nextafter(5.0, 4.0)}, box, 0));
+        box.center.z = std::nextafter(15.0, 16.0);
+        CHECK(!cull::is_worth_drawing({.radii = 5.0}, box, 0));
+    }
+
     TEST_CASE("agrees with the oracle on items at their limits") {
         oracle::NearMisses random(3);
         int kept = 0;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "limits/limits_kernel.hpp"
 
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/cull/statistics.hpp>
+#include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "limits/limits_kernel.cpp"
@@ -50,6 +52,19 @@ class LimitedWalk {
     // In an entry's planes: all below is inside, seen and within its limits.
     static constexpr std::uint32_t kWhole = 1u << 31;
 
+    HWY_INLINE void prefetch(std::uint32_t child, bool is_whole) const {
+        const std::uint32_t id = child & ~boxtree::kLeafBit;
+        if (!(child & boxtree::kLeafBit)) {
+            if (is_whole) return;
+            for (std::size_t at = 0; at < offsetof(boxtree::Node, layers_any); at += 64)
+                hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + id) + at);
+            return;
+        }
+        hwy::Prefetch(in_.slot_items + std::size_t{id} * boxtree::kWidth);
+        for (std::size_t at = 0; !is_whole && at < offsetof(boxtree::Leaf, layers); at += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(in_.leaves + id) + at);
+    }
+
     void accept(std::uint32_t child) {
         if (child & boxtree::kLeafBit) return copy(child & ~boxtree::kLeafBit, 1);
         const boxtree::LeafRange range = in_.ranges[child];
@@ -86,6 +101,7 @@ class LimitedWalk {
         const std::uint32_t alive = test.alive & ~dropped;
         for (std::uint32_t lane = boxtree::kWidth; lane-- > 0;)
             if (alive >> lane & 1) {
+                prefetch(node.child[lane], whole >> lane & 1);
                 children_[count_] = node.child[lane];
                 planes_[count_++] = whole >> lane & 1 ? kWhole : test.planes[lane];
             }
