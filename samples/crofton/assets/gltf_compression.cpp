@@ -168,7 +168,7 @@ Result<void> decode_draco(GltfDocument& document, Json& primitive, const Json& c
     }
     std::string indices;
     for (std::uint32_t f = 0; f < faces; ++f)
-        for (int k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t index = mesh.face(draco::FaceIndex(f))[k].value();
             indices.append(reinterpret_cast<const char*>(&index), sizeof index);
         }
