@@ -83,9 +83,9 @@ TEST_SUITE("cli/verify") {
                 const auto found = best.emplace(source, resolution).first;
                 found->second = std::min(found->second, resolution);
             }
-            for (const auto& [source, resolution] : best) {
-                CAPTURE(source);
-                CHECK(resolution <= 0.01);
+            for (const auto& entry : best) {
+                CAPTURE(entry.first);
+                CHECK(entry.second <= 0.01);
             }
             if (topic == std::string("lines")) continue;
             for (const char* formula :

@@ -35,27 +35,32 @@ struct Turned {
     double size = HUGE_VAL;
 };
 
-// The least over many rotations, then downhill by ever smaller random turns.
-Turned search(int which, std::uint64_t seed) {
-    sampling::Random random(seed, 33);
-    Turned best;
-    const auto consider = [&](const glm::dmat3& axes) {
-        glm::dvec3 edge;
-        for (int k = 0; k < 3; ++k) edge[k] = breadth(kPoints, axes[k]);
-        if (const double size = size_of(which, edge); size < best.size) best = {axes, size};
-    };
-    for (int i = 0; i < 20'000; ++i) consider(sampling::rotation(random.point<3>()));
-    for (double step = 0.1; step > 1e-8; step *= 0.97)
-        for (int i = 0; i < 20; ++i) {
-            glm::dmat3 axes = best.axes;
-            for (int k = 0; k < 3; ++k)
-                axes[k] += step * (glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
-            axes[0] = glm::normalize(axes[0]);
-            axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
-            axes[2] = glm::cross(axes[0], axes[1]);
-            consider(axes);
-        }
-    return best;
+// The least over many rotations, then downhill by ever smaller random turns; from eight starts, the same for every seed
+// of the command line, since a landscape with several valleys is no place for chance.
+Turned search(int which) {
+    Turned least;
+    for (std::uint64_t start = 0; start < 8; ++start) {
+        sampling::Random random(33, start);
+        Turned best;
+        const auto consider = [&](const glm::dmat3& axes) {
+            glm::dvec3 edge;
+            for (int k = 0; k < 3; ++k) edge[k] = breadth(kPoints, axes[k]);
+            if (const double size = size_of(which, edge); size < best.size) best = {axes, size};
+        };
+        for (int i = 0; i < 3'000; ++i) consider(sampling::rotation(random.point<3>()));
+        for (double step = 0.1; step > 1e-8; step *= 0.96)
+            for (int i = 0; i < 16; ++i) {
+                glm::dmat3 axes = best.axes;
+                for (int k = 0; k < 3; ++k)
+                    axes[k] += step * (glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
+                axes[0] = glm::normalize(axes[0]);
+                axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
+                axes[2] = glm::cross(axes[0], axes[1]);
+                consider(axes);
+            }
+        if (best.size < least.size) least = best;
+    }
+    return least;
 }
 
 // The measure of the motions under which a query meets a box: the mean volume of sums. Difference of the V's alone for
@@ -72,8 +77,8 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         boxes[std::size_t(which)] = faceted(Corners3(c.begin(), c.end()));
         rows.push_back(computed_row(
             std::string("the box of least ") + kNames[std::size_t(which)] + ", against a search over rotations",
-            "theory.md section 3", size_of(which, 2.0 * glm::dvec3(box->half_extents)),
-            search(which, options.seed).size, 1e-4 * size_of(which, glm::dvec3(box->half_extents))));
+            "theory.md section 3", size_of(which, 2.0 * glm::dvec3(box->half_extents)), search(which).size,
+            1e-4 * size_of(which, glm::dvec3(box->half_extents))));
     }
     // Each kind of query, in the limit that its criterion is for, by sums of bodies.
     const Faceted queries[] = {faceted({glm::dvec3(0.0)}), faceted(segment_body(300.0).corners),
@@ -86,7 +91,7 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         // What the query holds of itself counts nothing: the frustum's own volume.
         std::array<Mean, 3> measured;
         for (std::size_t b = 0; b < 3; ++b)
-            measured[b] = mean_over_rotations(seed, effort(options, 1024), [&](const glm::dmat3& turn) {
+            measured[b] = mean_over_rotations(seed, effort(options, 256), [&](const glm::dmat3& turn) {
                 return meeting_volume(queries[q], boxes[b], turn) - queries[q].volume;
             });
         ++seed;
@@ -103,9 +108,11 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
 
 // Given its ancestor, a pentagon, this triangle's best rectangle has no side along one of its own.
 void bounds_given_ancestor(std::vector<VerifyRow>& rows) {
-    const Figure triangle = {{-0.4, -0.3}, {-0.2, -0.8}, {0.3, 0.0}};
-    Figure around = triangle;
-    around.insert(around.end(), {{0.1, 0.0}, {0.5, 0.2}});
+    // Turned, so that the axes, where a search would begin, are no help.
+    Figure around = {{-0.4, -0.3}, {-0.2, -0.8}, {0.3, 0.0}, {0.1, 0.0}, {0.5, 0.2}};
+    for (glm::dvec2& p : around)
+        p = {std::cos(0.5) * p.x - std::sin(0.5) * p.y, std::sin(0.5) * p.x + std::cos(0.5) * p.y};
+    const Figure triangle(around.begin(), around.begin() + 3);
     // ∫ min(h_ancestor, h_rectangle) by plain quadrature.
     const auto measured = [&](double angle) {
         const glm::dvec2 axes[2] = {{std::cos(angle), std::sin(angle)}, {-std::sin(angle), std::cos(angle)}};

@@ -157,13 +157,12 @@ void spatial(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         plain.push_back({Corners3(c.begin(), c.end()), 0.0});
     }
     plain.push_back({{glm::dvec3(-0.3, 0.0, 0.4)}, 0.6});
-    const Mean planes =
-        mean_over_directions(options.seed * 1000 + 400, effort(options, 1024), [&](const glm::dvec3& n) {
-            double front = HUGE_VAL, back = HUGE_VAL;
-            for (const Solid& k : plain) front = std::min(front, k.support(n)), back = std::min(back, k.support(-n));
-            return std::max(0.0, front + back);
-        });
-    const Mean lines = mean_over_directions(options.seed * 1000 + 401, effort(options, 512), [&](const glm::dvec3& n) {
+    const Mean planes = mean_over_directions(options.seed * 1000 + 400, effort(options, 256), [&](const glm::dvec3& n) {
+        double front = HUGE_VAL, back = HUGE_VAL;
+        for (const Solid& k : plain) front = std::min(front, k.support(n)), back = std::min(back, k.support(-n));
+        return std::max(0.0, front + back);
+    });
+    const Mean lines = mean_over_directions(options.seed * 1000 + 401, effort(options, 256), [&](const glm::dvec3& n) {
         const auto [x, y] = sampling::orthonormal_frame(n);
         Figure common = plain[0].shadow(x, y);
         for (std::size_t i = 1; i < plain.size(); ++i) common = clipped(common, plain[i].shadow(x, y));

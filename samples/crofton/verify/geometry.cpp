@@ -13,7 +13,7 @@
 namespace crofton::cli {
 namespace {
 
-constexpr std::uint64_t kBatches = 32;
+constexpr std::uint64_t kBatches = 128;
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;

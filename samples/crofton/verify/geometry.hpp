@@ -40,7 +40,7 @@ struct Faceted {
 // all its corners when its faces move inward.
 [[nodiscard]] double containing_volume(const Body& b, const Corners3& k, const glm::dmat3& rotation);
 
-// Means over 32 batches of quasi-random points, each batch shifted by itself: evenly spread, with an honest error.
+// Means over 128 batches of quasi-random points, each batch shifted by itself: evenly spread, with an honest error.
 // `points` a batch: a power of two.
 // With fewer trials than the default, a sixteenth of the points.
 [[nodiscard]] std::uint64_t effort(const VerifyOptions& options, std::uint64_t points);

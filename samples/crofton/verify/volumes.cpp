@@ -73,7 +73,7 @@ void kinematic(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     for (const Solid& b : views())
         for (const Solid& k : objects()) {
             const Faceted first = faceted(b.corners), second = faceted(k.corners);
-            const Mean mean = mean_over_rotations(seed++, effort(options, 1024), [&](const glm::dmat3& turn) {
+            const Mean mean = mean_over_rotations(seed++, effort(options, 256), [&](const glm::dmat3& turn) {
                 return meeting_volume(first, second, turn);
             });
             const std::string pair = std::string(b.name) + " and " + k.name;
@@ -105,12 +105,12 @@ void cauchy(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         if (k.corners.size() > 2)
             rows.push_back(row(std::string("F of ") + k.name + ": 4 × the mean shadow", "theory.md section 1, Cauchy",
                                k.volumes.area,
-                               mean_over_directions(seed++, effort(options, 256),
+                               mean_over_directions(seed++, effort(options, 64),
                                                     [&](const glm::dvec3& n) { return shadow_area(k.corners, n); }),
                                4.0));
         rows.push_back(row(std::string("M of ") + k.name + ": 2π × the mean breadth", "theory.md section 1, breadth",
                            k.volumes.mean_curvature,
-                           mean_over_directions(seed++, effort(options, 256),
+                           mean_over_directions(seed++, effort(options, 64),
                                                 [&](const glm::dvec3& n) { return breadth(k.corners, n); }),
                            2.0 * pi));
         if (k.volumes.volume > 0.0)
@@ -122,7 +122,7 @@ void cauchy(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     rows.push_back(row(
         "measure of the lines that hit a plate: 2π × its mean shadow", "theory.md section 6, Crofton",
         sampling::measure_of_lines(kept[0].volumes.area),
-        mean_over_directions(seed++, effort(options, 256), [&](const glm::dvec3& n) { return shadow_area(plate, n); }),
+        mean_over_directions(seed++, effort(options, 64), [&](const glm::dvec3& n) { return shadow_area(plate, n); }),
         2.0 * pi));
     study::ConvexBody body;
     body.points.assign(kTetrahedron.begin(), kTetrahedron.end());
@@ -176,7 +176,7 @@ void improper(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         const Faceted moving = faceted(query.corners);
         rows.push_back(row(std::string("improper outside tests of ") + query.name, "theory.md section 2, m_o",
                            measure::improper_outside(query.volumes, b, o),
-                           mean_over_rotations(seed++, effort(options, 1024), [&](const glm::dmat3& turn) {
+                           mean_over_rotations(seed++, effort(options, 256), [&](const glm::dmat3& turn) {
                                return meeting_volume(moving, faceted_bound, turn) -
                                       meeting_volume(moving, faceted_object, turn);
                            })));
@@ -201,15 +201,15 @@ void preferred(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const auto band = study::QueryDistribution::band({0.0, 1.0, 0.0}, half_width);
     if (!band) return;
     Mean planes, lines;
-    for (std::uint64_t batch = 0; batch < 32; ++batch) {
+    for (std::uint64_t batch = 0; batch < 128; ++batch) {
         const sampling::UnitPoints points(options.seed * 1000 + 410 + 64 * batch, sampling::Sequence::quasi_random);
         double breadths = 0.0, shadows = 0.0;
-        for (std::uint64_t i = 0; i < 256; ++i) {
+        for (std::uint64_t i = 0; i < 64; ++i) {
             const auto u = points.at<2>(i);
             const double y = std::sin(half_width) * (2.0 * u[0] - 1.0), r = std::sqrt(1.0 - y * y);
             const glm::dvec3 n(r * std::cos(2.0 * pi * u[1]), y, r * std::sin(2.0 * pi * u[1]));
-            breadths += breadth(plain, n) / 256.0;
-            shadows += shadow_area(plain, n) / 256.0;
+            breadths += breadth(plain, n) / 64.0;
+            shadows += shadow_area(plain, n) / 64.0;
         }
         planes.add(breadths), lines.add(shadows);
     }
