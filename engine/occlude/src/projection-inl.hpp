@@ -155,6 +155,27 @@ struct Projection {
         bounds.high_v = hn::Max(bounds.high_v, v);
     }
 
+    // All corners behind the eye, or beyond one side of the picture: there column > w · half width, whatever w is. Both
+    // forms are off by their errors, and their difference and its sums by less than that again.
+    static HWY_INLINE hn::Mask<DF> outside_of_sides(const QueryView& view, const VF (&form)[3][4], const VF (&error)[3],
+                                                    const Bounds& bounds) {
+        const DF d;
+        auto outside = hn::Lt(hn::Add(bounds.high_v, error[2]), hn::Set(d, view.least_w));
+        for (std::size_t r = 0; r < 2; ++r) {
+            const VF half = hn::Set(d, r == 0 ? view.half_width : view.half_height);
+            const VF margin = hn::Mul(hn::Add(error[r], hn::Mul(half, error[2])), hn::Set(d, 2.0f));
+            const VF w = hn::Mul(half, form[2][0]);
+            VF above = hn::Sub(form[r][0], w), below = hn::Sub(hn::Neg(form[r][0]), w);
+            for (std::size_t k = 1; k < 4; ++k) {
+                const VF edge_w = hn::Mul(half, form[2][k]);
+                above = hn::Sub(above, hn::Abs(hn::Sub(form[r][k], edge_w)));
+                below = hn::Sub(below, hn::Abs(hn::Add(form[r][k], edge_w)));
+            }
+            outside = hn::Or(outside, hn::Or(hn::Gt(above, margin), hn::Gt(below, margin)));
+        }
+        return outside;
+    }
+
     template <bool kPerspective>
     HWY_INLINE LaneBits finish(const QueryView& view, const Depths& depths, const VF (&form)[3][4],
                                const VF (&error)[3], const Bounds& bounds, std::size_t at) {
@@ -209,7 +230,11 @@ struct Projection {
         // A pixel in the middle that is farther than the box's centre is a short way to say that the box is visible.
         const VI mx = hn::ShiftRight<1>(hn::Add(x0, x1)), my = hn::ShiftRight<1>(hn::Add(y0, y1));
         const auto seen = hn::Le(depths.at_pixel(mx, my), centre_nearness);
-        const std::uint32_t usable_bits = mask_bits(d, usable), beside_bits = mask_bits(d, beside) & usable_bits;
+        const std::uint32_t usable_bits = mask_bits(d, usable);
+        std::uint32_t beside_bits = mask_bits(d, beside) & usable_bits;
+        // What reaches behind the eye has no rectangle, but may be beside the view all the same.
+        if (kPerspective && usable_bits != (1u << hn::Lanes(d)) - 1)
+            beside_bits |= mask_bits(d, outside_of_sides(view, form, error, bounds)) & ~usable_bits;
         const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~beside_bits;
         return {hidden_bits, beside_bits, usable_bits & ~beside_bits & ~hidden_bits & ~mask_bits(d, seen)};
     }

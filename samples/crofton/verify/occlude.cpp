@@ -66,10 +66,10 @@ Setup random_setup(Random& random, double offset) {
         setup.occluders.push_back(box);
     }
     for (int i = 0; i < 256; ++i) {
-        const Obb& near = setup.occluders[random.bits() % setup.occluders.size()];
-        glm::dvec3 at = near.center;
+        const Obb& beside = setup.occluders[random.bits() % setup.occluders.size()];
+        glm::dvec3 at = beside.center;
         for (int k = 0; k < 3; ++k)
-            at += random.uniform(-1.1, 1.1) * static_cast<double>(near.half_extents[k]) * glm::dvec3(near.axes[k]);
+            at += random.uniform(-1.1, 1.1) * static_cast<double>(beside.half_extents[k]) * glm::dvec3(beside.axes[k]);
         const bool perspective = camera.projection == Projection::perspective;
         at += random.uniform(0.0, 1.5) * (perspective ? at - camera.position : glm::normalize(camera.forward));
         if (i % 3 == 0) at = point_in_view(random, camera, random.uniform(1.0, 60.0));
