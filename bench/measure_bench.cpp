@@ -14,7 +14,6 @@
 namespace {
 
 using namespace crofton;
-using namespace crofton::measure;
 using namespace crofton::sampling;
 using namespace crofton::study;
 

@@ -13,7 +13,7 @@ using std::numbers::pi;
 
 TEST_SUITE("measure/planar") {
     TEST_CASE("a hull of nothing, or of a NaN, is an error that names the culprit") {
-        CHECK(convex_hull({}).error().code == ErrorCode::empty);
+        CHECK(measure::convex_hull({}).error().code == ErrorCode::empty);
         const std::vector<glm::dvec2> points = {{0.0, 0.0}, {1.0, std::nan("")}};
         CHECK(convex_hull(points).error().item == 1);
     }

@@ -162,7 +162,7 @@ TEST_SUITE("world/movers") {
             REQUIRE(fresh.add({.mesh = copy, .transform = scene::Transform()}).value().index == object.index);
             REQUIRE(fresh.add({.bound = Sphere{{0.4, 0.6, 0.2}, 0.1}}).value().index == ball.index);
             REQUIRE(fresh.update().has_value());
-            NearMisses random(40 + frame);
+            NearMisses random(static_cast<std::uint64_t>(40 + frame));
             for (int i = 0; i < 200; ++i) {
                 Ray ray;
                 ray.origin = {random.number(0.0, 1.0), random.number(0.0, 1.0), 2.0};

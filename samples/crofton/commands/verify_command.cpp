@@ -21,11 +21,8 @@ struct Topic {
     std::vector<VerifyRow> (*rows)(const VerifyOptions&);
 };
 constexpr Topic kTopics[] = {
-    {"paper", verify_paper},
-    {"lines", verify_lines},
-    {"cull", verify_cull},
-    {"occlude", verify_occlude},
-    {"collide", verify_collide},
+    {"paper", verify_paper},     {"lines", verify_lines},     {"cull", verify_cull},
+    {"occlude", verify_occlude}, {"collide", verify_collide},
 };
 
 struct Request {
