@@ -161,6 +161,30 @@ TEST_SUITE("convex/manifold") {
         CHECK(kept >= frames * 95 / 100);
     }
 
+    TEST_CASE("a face that is no longer the least deep is given up") {
+        const Body box = Body::box({1, 1, 1}).value();
+        const RigidTransform ground = at({}), top = at({0.5, 1.99, 0.25}), side = at({1.9, 1.5, 0.25});
+        PairCache cache;
+        CHECK(contact_manifold({box, ground}, {box, top}, {}, &cache).normal.y == doctest::Approx(1.0));
+        const Manifold m = contact_manifold({box, ground}, {box, side}, {}, &cache);
+        CHECK(m.normal.x == doctest::Approx(1.0));
+        CHECK(m.depth == doctest::Approx(0.1));
+        RandomBodies random(5);
+        for (int i = 0; i < 400; ++i) {
+            const Body a = random.polytope(24), b = random.polytope(24);
+            const CasePair where = nearly_touching(random, a, b, -0.01, 0.0);
+            RigidTransform next = where.pose_b;
+            next.translation += (i % 2 == 0 ? 0.3 : 0.03) * random.direction();
+            PairCache kept;
+            (void)contact_manifold({a, where.pose_a}, {b, where.pose_b}, {.margin = 0.02}, &kept);
+            const Manifold warm = contact_manifold({a, where.pose_a}, {b, next}, {.margin = 0.02}, &kept);
+            const Manifold cold = contact_manifold({a, where.pose_a}, {b, next}, {.margin = 0.02});
+            const double size = a.reach() + b.reach() + glm::length(next.translation - where.pose_a.translation);
+            CHECK((warm.count > 0) == (cold.count > 0));
+            CHECK(std::abs(warm.depth - cold.depth) <= 1.5e-4 * size);
+        }
+    }
+
     TEST_CASE("warm calls allocate nothing") {
         RandomBodies random(4);
         for (int i = 0; i < 50; ++i) {

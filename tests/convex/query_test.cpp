@@ -223,4 +223,31 @@ TEST_SUITE("convex/query") {
         }
         CHECK(overlapping > 500);
     }
+
+    TEST_CASE("cylinders and cones: the bounds hold each other, and moving by the upper one parts the bodies") {
+        RandomBodies random(9);
+        double widest_depth = 0.0, widest_gap = 0.0;
+        for (int i = 0; i < 400; ++i) {
+            const float h = static_cast<float>(random.number(0.2, 1)), r = static_cast<float>(random.number(0.2, 1));
+            const Body a = i % 2 == 0 ? Body::cylinder(h, r).value() : Body::cone(h, r).value();
+            const Body b = i % 3 == 0 ? Body::cone(r, h).value() : i % 3 == 1 ? random.hull(20) : random.box();
+            const CasePair where =
+                nearly_touching(random, a, b, std::pow(10.0, random.number(-6, -0.5)) * (i % 4 < 2 ? 1 : -1), 0.0);
+            const Placed pa{a, where.pose_a}, pb{b, where.pose_b};
+            const double size = a.reach() + b.reach() + glm::length(where.pose_b.translation);
+            const Distance d = distance(pa, pb);
+            widest_gap = std::max(widest_gap, (d.upper - d.lower) / size);
+            const Penetration p = penetration(pa, pb);
+            CHECK(p.overlapping == intersects(pa, pb));
+            if (!p.overlapping) continue;
+            CHECK(p.lower <= p.upper);
+            widest_depth = std::max(widest_depth, (p.upper - p.lower) / size);
+            RigidTransform moved = where.pose_b;
+            moved.translation += p.normal * (p.upper + 1e-7 * size);
+            CHECK_FALSE(intersects(pa, {b, moved}));
+        }
+        MESSAGE("bounds of distances within " << widest_gap << ", of depths within " << widest_depth << " of the size");
+        CHECK(widest_gap <= 1e-9);
+        CHECK(widest_depth <= 1e-5);
+    }
 }

@@ -28,9 +28,9 @@ struct PairCache {
 };
 
 // Touching counts. Exact for two polytopes and for a polytope and a half-space. Where a body is round, a gap or overlap
-// below 1e-12 of the size may be told either way. The size of a pair is the sum of the bodies' reaches and of the
-// offset between their origins. Two half-spaces: exact where the normals' rounded cross product is not 0, as they meet
-// then. A pose with NaN meets nothing.
+// below 1e-11 of the size, with cylinders and cones 1e-7, may be told either way. The size of a pair is the sum of the
+// bodies' reaches and of the offset between their origins. Two half-spaces: exact where the normals' rounded cross
+// product is not 0, as they meet then. A pose with NaN meets nothing.
 [[nodiscard]] bool intersects(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 struct Distance {
@@ -39,7 +39,7 @@ struct Distance {
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of bodies that meet, a common point up to 1e-9 of the size
     glm::dvec3 normal{0.0};           // unit, from a to b; 0 of bodies that meet
 };
-// upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; 1e-6 for cylinders and cones. Gilbert, Johnson,
+// upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. Gilbert, Johnson,
 // Keerthi 1988; where double does not reach the bound, in exact arithmetic. Half-spaces that do not meet: parallel
 // ones.
 [[nodiscard]] Distance distance(const Placed& a, const Placed& b, PairCache* cache = nullptr);
@@ -52,7 +52,7 @@ struct Penetration {
     glm::dvec3 normal{0.0};           // unit, from a to b
     glm::dvec3 on_a{0.0}, on_b{0.0};  // deepest points: on_a − on_b = depth · normal
 };
-// upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; 1e-6 for cylinders and cones. Expanding polytope
+// upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; 1e-5 for cylinders and cones. Expanding polytope
 // (van den Bergen 2001), checked afterwards from both sides; where that fails, all separating axes. Two half-spaces
 // overlap without end: depth, lower and upper are infinite.
 [[nodiscard]] Penetration penetration(const Placed& a, const Placed& b, PairCache* cache = nullptr);
