@@ -114,6 +114,19 @@ TEST_SUITE("bake/baked_scene") {
         check_same(scene, *baked);
     }
 
+    TEST_CASE("a mesh without colours, whose arrays are empty or end with their section, is baked and read") {
+        scene::Scene scene;
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        mesh.indices = {0, 1, 2};
+        REQUIRE(scene.add_mesh(mesh, ""));
+        const auto file = bake::bake(scene);
+        REQUIRE(file);
+        const auto baked = BakedScene::from_memory(*file);
+        REQUIRE(baked);
+        check_same(scene, *baked);
+    }
+
     TEST_CASE("what was baked comes back, from memory and from a file") {
         const scene::Scene scene = sample_scene(200);
         const auto file = bake::bake(scene);

@@ -97,16 +97,22 @@ TEST_SUITE("core/executor") {
         CHECK(seen != 0);
     }
 
-    TEST_CASE("several threads may call one pool at once, and each gets its own work done") {
+    TEST_CASE("several threads may call one pool at once: each gets its own work done, one after the other") {
         ThreadPool pool(3);
         std::atomic<int> wrong{0};
+        std::array<std::atomic<int>, 4> active{};
         std::vector<std::thread> callers;
-        for (int caller = 0; caller < 4; ++caller)
-            callers.emplace_back([&] {
+        for (std::size_t caller = 0; caller < active.size(); ++caller)
+            callers.emplace_back([&, caller] {
                 for (int call = 0; call < 300; ++call) {
                     std::array<std::atomic<int>, 50> visits{};
                     pool.parallel_for(50, 3, [&](std::size_t begin, std::size_t end, unsigned) {
+                        ++active[caller];
                         for (std::size_t i = begin; i < end; ++i) ++visits[i];
+                        std::this_thread::yield();
+                        for (std::size_t other = 0; other < active.size(); ++other)
+                            wrong += other != caller && active[other] > 0;
+                        --active[caller];
                     });
                     for (const auto& visit : visits) wrong += visit != 1;
                 }

@@ -24,7 +24,7 @@ struct Shape {
 Obb box_at(oracle::NearMisses& random, const glm::dvec3& target, const glm::dvec3& normal, double half, double depth) {
     Obb box;
     const glm::dvec3 axis = random.direction();
-    const double angle = random.index(4) ? random.number(0.0, 6.2) : 0.0;
+    const double angle = random.index(2) ? random.number(0.0, 6.2) : 0.0;
     box.axes = glm::mat3(glm::mat3_cast(glm::dquat(std::cos(angle / 2), std::sin(angle / 2) * axis)));
     box.center = target + depth * normal;
     const double side = random.index(2) ? 1.0 : -1.0;
@@ -47,7 +47,8 @@ std::vector<Obb> cluster_at(oracle::NearMisses& random, const Frustum& frustum, 
     }
     std::ranges::sort(nearest);
     const double largest = std::max({shape.size.x, shape.size.y, shape.size.z});
-    const double quantum = std::ldexp(largest, -14);
+    // What small integers are rounded to, or floats.
+    const double quantum = std::ldexp(std::max(largest, shape.half), random.index(2) ? -14 : -23);
     std::vector<Obb> boxes;
     for (std::size_t i = 0; i < count; ++i) {
         const unsigned p = nearest[random.index(8) ? 0 : 1].second;
@@ -64,66 +65,92 @@ std::vector<Obb> cluster_at(oracle::NearMisses& random, const Frustum& frustum, 
     return boxes;
 }
 
-void check_all(const std::vector<Obb>& boxes, const cull::View& view) {
-    const auto tree = boxtree::BoxTree::build(boxes);
-    REQUIRE(tree.has_value());
+struct Answer {
+    std::vector<cull::ItemId> ids;
+    std::vector<Verdict> verdicts;
+};
+
+Answer expected_of(const std::vector<Obb>& boxes, const cull::View& view, CullMode mode) {
+    Answer answer;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Verdict verdict = cull::classify(view.frustum, boxes[i], mode);
+        if (verdict == Verdict::outside) continue;
+        answer.ids.push_back(static_cast<cull::ItemId>(i));
+        answer.verdicts.push_back(verdict);
+    }
+    return answer;
+}
+
+bool is_answer(const cull::VisibleSet& visible, const Answer& expected) {
+    return std::ranges::equal(visible.ids(), expected.ids) && std::ranges::equal(visible.verdicts(), expected.verdicts);
+}
+
+template <class Bound>
+void check_set(const std::vector<Bound>& bounds, const cull::View& view, CullMode mode) {
+    cull::BoundSet<Bound> set;
+    set.assign(bounds);
+    cull::VerdictBits bits;
+    cull::find_visible(set, bounds, view, bits, mode);
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        REQUIRE(bits.verdict(i) == cull::classify(view.frustum, bounds[i], mode));
+}
+
+void check_lists(const std::vector<Obb>& boxes, const cull::View& view) {
     std::vector<Aabb> bounds;
     for (const Obb& box : boxes) bounds.push_back(aabb_of(box));
     std::vector<Sphere> balls;
     for (const Obb& box : boxes) balls.push_back({box.center, double{box.half_extents.x}});
-    cull::BoxSet box_set;
-    cull::AabbSet bound_set;
-    cull::SphereSet ball_set;
-    box_set.assign(boxes);
-    bound_set.assign(bounds);
-    ball_set.assign(balls);
+    cull::VisibleSet visible;
+    for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
+        cull::find_visible(boxes, {}, view, visible, {mode});
+        REQUIRE(is_answer(visible, expected_of(boxes, view, mode)));
+        check_set(boxes, view, mode);
+        check_set(bounds, view, mode);
+        check_set(balls, view, mode);
+    }
+}
+
+// Returns how many boxes went through the second stage.
+std::uint64_t check_tree(const std::vector<Obb>& boxes, const cull::View& view) {
+    std::uint64_t exact_tests = 0;
+    const auto tree = boxtree::BoxTree::build(boxes);
+    REQUIRE(tree.has_value());
     const std::vector<cull::View> views(2, view);
     cull::VisibleSet visible;
     cull::ManyVisible many;
-    cull::VerdictBits bits;
     for (const CullMode mode : {CullMode::exact, CullMode::conservative}) {
-        std::vector<cull::ItemId> ids;
-        std::vector<Verdict> verdicts;
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Verdict verdict = cull::classify(view.frustum, boxes[i], mode);
-            if (verdict == Verdict::outside) continue;
-            ids.push_back(static_cast<cull::ItemId>(i));
-            verdicts.push_back(verdict);
-        }
-        const auto is_right = [&] {
-            return std::ranges::equal(visible.ids(), ids) && std::ranges::equal(visible.verdicts(), verdicts);
-        };
+        const Answer expected = expected_of(boxes, view, mode);
         cull::find_visible(*tree, view, visible, {mode});
-        REQUIRE(is_right());
-        cull::find_visible(boxes, {}, view, visible, {mode});
-        REQUIRE(is_right());
+        REQUIRE(is_answer(visible, expected));
+        exact_tests += visible.statistics().exact_tests;
         cull::find_visible(*tree, views, many, mode);
-        std::vector<cull::ItemId> from_many(many.ids().begin(), many.ids().end());
-        std::ranges::sort(from_many);
-        REQUIRE(from_many == ids);
-        const auto check_set = [&](const auto& set, const auto& shapes) {
-            cull::find_visible(set, shapes, view, bits, mode);
-            for (std::size_t i = 0; i < shapes.size(); ++i)
-                REQUIRE(bits.verdict(i) == cull::classify(view.frustum, shapes[i], mode));
-        };
-        check_set(box_set, boxes);
-        check_set(bound_set, bounds);
-        check_set(ball_set, balls);
+        std::vector<cull::ItemId> ids(many.ids().begin(), many.ids().end());
+        std::ranges::sort(ids);
+        REQUIRE(ids == expected.ids);
     }
+    return exact_tests;
+}
+
+std::uint64_t check_all(const std::vector<Obb>& boxes, const cull::View& view) {
+    check_lists(boxes, view);
+    return check_tree(boxes, view);
 }
 
 }  // namespace
 
 TEST_SUITE("cull/kernel edges") {
     TEST_CASE("clusters within rounding of a frustum's planes get classify's verdicts from every structure") {
-        oracle::NearMisses random(23);
-        for (int trial = 0; trial < 4000; ++trial) {
+        // The camera near the world's origin, or far from it.
+        oracle::NearMisses near(23), away(26, 1e8);
+        std::uint64_t exact_tests = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            oracle::NearMisses& random = trial % 4 == 3 ? away : near;
             Camera camera = random.camera();
             // Far off the surface lies far from the view's origin: then the planes' own rounding counts.
             const double reach = trial % 3 == 0 ? 1e9 : trial % 3 == 1 ? 1e4 : 1.0;
             camera.far_distance = camera.near_distance + reach * random.number(1.0, 30.0);
             if (camera.projection == Projection::orthographic) camera.height *= reach;
-            const double size = std::exp(random.number(reach > 1e6 ? -14.0 : -7.0, 3.0));
+            const double size = std::exp(random.number(reach > 1e6 || trial % 4 == 3 ? -14.0 : -7.0, 3.0));
             Shape shape{glm::dvec3(size), size * std::exp(random.number(-12.0, 1.0))};
             // Lines and sheets: the block's reach, and with it the share of the normals' rounding, is small.
             for (int j = 0; j < 3; ++j)
@@ -131,8 +158,10 @@ TEST_SUITE("cull/kernel edges") {
             const std::size_t counts[] = {1, 2, 16, 16, 40, 300};
             const std::size_t count = counts[random.index(trial % 10 ? 5 : 6)];
             const Frustum frustum = *frustum_of(camera);
-            check_all(cluster_at(random, frustum, shape, count), {frustum});
+            exact_tests += check_all(cluster_at(random, frustum, shape, count), {frustum});
         }
+        // Half of all boxes lie within what small integers can tell.
+        if (cull::kCountStatistics) CHECK(exact_tests > 10000);
     }
 
     TEST_CASE("planes whose normals are not unit vectors get classify's verdicts from every structure") {
@@ -152,7 +181,31 @@ TEST_SUITE("cull/kernel edges") {
                 plane.offset *= factor;
                 for (int k = 0; k < 3; ++k) plane.normal[k] = std::clamp(plane.normal[k], -2.0, 2.0);
             }
-            check_all(boxes, {scaled});
+            (void)check_all(boxes, {scaled});
+        }
+    }
+
+    TEST_CASE("boxes that only lists take, of axes that are far from unit vectors, get classify's verdicts") {
+        oracle::NearMisses random(25);
+        for (int trial = 0; trial < 1500; ++trial) {
+            const Frustum frustum = *frustum_of(random.camera());
+            const double size = std::exp(random.number(-5.0, 3.0));
+            auto boxes = cluster_at(random, frustum, {glm::dvec3(size), size}, 16);
+            for (Obb& box : boxes) {
+                const Plane& plane = frustum.planes[random.index(6)];
+                const glm::dvec3 n = plane.normal;
+                // Needles for the most part, one end of which is brought to a plane again.
+                const int k = static_cast<int>(random.index(3));
+                box.axes[k] *= float(random.number(0.3, 1.9)) / std::max(1.0f, glm::length(box.axes[k]));
+                if (random.index(3)) box.half_extents[(k + 1) % 3] = box.half_extents[(k + 2) % 3] = 0.0f;
+                double reach = 0.0;
+                for (int j = 0; j < 3; ++j)
+                    reach += double{box.half_extents[j]} * std::fabs(glm::dot(n, glm::dvec3(box.axes[j])));
+                const double value = glm::dot(n, box.center - frustum.origin) + plane.offset;
+                const double share = random.number(-1.0, 1.0);
+                box.center += ((random.index(2) ? reach : -reach) + share * share * share * 0.01 * reach - value) * n;
+            }
+            check_lists(boxes, {frustum});
         }
     }
 }

@@ -197,7 +197,7 @@ class Known:
 def report(mutants, known):
     """The table, and whether nothing survives."""
     columns = ("caught", "survived", "equivalent", "invalid", "untried")
-    rows, survivors = {}, []
+    rows, survivors, stale = {}, [], []
     for mutant in mutants:
         row = rows.setdefault(mutant.module, dict.fromkeys(columns, 0))
         result = known.get(mutant)
@@ -208,6 +208,8 @@ def report(mutants, known):
             status = "equivalent"
         if status == "survived":
             survivors.append(mutant)
+        if status == "untried" and mutant.name in known.all:
+            stale.append(mutant.name)
         row[status] += 1
     rows["all"] = {c: sum(r[c] for r in rows.values()) for c in columns}
     print("| module | mutants | caught | survived | equivalent | score |\n|---|---|---|---|---|---|")
@@ -217,9 +219,11 @@ def report(mutants, known):
         print(f"| {name} | {judged + row['equivalent']} | {row['caught']} | {row['survived']} | {row['equivalent']} | {score} |")
     total = rows["all"]
     print(f"Not judged: {total['invalid']} do not build, {total['untried']} are not tried yet.")
+    if stale:
+        print(f"Of these survived before their tests or files changed: {', '.join(stale)}")
     for mutant in survivors:
         print(f"survived: {mutant.name} ({mutant.file}): {mutant.why}")
-    return not survivors
+    return not survivors and not stale
 
 
 def main():
