@@ -67,7 +67,7 @@ double nanoseconds(const std::vector<Frustum>& views, const std::function<cull::
 Result<MeshBounds> bounds_of(const std::string& file, const BoundsRun& run) {
     MeshBounds result;
     result.file = file;
-    const auto mesh = load_mesh(file);
+    const auto mesh = load_mesh(file, run.read);
     if (!mesh) return tl::unexpected(mesh.error());
     result.triangles = mesh->triangle_count();
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 struct BoundsRun {
@@ -15,6 +17,7 @@ struct BoundsRun {
     bool only_best = false;
     double region = 20.0;        // radius of the ball that queries hit, over that of the mesh's sphere
     double triangle_cost = 1.0;  // nanoseconds for a triangle that is passed on
+    ReadOptions read = {};
 };
 
 // The cost of a query is C_v + p·C_p: C_v, the time of one test of the bound, is measured here; p is the chance that a

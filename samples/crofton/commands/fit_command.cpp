@@ -105,7 +105,7 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
 
 int run(const Request& request) {
     if (request.planar) {
-        const auto status = run_fit_planar({request.files, request.json_path, request.svg_path});
+        const auto status = run_fit_planar({request.files, request.json_path, request.svg_path, request.read});
         return status ? *status : report_error("", status.error());
     }
     if (!request.views.empty()) {
@@ -117,8 +117,9 @@ int run(const Request& request) {
     if (!request.bounds.empty()) {
         if (!request.svg_path.empty())
             return report_error("", Error{ErrorCode::invalid_argument, kNoItem, "fit: --bounds draws no --svg"});
-        const auto status = run_fit_bounds({request.files, request.criterion, request.json_path, *criterion,
-                                            request.bounds == "best", request.region, request.triangle_cost});
+        const auto status =
+            run_fit_bounds({request.files, request.criterion, request.json_path, *criterion, request.bounds == "best",
+                            request.region, request.triangle_cost, request.read});
         return status ? *status : report_error("", status.error());
     }
     std::vector<FittedMesh> meshes;

@@ -222,7 +222,7 @@ Result<int> run_fit_planar(const PlanarFitRun& run) {
         if (!is_polygon_file(path))
             return fail(ErrorCode::unsupported, kNoItem,
                         path + ": --planar takes polygons: .poly, .json, .geojson, .wad");
-        const auto file = read_polygons(path, "");
+        const auto file = read_polygons(path, "", run.read.limits);
         if (!file) return tl::unexpected(file.error());
         for (const std::string& warning : file->warnings)
             std::fprintf(stderr, "crofton: warning: %s\n", warning.c_str());

@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 struct PlanarFitRun {
     std::vector<std::string> files;  // as read_polygons takes them
     std::string json_path, svg_path;
+    ReadOptions read = {};
     std::size_t drawn = 12;  // polygons in the picture, the largest hulls first
 };
 

@@ -187,8 +187,9 @@ void add_lines_command(CommandLine& line) {
     add_read_options(command, options->read);
     command.action([options, blocks] {
         if (options->factors) {
-            const auto status = run_factors({options->scenes, options->map, options->json,
-                                             blocks.given() ? options->blocks : 5000, options->seed, options->patches});
+            const auto status =
+                run_factors({options->scenes, options->map, options->json, blocks.given() ? options->blocks : 5000,
+                             options->seed, options->patches, options->read});
             return status ? *status : report_error("", status.error());
         }
         if (options->scenes.size() > 1)

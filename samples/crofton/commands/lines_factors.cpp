@@ -56,10 +56,15 @@ Result<SceneComplexity> look_at(const std::string& scene, const FactorsRun& run)
     assets::LoadOptions load;
     if (scene.ends_with(".wad")) load.map = run.map;
     load.seed = run.seed;
+    load.limits = run.read.limits;
+    load.strict = run.read.strict;
     auto source = assets::load_scene(scene, load);
     if (!source) return tl::unexpected(source.error());
     source->scene.update();
-    const TriangleMesh mesh = assets::flat_scene(*source).mesh;
+    print_warnings(source->warnings);
+    const auto flat = assets::flat_scene(*source, run.read.limits);
+    if (!flat) return tl::unexpected(flat.error());
+    const TriangleMesh& mesh = flat->mesh;
     const auto tracer = radiosity::LineTracer::build(mesh);
     if (!tracer) return tl::unexpected(tracer.error());
     const Vector<std::uint32_t> numbers = patch_numbers(mesh, tracer->bounds(), run.patches);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 struct FactorsRun {
@@ -13,6 +15,7 @@ struct FactorsRun {
     std::string map, json;
     std::uint64_t blocks = 2000, seed = 1;  // blocks of 1024 lines
     std::uint64_t patches = 1000;           // about as many a scene
+    ReadOptions read = {};
 };
 
 // Pairs: F_12 beside its known value; kCheckFailed where one is off by more than kMaxZ errors. Scenes: one line each:
