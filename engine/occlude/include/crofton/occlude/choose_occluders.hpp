@@ -74,7 +74,7 @@ class OccluderCandidates {
 
 struct ChooseBudget {
     std::uint32_t max_occluders = 256;
-    std::uint32_t max_edges = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t max_edges = (std::numeric_limits<std::uint32_t>::max)();
     // Of what it covers of the sphere of directions, 4π (parallel views: of the picture's area). What covers less is
     // left out: 2e-5 are about ten pixels of 640 × 360 at 60°.
     float least_cover = 2e-5f;
