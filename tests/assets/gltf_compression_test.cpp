@@ -58,7 +58,7 @@ Asset plain() {
 
 TEST_SUITE("assets/gltf_compression") {
 #if defined(CROFTON_MESHOPT)
-    TEST_CASE("views compressed by meshoptimizer are what was compressed; a damaged one is named") {
+    TEST_CASE("views compressed by meshoptimizer are what was compressed, a damaged one is named") {
         const auto positions = test_files::strip_positions(kSquares);
         const auto indices = test_files::strip_indices<std::uint32_t>(kSquares);
         const std::size_t vertices = positions.size() / 3;
@@ -108,7 +108,7 @@ TEST_SUITE("assets/gltf_compression") {
     }
 #endif
 #if defined(CROFTON_DRACO)
-    TEST_CASE("primitives compressed by Draco are what was compressed; a damaged one is named") {
+    TEST_CASE("primitives compressed by Draco are what was compressed, a damaged one is named") {
         const auto positions = test_files::strip_positions(kSquares);
         const auto indices = test_files::strip_indices<std::uint32_t>(kSquares);
         draco::TriangleSoupMeshBuilder builder;

@@ -224,7 +224,7 @@ TEST_SUITE("assets/hostile_files") {
         CHECK(says(source->warnings[0], "image 0: 16384 x 16384 is more than 67108864 pixels"));
     }
 
-    TEST_CASE("one bad node, mesh or image is named and left out; with strict the file is refused") {
+    TEST_CASE("one bad node, mesh or image is named and left out, with strict the file is refused") {
         const auto spoil = [](const char* what, const auto& change) {
             CAPTURE(what);
             Asset asset = two_triangles();

@@ -158,7 +158,7 @@ TEST_SUITE("cli/faults") {
         CHECK(names_in(folder) == std::vector<std::string>{"room.crofton"});
     }
 
-    TEST_CASE("frames streams its lines; Ctrl-C keeps what there is, in every output, and the exit status is 130") {
+    TEST_CASE("frames streams its lines, Ctrl-C keeps what there is, in every output, and the exit status is 130") {
         const std::string folder = fresh_folder("interrupted");
         const std::string out = folder + "/out.csv", json = folder + "/out.json";
         const Child child({"frames", "room", "--no-draw", "--frames", "1000000", "--csv", "-", "--json", json}, out);
@@ -220,7 +220,7 @@ TEST_SUITE("cli/faults") {
         CHECK(document["polygons"].size() < 4000);
     }
 
-    TEST_CASE("pictures of an earlier run are not left among new ones; other files are") {
+    TEST_CASE("pictures of an earlier run are not left among new ones, other files are") {
         const std::string folder = fresh_folder("pictures");
         for (const char* name : {"frame_0000.png", "frame_0007.png", "frame_12345.png", "frame_0003.png.partial",
                                  "frame_1.png", "frame_0001.txt", "notes.png"})

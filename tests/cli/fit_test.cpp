@@ -243,7 +243,7 @@ TEST_SUITE("cli/fit") {
         }
     }
 
-    TEST_CASE("--planar: bad polygons are named, the others done; a square's bounds are the ones one knows") {
+    TEST_CASE("--planar: bad polygons are named, the others done, a square's bounds are the ones one knows") {
         CHECK(run_cli("fit --planar" + file("cube.obj", turned_box())).status == 2);
         CHECK(run_cli("fit --planar '" + scratch().file("none.poly") + "'").status == 2);
         CHECK(run_cli("fit --planar" + file("torn.poly", "P a 1\n3 0 0 1\n")).status == 2);
@@ -267,7 +267,7 @@ TEST_SUITE("cli/fit") {
     }
 
     TEST_CASE(
-        "--bounds: six kinds a mesh, none below the hull, one is the best; a far region asks for the cheap test") {
+        "--bounds: six kinds a mesh, none below the hull, one is the best, a far region asks for the cheap test") {
         const std::string box = file("bounds.obj", turned_box());
         CHECK(run_cli("fit --bounds some" + box).status == 2);
         CHECK(run_cli("fit --bounds all --region 0.5" + box).status == 2);

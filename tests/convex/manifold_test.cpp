@@ -28,7 +28,7 @@ std::set<std::pair<Feature, Feature>> ids(const Manifold& m) {
 }  // namespace
 
 TEST_SUITE("convex/manifold") {
-    TEST_CASE("bodies that are NaN or apart have no points; those within the margin have gaps") {
+    TEST_CASE("bodies that are NaN or apart have no points, those within the margin have gaps") {
         const Body box = Body::box({1, 1, 1}).value();
         const RigidTransform low = at({}), high = at({0, 2.01, 0}), bad = at({NAN, 0, 0});
         CHECK(contact_manifold({box, low}, {box, bad}).count == 0);
@@ -105,7 +105,7 @@ TEST_SUITE("convex/manifold") {
         }
     }
 
-    TEST_CASE("the deepest point is as deep as the penetration; bodies that meet have a point, others none") {
+    TEST_CASE("the deepest point is as deep as the penetration, bodies that meet have a point, others none") {
         RandomBodies random(1);
         int points = 0;
         for (int i = 0; i < 2000; ++i) {

@@ -134,7 +134,7 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(!set.wants(at(4.0, 2.0, -10.0)));  // out of the cone
     }
 
-    TEST_CASE("no caster is refused that a point in view has on its way to the light; few others are kept") {
+    TEST_CASE("no caster is refused that a point in view has on its way to the light, few others are kept") {
         std::size_t casting = 0, kept = 0, volume = 0;
         for (std::uint64_t trial = 0; trial < 60; ++trial) {
             oracle::NearMisses random(trial);

@@ -223,7 +223,7 @@ TEST_SUITE("fit/planar") {
     }
 
     TEST_CASE(
-        "triangles around a square have twice its area; around a regular hexagon 3/2 of its area, and its perimeter") {
+        "triangles around a square have twice its area, around a regular hexagon 3/2 of its area, and its perimeter") {
         const Points square = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
         CHECK(measure_of(*fit::minimal_triangle(view(square), PlanarCriterion::area), PlanarCriterion::area) ==
               doctest::Approx(2.0).epsilon(1e-12));

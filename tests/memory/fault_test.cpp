@@ -201,7 +201,7 @@ TEST_SUITE("memory/fault") {
             sweep("fit_many", [&] { return outcome_of(fit::fit_many({span, indices, ends}, {}, *executor, fitted)); });
     }
 
-    TEST_CASE("trees: built on one thread and on several, stored and taken back; of triangles") {
+    TEST_CASE("trees: built on one thread and on several, stored and taken back, of triangles") {
         const testing::FailingMemory memory;
         const auto many = boxes(3000);
         ThreadPool pool(3);
@@ -215,7 +215,7 @@ TEST_SUITE("memory/fault") {
               [&] { return outcome_of(mesh::MeshTree::build(mesh, {.refittable = true})); });
     }
 
-    TEST_CASE("triangulations; a Triangulator answers as before after one that failed") {
+    TEST_CASE("triangulations, a Triangulator answers as before after one that failed") {
         const testing::FailingMemory memory;
         const Polygon polygon = star();
         for (const auto method :

@@ -35,7 +35,7 @@ TEST_SUITE("study/ball_given_ancestors") {
         CHECK_FALSE(study::ball_given_ancestors(inside, ball, {.tolerance = 0.0}).has_value());
     }
 
-    TEST_CASE("the paper's example in space: a segment in its ball; the best second ball by the closed form") {
+    TEST_CASE("the paper's example in space: a segment in its ball, the best second ball by the closed form") {
         const std::vector<glm::dvec3> segment = {{-1, 0, 0}, {1, 0, 0}};
         const std::vector<study::ConvexBody> first = {study::ConvexBody::ball(glm::dvec3(0.0), 1.0)};
         const auto best = study::ball_given_ancestors(segment, first, {.largest = 4.0, .tolerance = 3e-3});

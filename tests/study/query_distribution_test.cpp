@@ -59,7 +59,7 @@ TEST_SUITE("study/query_distribution") {
         }
     }
 
-    TEST_CASE("a narrow band sees a box's sides and not its top; one direction sees breadth and shadow") {
+    TEST_CASE("a narrow band sees a box's sides and not its top, one direction sees breadth and shadow") {
         Obb box;
         box.half_extents = glm::vec3(1.0f, 2.0f, 3.0f);
         const auto horizon = QueryDistribution::band({0, 1, 0}, 1e-3);
