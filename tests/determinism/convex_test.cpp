@@ -36,9 +36,10 @@ ConvexScene convex_scene(std::uint64_t seed) {
                                : i % 8 == 3 ? convex::Body::capsule(size, 0.25f).value()
                                : i % 8 == 5 ? convex::Body::cylinder(size, 0.5f).value()
                                             : convex::Body::cone(size, 0.5f).value());
-        scene.poses.push_back(
-            {sampling::rotation(random.point<3>()),
-             glm::dvec3(1e5, 0, 0) + random.uniform(0.5, 1.2) * sampling::direction(random.point<2>())});
+        // One draw a statement: compilers order the operands of an expression as they like.
+        const glm::dmat3 turn = sampling::rotation(random.point<3>());
+        const double way = random.uniform(0.5, 1.2);
+        scene.poses.push_back({turn, glm::dvec3(1e5, 0, 0) + way * sampling::direction(random.point<2>())});
     }
     return scene;
 }
@@ -71,7 +72,7 @@ std::uint64_t convex_pairs() {
 
 TEST_SUITE("determinism/convex") {
     TEST_CASE("hulls, distances, depths, manifolds and casts are the same bits everywhere") {
-        check_everywhere(0x72bcf7f5932813c5, [](Executor&) { return convex_pairs(); });
+        check_everywhere(0xfddf38830c9a4f83, [](Executor&) { return convex_pairs(); });
     }
 
     TEST_CASE("what was published is what exact integers find") {
