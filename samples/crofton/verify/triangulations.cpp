@@ -82,7 +82,7 @@ void passed_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                 for (const std::uint32_t v : t) corners.emplace_back(polygon.points[v], 0.0);
                 triangles.push_back(faceted(corners));
             }
-            const Mean mean = mean_over_rotations(seed++, effort(options, 128), [&](const glm::dmat3& turn) {
+            const Mean mean = mean_over_rotations(seed++, effort(options, 1024), [&](const glm::dmat3& turn) {
                 double sum = 0.0;
                 for (const Faceted& t : triangles) sum += meeting_volume(frustum, t, turn);
                 return sum;

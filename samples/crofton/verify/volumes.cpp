@@ -176,7 +176,7 @@ void improper(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         const Faceted moving = faceted(query.corners);
         rows.push_back(row(std::string("improper outside tests of ") + query.name, "theory.md section 2, m_o",
                            measure::improper_outside(query.volumes, b, o),
-                           mean_over_rotations(seed++, effort(options, 256), [&](const glm::dmat3& turn) {
+                           mean_over_rotations(seed++, effort(options, 2048), [&](const glm::dmat3& turn) {
                                return meeting_volume(moving, faceted_bound, turn) -
                                       meeting_volume(moving, faceted_object, turn);
                            })));
