@@ -7,7 +7,6 @@
 namespace crofton::mesh {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 static_assert(kRayNodeWidth == BoxHierarchy::kWidth && kMeshLeaf == BoxHierarchy::kLeaf);
 
 FloatBox bounds_of(const MeshLeaf& leaf) {
