@@ -27,7 +27,7 @@ namespace {
 constexpr int kSquares = 40;
 
 // Corners of all triangles, each turned so that its least corner is first, in order.
-std::vector<std::array<float, 9>> triangles_of(const Asset& asset) {
+[[maybe_unused]] std::vector<std::array<float, 9>> triangles_of(const Asset& asset) {
     const TemporaryFile file("compressed.glb", asset.glb());
     const auto source = assets::load_scene(file.path(), {.strict = true});
     REQUIRE_MESSAGE(source.has_value(), test_files::message(source));
@@ -47,7 +47,7 @@ std::vector<std::array<float, 9>> triangles_of(const Asset& asset) {
     return result;
 }
 
-Asset plain() {
+[[maybe_unused]] Asset plain() {
     Asset asset;
     const auto positions = asset.accessor(test_files::strip_positions(kSquares), "VEC3");
     asset.mesh(positions, asset.accessor(test_files::strip_indices<std::uint16_t>(kSquares), "SCALAR"));

@@ -30,14 +30,15 @@ Json* extension_of(Json& object, std::string_view name) {
     return &extensions[std::string(name)];
 }
 
-void remove_extension(Json& object, std::string_view name) {
+// The decoders' helpers; without a decoder they wait.
+[[maybe_unused]] void remove_extension(Json& object, std::string_view name) {
     Json& extensions = object["extensions"];
     extensions.erase(std::string(name));
     if (extensions.empty()) object.erase("extensions");
 }
 
 // {"buffer", "byteOffset", "byteLength"} of a view or of a compressed one.
-Result<std::string_view> bytes_at(const GltfDocument& document, const Json& place) {
+[[maybe_unused]] Result<std::string_view> bytes_at(const GltfDocument& document, const Json& place) {
     const auto buffer = whole_number(place, "buffer", kNoNumber), begin = whole_number(place, "byteOffset", 0),
                length = whole_number(place, "byteLength", 0);
     if (!buffer || !begin || !length || *buffer >= document.buffers.size()) return bad("its buffer does not exist");
@@ -46,7 +47,7 @@ Result<std::string_view> bytes_at(const GltfDocument& document, const Json& plac
     return bytes.substr(*begin, *length);
 }
 
-std::string text_of(const Json& object, const char* key) {
+[[maybe_unused]] std::string text_of(const Json& object, const char* key) {
     const Json* value = member(object, key);
     return value && value->is_string() ? value->get<std::string>() : "";
 }
