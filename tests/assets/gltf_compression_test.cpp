@@ -99,7 +99,8 @@ TEST_SUITE("assets/gltf_compression") {
                                          {"filter", "BLUR"},
                                          {"buffer", 7},
                                          {"byteLength", 5}}) {
-            CAPTURE(std::string(key));
+            const std::string named = key;  // clang 14 captures no binding
+            CAPTURE(named);
             Asset damaged = asset;
             damaged.root["bufferViews"][1]["extensions"]["EXT_meshopt_compression"][key] = value;
             const TemporaryFile bad("damaged.glb", damaged.glb());
@@ -137,7 +138,8 @@ TEST_SUITE("assets/gltf_compression") {
                                          {"attributes", {{"POSITION", 77}}},
                                          {"attributes", {{"NORMAL", 0}}},
                                          {"attributes", 5}}) {
-            CAPTURE(std::string(key));
+            const std::string named = key;  // clang 14 captures no binding
+            CAPTURE(named);
             Asset damaged = asset;
             damaged.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"][key] = value;
             const TemporaryFile bad("damaged.glb", damaged.glb());
