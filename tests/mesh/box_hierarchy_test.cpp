@@ -72,6 +72,9 @@ TEST_SUITE("mesh/box_hierarchy") {
     TEST_CASE("boxes in one place, and a geometric series of places, make no deep tree") {
         const std::vector<FloatBox> same(100000, around(glm::vec3(1.0f)));
         CHECK(check(build_box_hierarchy(same, 1), same, 1) <= 20);
+        std::vector<FloatBox> closest;  // so close that the width has no finite reciprocal
+        for (int i = 0; i < 100; ++i) closest.push_back(around(glm::vec3(static_cast<float>(i % 3) * 1.5e-45f)));
+        CHECK(check(build_box_hierarchy(closest, 1), closest, 1) <= 10);
         std::vector<FloatBox> series;
         for (float x = 1e-37f; x < 1e37f; x *= 1.001f) series.push_back(around(glm::vec3(x, 0.0f, -x)));
         CHECK(series.size() > 100000);

@@ -141,8 +141,9 @@ class Builder {
             const float scale = static_cast<float>(kBins) / width;
             for (std::uint32_t i = range.begin; i < range.end; ++i) {
                 const std::uint32_t t = order_[i];
-                const std::size_t bin =
-                    std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0f, (middle(t, axis) - low) * scale)));
+                // The scale of a width near the smallest float is infinite: bounded before it becomes an integer.
+                const float place = std::max(0.0f, (middle(t, axis) - low) * scale);
+                const auto bin = static_cast<std::size_t>(std::min(static_cast<float>(kBins - 1), place));
                 boxes[bin].include(boxes_[t]);
                 ++counts[bin];
             }
