@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cull_inputs.hpp"
 
+#include <crofton/boxtree/structure.hpp>
 #include <map>
 
 namespace crofton::bench {
@@ -30,7 +31,7 @@ const std::vector<Obb>& boxes_in_tree_order(std::int64_t count) {
     static std::map<std::int64_t, std::vector<Obb>> made;
     auto& boxes = made[count];
     if (boxes.empty())
-        for (const boxtree::ItemId item : tree_of(count).slot_items())
+        for (const boxtree::ItemId item : tree_of(count).structure().slot_items())
             if (item != boxtree::kNone) boxes.push_back(boxes_of(count)[item]);
     return boxes;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
@@ -72,7 +73,7 @@ struct Moving {
             const auto any = static_cast<boxtree::ItemId>(random() % boxes.size());
             items.push_back(tenth == Tenth::scattered           ? any
                             : tenth == Tenth::numbered_together ? static_cast<boxtree::ItemId>(i)
-                                                                : tree.slot_items()[i]);
+                                                                : tree.structure().slot_items()[i]);
         }
         for (const boxtree::ItemId item : items) moved.push_back(boxes[item]);
     }

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/fit/fit.hpp>
 #include <cstdio>
@@ -83,12 +84,13 @@ double cost_of() {
 using Bounds = std::vector<std::array<Obb, boxtree::kWidth>>;
 
 Bounds aabbs(const boxtree::BoxTree& tree, unsigned steps) {
-    Bounds bounds(tree.nodes().size());
+    Bounds bounds(tree.structure().nodes().size());
     for (boxtree::NodeId n = 0; n < bounds.size(); ++n) {
         Aabb whole;
-        for (unsigned lane = 0; lane < tree.nodes()[n].count; ++lane) whole.include(tree.child_bounds(n, lane));
-        for (unsigned lane = 0; lane < tree.nodes()[n].count; ++lane) {
-            Aabb box = tree.child_bounds(n, lane);
+        for (unsigned lane = 0; lane < tree.structure().nodes()[n].count; ++lane)
+            whole.include(tree.structure().child_bounds(n, lane));
+        for (unsigned lane = 0; lane < tree.structure().nodes()[n].count; ++lane) {
+            Aabb box = tree.structure().child_bounds(n, lane);
             // Corners on a grid of `steps` cells across the node.
             for (int j = 0; j < 3 && steps > 0; ++j) {
                 const double cell = (whole.max[j] - whole.min[j]) / steps;
@@ -105,17 +107,17 @@ Bounds aabbs(const boxtree::BoxTree& tree, unsigned steps) {
 // Around a leaf's boxes, and around the children's boxes above.
 Bounds obbs(const boxtree::BoxTree& tree) {
     const measure::Criterion criterion = measure::minimal_perimeter();
-    Bounds bounds(tree.nodes().size());
+    Bounds bounds(tree.structure().nodes().size());
     for (auto n = static_cast<boxtree::NodeId>(bounds.size()); n-- > 0;) {
-        const boxtree::Node& node = tree.nodes()[n];
+        const boxtree::Node& node = tree.structure().nodes()[n];
         for (unsigned lane = 0; lane < node.count; ++lane) {
             std::vector<Obb> below;
             const std::uint32_t child = node.child[lane], id = child & ~boxtree::kLeafBit;
             if (child & boxtree::kLeafBit)
-                for (unsigned i = 0; i < tree.leaves()[id].count; ++i)
-                    below.push_back(tree.boxes()[tree.slot_items()[id * boxtree::kWidth + i]]);
+                for (unsigned i = 0; i < tree.structure().leaves()[id].count; ++i)
+                    below.push_back(tree.boxes()[tree.structure().slot_items()[id * boxtree::kWidth + i]]);
             else
-                below.assign(bounds[id].begin(), bounds[id].begin() + tree.nodes()[id].count);
+                below.assign(bounds[id].begin(), bounds[id].begin() + tree.structure().nodes()[id].count);
             bounds[n][lane] = *fit::merge(below, criterion);
         }
     }
@@ -134,7 +136,7 @@ Work walk(const boxtree::BoxTree& tree, const Bounds& bounds, const std::vector<
         while (!stack.empty()) {
             const boxtree::NodeId n = stack.back();
             stack.pop_back();
-            const boxtree::Node& node = tree.nodes()[n];
+            const boxtree::Node& node = tree.structure().nodes()[n];
             work.nodes += node.count;
             for (unsigned lane = 0; lane < node.count; ++lane) {
                 if (cull::classify(view.frustum, bounds[n][lane], cull::CullMode::conservative) !=
@@ -142,7 +144,7 @@ Work walk(const boxtree::BoxTree& tree, const Bounds& bounds, const std::vector<
                     continue;
                 const std::uint32_t child = node.child[lane];
                 if (child & boxtree::kLeafBit)
-                    work.boxes += tree.leaves()[child & ~boxtree::kLeafBit].count;
+                    work.boxes += tree.structure().leaves()[child & ~boxtree::kLeafBit].count;
                 else
                     stack.push_back(child);
             }

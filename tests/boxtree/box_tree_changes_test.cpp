@@ -3,6 +3,8 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/rebuilder.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <limits>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
@@ -40,7 +42,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         for (std::size_t i = 0; i < crowd.boxes.size(); ++i) CHECK(*tree.insert(crowd.boxes[i], crowd.layers[i]) == i);
         CHECK(holds_all(tree));
         REQUIRE(tree.validate().has_value());
-        CHECK(tree.height() <= 5);  // leaves and nodes half full at least: 4000 < 8^5
+        CHECK(tree.structure().height() <= 5);  // leaves and nodes half full at least: 4000 < 8^5
         for (ItemId i = 0; i < 4000; ++i) REQUIRE(tree.remove((i * 1237) % 4000).has_value());
         tree.refit();
         CHECK(tree.item_count() == 0);
@@ -52,7 +54,7 @@ TEST_SUITE("boxtree/box_tree changes") {
     TEST_CASE("ten thousand identical boxes can be inserted one by one") {
         BoxTree tree = *BoxTree::build(std::span<const Obb>{});
         for (int i = 0; i < 10000; ++i) REQUIRE(tree.insert(Obb{}).has_value());
-        CHECK(tree.height() <= 6);
+        CHECK(tree.structure().height() <= 6);
         CHECK(tree.validate().has_value());
     }
 
@@ -71,7 +73,7 @@ TEST_SUITE("boxtree/box_tree changes") {
                             REQUIRE(tree.insert(box, 1u << random.index(8)).has_value());
                             break;
                         case 1: {
-                            const bool present = tree.slot_of(item) != boxtree::kNone;
+                            const bool present = tree.structure().slot_of(item) != boxtree::kNone;
                             CHECK(tree.remove(item).has_value() == present);
                             break;
                         }
@@ -111,8 +113,8 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(steps < 400);
         CHECK(tree.validate().has_value());
         const BoxTree fresh = *BoxTree::build(crowd.boxes);
-        CHECK(tree.leaves().size() == fresh.leaves().size());
-        CHECK(std::ranges::equal(tree.leaf_counts(), fresh.leaf_counts()));
+        CHECK(tree.structure().leaves().size() == fresh.structure().leaves().size());
+        CHECK(std::ranges::equal(tree.structure().leaf_counts(), fresh.structure().leaf_counts()));
     }
 
     TEST_CASE("ids that are used again elsewhere during a background rebuild do not widen its bounds") {
@@ -136,9 +138,9 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(holds_all(tree));
         const auto size_of_bounds = [](const BoxTree& of) {
             double sum = 0.0;
-            for (boxtree::NodeId node = 0; node < of.nodes().size(); ++node)
-                for (unsigned lane = 0; lane < of.nodes()[node].count; ++lane) {
-                    const glm::dvec3 half = of.child_bounds(node, lane).half_extents();
+            for (boxtree::NodeId node = 0; node < of.structure().nodes().size(); ++node)
+                for (unsigned lane = 0; lane < of.structure().nodes()[node].count; ++lane) {
+                    const glm::dvec3 half = of.structure().child_bounds(node, lane).half_extents();
                     sum += half.x + half.y + half.z;
                 }
             return sum;
@@ -166,7 +168,7 @@ TEST_SUITE("boxtree/box_tree changes") {
             REQUIRE(tree.move(items, boxes).has_value());
             tree.refit();
             done = tree.rebuild_step(kBudget);
-            const boxtree::RebuildStep& step = tree.last_rebuild_step();
+            const boxtree::RebuildStep& step = tree.rebuilder().last_step();
             REQUIRE(step.items_added <= kBudget);
             REQUIRE(step.slots_cleared <= 16 * kBudget);
             REQUIRE(32 * step.leaves_filled <= kBudget + 32);
@@ -187,9 +189,9 @@ TEST_SUITE("boxtree/box_tree changes") {
         }
         CHECK(all.items_added == 50000);
         CHECK(all.slots_cleared == 50000);
-        CHECK(all.leaves_filled == tree.leaves().size());
-        CHECK(all.nodes_linked == tree.nodes().size());
-        CHECK(all.nodes_bounded == tree.nodes().size());
+        CHECK(all.leaves_filled == tree.structure().leaves().size());
+        CHECK(all.nodes_linked == tree.structure().nodes().size());
+        CHECK(all.nodes_bounded == tree.structure().nodes().size());
         CHECK(all.items_synced > 20000);
         CHECK(all.divisions > 50);
         CHECK(tree.validate().has_value());
@@ -206,11 +208,11 @@ TEST_SUITE("boxtree/box_tree changes") {
         }
         const auto mixed_leaves = [](const BoxTree& tree) {
             int mixed = 0;
-            for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+            for (std::size_t l = 0; l < tree.structure().leaves().size(); ++l) {
                 std::uint32_t moving = 0;
-                for (unsigned i = 0; i < tree.leaves()[l].count; ++i)
-                    moving += tree.slot_items()[l * boxtree::kWidth + i] % 8 == 3;
-                mixed += moving != 0 && moving != tree.leaves()[l].count;
+                for (unsigned i = 0; i < tree.structure().leaves()[l].count; ++i)
+                    moving += tree.structure().slot_items()[l * boxtree::kWidth + i] % 8 == 3;
+                mixed += moving != 0 && moving != tree.structure().leaves()[l].count;
             }
             return mixed;
         };

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
@@ -36,7 +37,7 @@ TEST_SUITE("boxtree/box_tree") {
 
     TEST_CASE(
         "no boxes, one box, equal boxes, points and a geometric series of sizes all make a tree that holds them") {
-        CHECK(BoxTree::build(std::span<const Obb>{})->nodes().size() == 1);
+        CHECK(BoxTree::build(std::span<const Obb>{})->structure().nodes().size() == 1);
         CHECK(holds_all(*BoxTree::build(oracle::random_crowd(1, 0.0, 1).boxes)));
         CHECK(holds_all(*BoxTree::build(std::vector<Obb>(5000))));
         std::vector<Obb> series(120);
@@ -58,10 +59,10 @@ TEST_SUITE("boxtree/box_tree") {
     TEST_CASE("all leaves but one are full, and the height is logarithmic") {
         const auto tree = BoxTree::build(oracle::random_crowd(16 * 16 * 16 + 5, 0.0, 3).boxes);
         REQUIRE(tree.has_value());
-        CHECK(tree->leaves().size() == 257);
-        CHECK(tree->height() == 3);
+        CHECK(tree->structure().leaves().size() == 257);
+        CHECK(tree->structure().height() == 3);
         std::size_t partial = 0;
-        for (const boxtree::Leaf& leaf : tree->leaves()) partial += leaf.count < boxtree::kWidth;
+        for (const boxtree::Leaf& leaf : tree->structure().leaves()) partial += leaf.count < boxtree::kWidth;
         CHECK(partial == 1);
     }
 
@@ -72,9 +73,10 @@ TEST_SUITE("boxtree/box_tree") {
                 const std::vector<Obb> boxes = oracle::random_crowd(count, 0.0, count).boxes;
                 const BoxTree tree = *BoxTree::build(boxes, {.criterion = criterion});
                 const std::vector<oracle::Part> parts = oracle::least_cuts(boxes, boxtree::kWidth, criterion);
-                REQUIRE(tree.leaves().size() == parts.size());
+                REQUIRE(tree.structure().leaves().size() == parts.size());
                 for (std::size_t l = 0; l < parts.size(); ++l) {
-                    const auto slots = tree.slot_items().subspan(l * boxtree::kWidth, tree.leaves()[l].count);
+                    const auto slots =
+                        tree.structure().slot_items().subspan(l * boxtree::kWidth, tree.structure().leaves()[l].count);
                     CHECK(std::ranges::is_permutation(slots, parts[l]));
                 }
             }
@@ -96,15 +98,15 @@ TEST_SUITE("boxtree/box_tree") {
         const BoxTree tree = *BoxTree::build(boxes);
         CHECK(tree.validate().has_value());
         double edges = 0.0;
-        for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
+        for (std::size_t l = 0; l < tree.structure().leaves().size(); ++l) {
             Aabb centers;
-            for (unsigned lane = 0; lane < tree.leaves()[l].count; ++lane)
-                centers.include(boxes[tree.slot_items()[l * boxtree::kWidth + lane]].center);
+            for (unsigned lane = 0; lane < tree.structure().leaves()[l].count; ++lane)
+                centers.include(boxes[tree.structure().slot_items()[l * boxtree::kWidth + lane]].center);
             const glm::dvec3 size = centers.max - centers.min;
             edges += size.x + size.y + size.z;
         }
         // Cubes for 16 of 40,000 items in a cube of side 1.
-        CHECK(edges / double(tree.leaves().size()) < 1.3 * 3.0 * std::cbrt(16.0 / 40000.0));
+        CHECK(edges / double(tree.structure().leaves().size()) < 1.3 * 3.0 * std::cbrt(16.0 / 40000.0));
     }
 
     TEST_CASE("a tree is the same, byte for byte, however many threads build it") {

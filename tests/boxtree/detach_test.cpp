@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
 #include <set>
@@ -20,7 +21,7 @@ TEST_SUITE("boxtree/detach") {
         CHECK(BoxTree::build(crowd.boxes, {.detached = unknown}).error().item == 100);
         BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers, {.detached = detached});
         CHECK(tree.item_count() == 98);
-        CHECK(tree.slot_of(7) == boxtree::kNone);
+        CHECK(tree.structure().slot_of(7) == boxtree::kNone);
         CHECK(tree.detach(7).error().item == 7);
         CHECK(tree.detach(100).error().item == 100);
         CHECK(tree.move(7, Obb{}).error().item == 7);
@@ -85,13 +86,13 @@ TEST_SUITE("boxtree/detach") {
         CHECK(tree.insert_detached(8u).value() == 100);
         CHECK(tree.item_count() == 99);
         CHECK(tree.is_detached(100));
-        CHECK(tree.slot_of(100) == boxtree::kNone);
-        CHECK((tree.detached_layers() & ~12u) == 0);
+        CHECK(tree.structure().slot_of(100) == boxtree::kNone);
+        CHECK((tree.structure().items().detached_layers() & ~12u) == 0);
         tree.refit();
         CHECK(tree.validate().has_value());
         REQUIRE(tree.attach(100, crowd.boxes[3]).has_value());
         CHECK(tree.validate().has_value());
-        CHECK(tree.slot_of(100) != boxtree::kNone);
+        CHECK(tree.structure().slot_of(100) != boxtree::kNone);
         CHECK(tree.layer_masks()[100] == 8u);
     }
 
@@ -106,7 +107,7 @@ TEST_SUITE("boxtree/detach") {
                 for (int change = 0; change < 20; ++change) {
                     const ItemId item = random.index(static_cast<unsigned>(tree.boxes().size()));
                     const Obb box = oracle::random_box(random, glm::dvec3(frame), 40.0);
-                    const bool rests = tree.slot_of(item) != boxtree::kNone;
+                    const bool rests = tree.structure().slot_of(item) != boxtree::kNone;
                     switch (random.index(7)) {
                         case 0:
                             REQUIRE(tree.insert(box, 1u << random.index(8)).has_value());

@@ -2,6 +2,7 @@
 // Views of trees that have lived.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <oracle/aged_tree.hpp>
@@ -79,9 +80,9 @@ void check_statistics(const AgedTree& aged, const cull::View& view, CullMode mod
     // Whoever tests a box has tested the bound of its leaf.
     CHECK(counted.nodes_tested * boxtree::kWidth >= counted.boxes_tested + counted.accepted_whole);
     std::size_t bounds = 0;
-    for (const boxtree::Node& node : aged.tree.nodes()) bounds += node.count;
+    for (const boxtree::Node& node : aged.tree.structure().nodes()) bounds += node.count;
     CHECK(counted.nodes_tested <= bounds);
-    CHECK(counted.nodes_tested >= aged.tree.nodes()[0].count);
+    CHECK(counted.nodes_tested >= aged.tree.structure().nodes()[0].count);
 }
 
 }  // namespace

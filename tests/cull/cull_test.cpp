@@ -3,6 +3,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/cull/cull.hpp>
 #include <limits>
 #include <oracle/near_misses.hpp>
@@ -204,7 +205,7 @@ TEST_SUITE("cull/cull") {
             }
             hwy::SetSupportedTargetsForTest(0);
             std::vector<Obb> along_the_tree;
-            for (const boxtree::ItemId item : tree.slot_items())
+            for (const boxtree::ItemId item : tree.structure().slot_items())
                 if (item != boxtree::kNone) along_the_tree.push_back(boxes[item]);
             boxes = along_the_tree;
         }

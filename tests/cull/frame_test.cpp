@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <counting_memory.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
@@ -85,7 +86,7 @@ TEST_SUITE("cull/frame") {
         ThreadPool three(3);
         const boxtree::BoxTree tree = *boxtree::BoxTree::build(crowd.boxes, crowd.layers);
         const boxtree::BoxTree tree_of_three = *boxtree::BoxTree::build(crowd.boxes, crowd.layers, {}, three);
-        CHECK(std::ranges::equal(tree.slot_items(), tree_of_three.slot_items()));
+        CHECK(std::ranges::equal(tree.structure().slot_items(), tree_of_three.structure().slot_items()));
         cull::BoxSet set;
         set.assign(crowd.boxes, three);
         cull::VisibleSet one, many;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trees and what is stored of them, in the same bits everywhere.
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <oracle/tree_contents.hpp>
@@ -29,7 +30,7 @@ boxtree::BoxTree lived_in_tree(Executor& executor) {
         for (int i = 0; i < 300; ++i) {
             const boxtree::ItemId item = index(random, 5000);
             const Obb box = random_box(random, glm::dvec3(0.0), 45.0, 4.0);
-            if (tree.slot_of(item) == boxtree::kNone) continue;
+            if (tree.structure().slot_of(item) == boxtree::kNone) continue;
             if (i % 10 == 0)
                 (void)tree.remove(item);
             else

@@ -2,6 +2,7 @@
 // Oracle: walks a box tree from its leaves up and compares every bound with every box below it.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -11,32 +12,35 @@ namespace crofton::oracle {
 // above it.
 inline bool holds_all(const boxtree::BoxTree& tree) {
     std::vector<int> seen(tree.boxes().size());
-    for (boxtree::NodeId n = 0; n < tree.nodes().size(); ++n)
-        for (unsigned lane = 0; lane < tree.nodes()[n].count; ++lane) {
-            const std::uint32_t child = tree.nodes()[n].child[lane];
+    for (boxtree::NodeId n = 0; n < tree.structure().nodes().size(); ++n)
+        for (unsigned lane = 0; lane < tree.structure().nodes()[n].count; ++lane) {
+            const std::uint32_t child = tree.structure().nodes()[n].child[lane];
             if (!(child & boxtree::kLeafBit)) {
-                if (tree.nodes()[child].parent != n || tree.nodes()[child].lane_in_parent != lane) return false;
+                if (tree.structure().nodes()[child].parent != n ||
+                    tree.structure().nodes()[child].lane_in_parent != lane)
+                    return false;
                 continue;
             }
             const boxtree::LeafId l = child & ~boxtree::kLeafBit;
-            for (unsigned i = 0; i < tree.leaves()[l].count; ++i) {
-                const boxtree::ItemId item = tree.slot_items()[l * boxtree::kWidth + i];
+            for (unsigned i = 0; i < tree.structure().leaves()[l].count; ++i) {
+                const boxtree::ItemId item = tree.structure().slot_items()[l * boxtree::kWidth + i];
                 ++seen[item];
-                if (tree.slot_of(item) != l * boxtree::kWidth + i) return false;
+                if (tree.structure().slot_of(item) != l * boxtree::kWidth + i) return false;
                 const Aabb exact = aabb_of(tree.boxes()[item]);
                 // aabb_of itself is rounded outward by a step.
                 const double slack = 0x1p-50 * (glm::length(exact.min) + glm::length(exact.max));
                 unsigned at = lane;
                 for (boxtree::NodeId up = n; up != boxtree::kNone;
-                     at = tree.nodes()[up].lane_in_parent, up = tree.nodes()[up].parent) {
-                    const Aabb bounds = tree.child_bounds(up, at);
+                     at = tree.structure().nodes()[up].lane_in_parent, up = tree.structure().nodes()[up].parent) {
+                    const Aabb bounds = tree.structure().child_bounds(up, at);
                     for (int j = 0; j < 3; ++j)
                         if (bounds.min[j] > exact.min[j] + slack || bounds.max[j] < exact.max[j] - slack) return false;
                 }
             }
         }
     for (std::size_t i = 0; i < seen.size(); ++i)
-        if (seen[i] != (tree.slot_of(static_cast<boxtree::ItemId>(i)) == boxtree::kNone ? 0 : 1)) return false;
+        if (seen[i] != (tree.structure().slot_of(static_cast<boxtree::ItemId>(i)) == boxtree::kNone ? 0 : 1))
+            return false;
     return true;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Trees as byte strings.
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/rebuilder.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/recovery.hpp>
 #include <cstring>
 
@@ -18,41 +20,53 @@ struct Header {
 };
 static_assert(sizeof(Header) == 88);
 
+// What is in no leaf, and whose id is not free.
+void find_detached(Items& items, const Structure& structure) {
+    Vector<std::uint64_t> known((items.size() + 63) / 64, 0);
+    const auto mark = [&](ItemId item) { known[item / 64] |= std::uint64_t{1} << item % 64; };
+    for (const ItemId item : items.free_ids())
+        if (item < items.size()) mark(item);
+    for (ItemId item = 0; item < items.size(); ++item)
+        if (!structure.contains(item) && !(known[item / 64] >> item % 64 & 1)) items.set_detached(item, true);
+}
+
 }  // namespace
 
 // The one list of what is stored, in order, for writing and reading.
 struct TreeStorage {
-    template <class Tree, class Visit>
-    static void arrays(Tree& tree, const Header& h, Visit&& visit) {
-        visit(tree.boxes_, h.boxes);
-        visit(tree.layer_masks_, h.boxes);
-        visit(tree.free_items_, h.free_items);
-        visit(tree.structure_.nodes, h.nodes);
-        visit(tree.structure_.ranges, h.nodes);
-        visit(tree.structure_.leaves, h.leaves);
-        visit(tree.structure_.leaf_counts, h.leaves);
-        visit(tree.structure_.slot_items, h.leaves * kWidth);
-        visit(tree.structure_.item_slots, h.boxes);
+    template <class ItemsOrConst, class StructureOrConst, class Visit>
+    static void arrays(ItemsOrConst& items, StructureOrConst& structure, const Header& h, Visit&& visit) {
+        visit(items.boxes_, h.boxes);
+        visit(items.layer_masks_, h.boxes);
+        visit(items.free_ids_, h.free_items);
+        visit(structure.nodes_, h.nodes);
+        visit(structure.ranges_, h.nodes);
+        visit(structure.leaves_, h.leaves);
+        visit(structure.leaf_counts_, h.leaves);
+        visit(structure.slot_items_, h.leaves * kWidth);
+        visit(structure.item_slots_, h.boxes);
     }
+    static void set_height(Structure& structure, unsigned height) { structure.height_ = height; }
 };
 
 Vector<std::byte> BoxTree::serialise() const {
+    const Structure& structure = *structure_;
     Header header;
-    header.height = structure_.height;
-    header.boxes = boxes_.size();
-    header.free_items = free_items_.size();
-    header.nodes = structure_.nodes.size();
-    header.leaves = structure_.leaves.size();
-    header.criterion[0] = criterion_.volume_weight;
-    header.criterion[1] = criterion_.area_weight;
-    header.criterion[2] = criterion_.mean_curvature_weight;
+    header.height = structure.height();
+    header.boxes = items_->size();
+    header.free_items = items_->free_ids().size();
+    header.nodes = structure.nodes().size();
+    header.leaves = structure.leaves().size();
+    header.criterion[0] = structure.criterion().volume_weight;
+    header.criterion[1] = structure.criterion().area_weight;
+    header.criterion[2] = structure.criterion().mean_curvature_weight;
     Vector<std::byte> bytes;
     const auto append = [&](const void* data, std::size_t size) {
         const auto* first = static_cast<const std::byte*>(data);
         bytes.insert(bytes.end(), first, first + size);
     };
     append(&header, sizeof(header));
-    TreeStorage::arrays(*this, header, [&](const auto& array, std::uint64_t) {
+    TreeStorage::arrays(*items_, structure, header, [&](const auto& array, std::uint64_t) {
         append(array.data(), array.size() * sizeof(array[0]));
     });
     return bytes;
@@ -75,23 +89,25 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         if (header.boxes > (1u << 30) || header.free_items > header.boxes || header.nodes > (1u << 30) ||
             header.leaves > (1u << 30) || header.height == 0 || header.height > 64)
             return damaged("sizes out of range");
-        BoxTree tree;
-        tree.criterion_ = {header.criterion[0], header.criterion[1], header.criterion[2]};
-        tree.structure_.height = header.height;
+        const measure::Criterion criterion{header.criterion[0], header.criterion[1], header.criterion[2]};
+        BoxTree tree(criterion);
+        Items& items = *tree.items_;
+        Structure& structure = *tree.structure_;
+        TreeStorage::set_height(structure, header.height);
         std::size_t expected_size = sizeof(header);
-        TreeStorage::arrays(tree, header,
+        TreeStorage::arrays(items, structure, header,
                             [&](const auto& array, std::uint64_t count) { expected_size += count * sizeof(array[0]); });
         if (bytes.size() != expected_size) return damaged("cut short, or too long");
         std::size_t at = sizeof(header);
-        TreeStorage::arrays(tree, header, [&](auto& array, std::uint64_t count) {
+        TreeStorage::arrays(items, structure, header, [&](auto& array, std::uint64_t count) {
             array.resize(count);
             if (count > 0) std::memcpy(static_cast<void*>(array.data()), bytes.data() + at, count * sizeof(array[0]));
             at += count * sizeof(array[0]);
         });
-        clear_marks(tree.structure_);
-        tree.find_detached();
-        if (auto valid = measure::validate(tree.criterion_); !valid) return tl::unexpected(valid.error());
-        if (auto valid = tree.validate(trust); !valid)
+        structure.reset_marks();
+        find_detached(items, structure);
+        if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+        if (auto valid = boxtree::validate(structure, trust); !valid)
             return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);
         return tree;
     });

@@ -2,7 +2,7 @@
 // Does a tree keep all its promises?
 #include <algorithm>
 #include <cmath>
-#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <string>
 
 #include "bounds.hpp"
@@ -42,98 +42,127 @@ bool holds(const Node& node, unsigned lane, const Aabb& child) {
     return reach <= double{node.reach};
 }
 
+// In a cycle, or deeper than the tree is high?
+bool reaches_root(const Structure& structure, NodeId n, bool& too_deep) {
+    const std::span<const Node> nodes = structure.nodes();
+    unsigned steps = 1;
+    too_deep = false;
+    for (; nodes[n].parent != kNone; n = nodes[n].parent)
+        if (++steps > structure.height() || nodes[n].parent >= nodes.size()) {
+            too_deep = true;
+            return false;
+        }
+    return n == 0;
+}
+
+Result<void> validate_child(const Structure& structure, NodeId n, unsigned lane, Trust trust) {
+    const std::span<const Node> nodes = structure.nodes();
+    const std::span<const Leaf> leaves = structure.leaves();
+    const std::uint32_t child = nodes[n].child[lane], id = child & ~kLeafBit;
+    const bool is_leaf = (child & kLeafBit) != 0;
+    if (id >= (is_leaf ? leaves.size() : nodes.size())) return broken(n, "a node's child does not exist");
+    const NodeId parent = is_leaf ? leaves[id].parent : nodes[id].parent;
+    const std::uint32_t at = is_leaf ? leaves[id].lane_in_parent : nodes[id].lane_in_parent;
+    if (parent != n || at != lane || child == 0) return broken(n, "a child does not know its parent");
+    if (trust == Trust::contents) return {};
+    if (!holds(nodes[n], lane, is_leaf ? bounds_of(leaves[id]) : bounds_of(nodes[id])))
+        return broken(n, "a bound does not contain what lies below it");
+    Node layers;
+    if (is_leaf)
+        write_layers(layers, lane, leaves[id].layers, leaves[id].layers, leaves[id].count);
+    else
+        write_layers(layers, lane, nodes[id].layers_any, nodes[id].layers_all, nodes[id].count);
+    if (layers.layers_any[lane] != nodes[n].layers_any[lane] || layers.layers_all[lane] != nodes[n].layers_all[lane])
+        return broken(n, "layers do not match those below");
+    return {};
+}
+
+Result<void> validate_node(const Structure& structure, NodeId n, Trust trust) {
+    const Node& node = structure.nodes()[n];
+    bool only_leaves = true;
+    for (unsigned lane = 0; lane < node.count; ++lane) {
+        if (auto valid = validate_child(structure, n, lane, trust); !valid) return valid;
+        only_leaves = only_leaves && (node.child[lane] & kLeafBit) != 0;
+    }
+    if (trust == Trust::nothing) {
+        std::uint32_t every = ~std::uint32_t{0};
+        for (unsigned lane = 0; lane < node.count; ++lane) every &= node.layers_all[lane];
+        if (!is_frame(node) || every != node.layers_every) return broken(n, "a node's frame is not one");
+    }
+    if (only_leaves != (node.only_leaves != 0)) return broken(n, "a node is wrong about its children's kind");
+    const LeafRange range = structure.leaf_ranges()[n];
+    if (range.count > structure.leaves().size() || range.first > structure.leaves().size() - range.count)
+        return broken(n, "a node's leaves do not exist");
+    if (range.items != 0 && range.items != items_without_gaps(range, structure.leaf_counts()))
+        return broken(n, "a node is wrong about its items");
+    bool too_deep = false;
+    if (!reaches_root(structure, n, too_deep))
+        return broken(n, too_deep ? "a node is too deep, or in a cycle" : "a node is not below the root");
+    return {};
+}
+
+Result<void> validate_item(const Structure& structure, std::uint32_t slot, Trust trust) {
+    const Items& items = structure.items();
+    const ItemId item = structure.slot_items()[slot];
+    const Leaf& leaf = structure.leaves()[slot / kWidth];
+    const unsigned lane = slot % kWidth;
+    if (item >= items.size() || structure.slot_of(item) != slot)
+        return broken(item, "an item is not where its slot says");
+    if (trust == Trust::contents) return {};
+    const Obb& box = items.boxes()[item];
+    const std::uint32_t layers = items.layer_masks()[item];
+    if (auto valid = crofton::validate(box, item); !valid) return valid;
+    Leaf expected = leaf;
+    expected.layers[lane] = layers;
+    if (!is_frame(leaf) || !write_lane(expected, lane, box) || !lanes_agree(leaf, expected, lane) ||
+        expected.reach > leaf.reach || (leaf.layers_every & ~layers) != 0)
+        return broken(item, "an item's lane does not match its box");
+    return {};
+}
+
+Result<void> validate_leaf(const Structure& structure, LeafId l, Trust trust) {
+    const Leaf& leaf = structure.leaves()[l];
+    if (leaf.count != structure.leaf_counts()[l]) return broken(l, "a leaf's count is wrong");
+    for (unsigned lane = 0; lane < kWidth; ++lane) {
+        const std::uint32_t slot = l * kWidth + lane;
+        if ((structure.slot_items()[slot] != kNone) != (lane < leaf.count))
+            return broken(l, "a leaf's lanes do not match its count");
+        if (lane >= leaf.count) {
+            if (leaf.layers[lane] != 0) return broken(l, "an empty lane has layers");
+            continue;
+        }
+        if (auto valid = validate_item(structure, slot, trust); !valid) return valid;
+    }
+    return {};
+}
+
 }  // namespace
 
-Result<void> BoxTree::validate() const {
-    return validate(Trust::nothing);
-}
-
-Result<void> BoxTree::validate(Trust trust) const {
-    const std::size_t nodes = structure_.nodes.size(), leaves = structure_.leaves.size();
-    if (nodes == 0 || structure_.ranges.size() != nodes || structure_.leaf_counts.size() != leaves ||
-        structure_.slot_items.size() != leaves * kWidth || structure_.item_slots.size() != boxes_.size() ||
-        layer_masks_.size() != boxes_.size())
+Result<void> validate(const Structure& structure, Trust trust) {
+    const Items& items = structure.items();
+    const std::span<const Node> nodes = structure.nodes();
+    const std::span<const Leaf> leaves = structure.leaves();
+    if (nodes.empty() || structure.leaf_ranges().size() != nodes.size() ||
+        structure.leaf_counts().size() != leaves.size() || structure.slot_items().size() != leaves.size() * kWidth ||
+        structure.item_slots().size() != items.size() || items.layer_masks().size() != items.size())
         return broken(kNoItem, "array sizes do not match");
-    for (LeafId l = 0; l < leaves; ++l)
-        if (structure_.leaves[l].count > kWidth) return broken(l, "a leaf has more than 16 items");
-    for (NodeId n = 0; n < nodes; ++n)
-        if (structure_.nodes[n].count > kWidth) return broken(n, "a node has more than 16 children");
-    std::size_t reached = 1;
-    for (NodeId n = 0; n < nodes; ++n) {
-        const Node& node = structure_.nodes[n];
-        bool only_leaves = true;
-        for (unsigned lane = 0; lane < node.count; ++lane, ++reached) {
-            const std::uint32_t child = node.child[lane], id = child & ~kLeafBit;
-            const bool is_leaf = (child & kLeafBit) != 0;
-            if (id >= (is_leaf ? leaves : nodes)) return broken(n, "a node's child does not exist");
-            only_leaves = only_leaves && is_leaf;
-            const NodeId parent = is_leaf ? structure_.leaves[id].parent : structure_.nodes[id].parent;
-            const std::uint32_t at =
-                is_leaf ? structure_.leaves[id].lane_in_parent : structure_.nodes[id].lane_in_parent;
-            if (parent != n || at != lane || child == 0) return broken(n, "a child does not know its parent");
-            if (trust == Trust::contents) continue;
-            if (!holds(node, lane, is_leaf ? bounds_of(structure_.leaves[id]) : bounds_of(structure_.nodes[id])))
-                return broken(n, "a bound does not contain what lies below it");
-            Node layers;
-            if (is_leaf)
-                write_layers(layers, lane, structure_.leaves[id].layers, structure_.leaves[id].layers,
-                             structure_.leaves[id].count);
-            else
-                write_layers(layers, lane, structure_.nodes[id].layers_any, structure_.nodes[id].layers_all,
-                             structure_.nodes[id].count);
-            if (layers.layers_any[lane] != node.layers_any[lane] || layers.layers_all[lane] != node.layers_all[lane])
-                return broken(n, "layers do not match those below");
-        }
-        if (trust == Trust::nothing) {
-            std::uint32_t every = ~std::uint32_t{0};
-            for (unsigned lane = 0; lane < node.count; ++lane) every &= node.layers_all[lane];
-            if (!is_frame(node) || every != node.layers_every) return broken(n, "a node's frame is not one");
-        }
-        if (only_leaves != (node.only_leaves != 0)) return broken(n, "a node is wrong about its children's kind");
-        if (const LeafRange range = structure_.ranges[n]; range.count > leaves || range.first > leaves - range.count)
-            return broken(n, "a node's leaves do not exist");
-        if (const LeafRange range = structure_.ranges[n];
-            range.items != 0 && range.items != boxtree::items_without_gaps(range, leaf_counts()))
-            return broken(n, "a node is wrong about its items");
-        // Up to the root within `height` steps: no cycles.
-        NodeId up = n;
-        unsigned steps = 1;
-        for (; structure_.nodes[up].parent != kNone; up = structure_.nodes[up].parent)
-            if (++steps > structure_.height || structure_.nodes[up].parent >= nodes)
-                return broken(n, "a node is too deep, or in a cycle");
-        if (up != 0) return broken(n, "a node is not below the root");
+    for (LeafId l = 0; l < leaves.size(); ++l)
+        if (leaves[l].count > kWidth) return broken(l, "a leaf has more than 16 items");
+    for (NodeId n = 0; n < nodes.size(); ++n)
+        if (nodes[n].count > kWidth) return broken(n, "a node has more than 16 children");
+    std::size_t reached = 1, in_leaves = 0;
+    for (NodeId n = 0; n < nodes.size(); ++n) {
+        if (auto valid = validate_node(structure, n, trust); !valid) return valid;
+        reached += nodes[n].count;
     }
-    if (reached != nodes + leaves) return broken(kNoItem, "a node or leaf is below no node");
-    return validate_leaves(trust);
-}
-
-Result<void> BoxTree::validate_leaves(Trust trust) const {
-    std::size_t items = 0;
-    for (LeafId l = 0; l < structure_.leaves.size(); ++l) {
-        const Leaf& leaf = structure_.leaves[l];
-        if (leaf.count != structure_.leaf_counts[l]) return broken(l, "a leaf's count is wrong");
-        items += leaf.count;
-        for (unsigned lane = 0; lane < kWidth; ++lane) {
-            const ItemId item = structure_.slot_items[l * kWidth + lane];
-            if ((item != kNone) != (lane < leaf.count)) return broken(l, "a leaf's lanes do not match its count");
-            if (item == kNone) {
-                if (leaf.layers[lane] != 0) return broken(l, "an empty lane has layers");
-                continue;
-            }
-            if (item >= boxes_.size() || structure_.item_slots[item] != l * kWidth + lane)
-                return broken(item, "an item is not where its slot says");
-            if (trust == Trust::contents) continue;
-            if (auto valid = crofton::validate(boxes_[item], item); !valid) return valid;
-            Leaf expected = leaf;
-            expected.layers[lane] = layer_masks_[item];
-            if (!is_frame(leaf) || !write_lane(expected, lane, boxes_[item]) || !lanes_agree(leaf, expected, lane) ||
-                expected.reach > leaf.reach || (leaf.layers_every & ~layer_masks_[item]) != 0)
-                return broken(item, "an item's lane does not match its box");
-        }
+    if (reached != nodes.size() + leaves.size()) return broken(kNoItem, "a node or leaf is below no node");
+    for (LeafId l = 0; l < leaves.size(); ++l) {
+        if (auto valid = validate_leaf(structure, l, trust); !valid) return valid;
+        in_leaves += leaves[l].count;
     }
-    for (const ItemId item : free_items_)
-        if (item >= boxes_.size() || structure_.item_slots[item] != kNone) return broken(item, "a free id is in use");
-    if (items != item_count()) return broken(kNoItem, "the leaves do not hold all items");
+    for (const ItemId item : items.free_ids())
+        if (item >= items.size() || structure.contains(item)) return broken(item, "a free id is in use");
+    if (in_leaves != items.count_in_leaves()) return broken(kNoItem, "the leaves do not hold all items");
     return {};
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/collide/tree_query.hpp>
 #include <glm/common.hpp>
@@ -23,7 +24,7 @@ constexpr float kFar = std::numeric_limits<float>::max();
 template <class Step>
 class Stack {
   public:
-    explicit Stack(const boxtree::BoxTree& tree) {
+    explicit Stack(const boxtree::Structure& tree) {
         const std::size_t needed = std::size_t{tree.height()} * kWidth;
         if (needed > few_.size()) {
             many_.resize(needed);
@@ -50,7 +51,7 @@ void for_each_lane(std::uint32_t lanes, Visit visit) {
 
 // The items of some of a leaf's lanes.
 template <class Visit>
-void for_each_item(const boxtree::BoxTree& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
+void for_each_item(const boxtree::Structure& tree, boxtree::LeafId leaf, std::uint32_t lanes, std::uint32_t layers,
                    Visit visit) {
     for_each_lane(lanes, [&](unsigned lane) {
         if (tree.leaves()[leaf].layers[lane] & layers) visit(tree.slot_items()[std::size_t{leaf} * kWidth + lane]);
@@ -148,21 +149,22 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
                 std::uint32_t layers) {
     Aabb near = grown(bounds, distance);
     if (!std::isfinite(near.min.x + near.min.y + near.min.z + near.max.x + near.max.y + near.max.z)) return;
-    Stack<std::uint32_t> stack(tree);
+    const boxtree::Structure& structure = tree.structure();
+    Stack<std::uint32_t> stack(structure);
     stack.push(0);
     while (!stack.is_empty() && distance >= 0.0) {
         const std::uint32_t child = stack.pop();
         if (child & boxtree::kLeafBit) {
             const boxtree::LeafId id = child & ~boxtree::kLeafBit;
-            const boxtree::Leaf& leaf = tree.leaves()[id];
+            const boxtree::Leaf& leaf = structure.leaves()[id];
             const double before = distance;
-            for_each_item(tree, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
+            for_each_item(structure, id, lanes_within(leaf, box_for(leaf, near)), layers, [&](boxtree::ItemId item) {
                 if (distance >= 0.0) distance = std::min(distance, visit(item));
             });
             if (distance < before) near = grown(bounds, distance);
             continue;
         }
-        const boxtree::Node& node = tree.nodes()[child];
+        const boxtree::Node& node = structure.nodes()[child];
         for_each_lane(lanes_within(node, box_for(node, near)), [&](unsigned lane) {
             if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
         });
@@ -194,7 +196,9 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit,
     const Traveller traveller(ray);
     Ray rest = ray;
     float limit = traveller.distance(rest.max_t);
-    Stack<RayStep> stack(tree);
+    const boxtree::Structure& structure = tree.structure();
+    const std::span<const Obb> boxes = tree.boxes();
+    Stack<RayStep> stack(structure);
     stack.push({0.0f, 0});
     while (!stack.is_empty()) {
         const RayStep step = stack.pop();
@@ -202,16 +206,16 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit,
         std::array<float, kWidth> entry;
         if (step.child & boxtree::kLeafBit) {
             const boxtree::LeafId id = step.child & ~boxtree::kLeafBit;
-            const boxtree::Leaf& leaf = tree.leaves()[id];
+            const boxtree::Leaf& leaf = structure.leaves()[id];
             const std::uint32_t lanes = lanes_along(leaf, traveller.seen_from(leaf, limit), entry.data());
-            for_each_item(tree, id, lanes, layers, [&](boxtree::ItemId item) {
-                if (const auto t = mesh::entry_of(rest, tree.boxes()[item])) rest.max_t = visit(item, *t);
+            for_each_item(structure, id, lanes, layers, [&](boxtree::ItemId item) {
+                if (const auto t = mesh::entry_of(rest, boxes[item])) rest.max_t = visit(item, *t);
             });
             if (!(rest.max_t >= 0.0)) return;
             limit = traveller.distance(rest.max_t);
             continue;
         }
-        const boxtree::Node& node = tree.nodes()[step.child];
+        const boxtree::Node& node = structure.nodes()[step.child];
         const std::size_t base = stack.size();
         for_each_lane(lanes_along(node, traveller.seen_from(node, limit), entry.data()), [&](unsigned lane) {
             if ((node.layers_any[lane] & layers) == 0) return;

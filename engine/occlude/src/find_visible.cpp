@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <bit>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/diagnostics.hpp>
 #include <crofton/occlude/find_visible.hpp>
 
@@ -33,7 +34,7 @@ class VisibleQuery {
             if (child & boxtree::kLeafBit)
                 add_leaf(tree, child & ~boxtree::kLeafBit);
             else
-                add_children(tree.nodes()[child]);
+                add_children(tree.structure().nodes()[child]);
         }
     }
 
@@ -100,11 +101,13 @@ class VisibleQuery {
     }
 
     void add_leaf(const boxtree::BoxTree& tree, boxtree::LeafId leaf) {
-        const boxtree::Leaf& lanes = tree.leaves()[leaf];
+        const boxtree::Structure& structure = tree.structure();
+        const boxtree::Leaf& lanes = structure.leaves()[leaf];
         ItemId items[boxtree::kWidth];
         std::size_t count = 0;
         for (std::uint32_t l = 0; l < lanes.count; ++l)
-            if (lanes.layers[l] & options_.layer_mask) items[count++] = tree.slot_items()[leaf * boxtree::kWidth + l];
+            if (lanes.layers[l] & options_.layer_mask)
+                items[count++] = structure.slot_items()[leaf * boxtree::kWidth + l];
         if (count == 0) return;
         for (std::uint64_t rest = not_hidden(tree.boxes().data(), items, count); rest != 0; rest &= rest - 1)
             visible_.candidates_.push_back(items[std::countr_zero(rest)]);
@@ -142,7 +145,8 @@ void find_visible(const boxtree::BoxTree& tree, const OcclusionBuffer& buffer, V
                   const VisibleOptions& options) {
     VisibleQuery query(buffer, visible, options);
     query.add(tree);
-    query.finish(tree.boxes().size(), [&](ItemId item) { return tree.boxes()[item]; });
+    const std::span<const Obb> boxes = tree.boxes();
+    query.finish(boxes.size(), [&](ItemId item) { return boxes[item]; });
 }
 
 void find_visible(const boxtree::BoxTree& resting, const cull::MovingBoxes& moving, const OcclusionBuffer& buffer,
@@ -150,8 +154,9 @@ void find_visible(const boxtree::BoxTree& resting, const cull::MovingBoxes& movi
     VisibleQuery query(buffer, visible, options);
     query.add(resting);
     query.add(resting, moving);
-    query.finish(resting.boxes().size(), [&](ItemId item) {
-        return resting.is_detached(item) ? moving.boxes()[query.place_of(item)] : resting.boxes()[item];
+    const boxtree::Items& items = resting.structure().items();
+    query.finish(items.size(), [&](ItemId item) {
+        return items.is_detached(item) ? moving.boxes()[query.place_of(item)] : items.boxes()[item];
     });
 }
 

@@ -236,7 +236,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     for (ItemId item = 0; item < items_.size(); ++item) {
         if (items_[item].place == Place::resting) continue;
         detached.push_back(item);
-        if (!tree_.is_detached(item) && tree_.slot_of(item) == boxtree::kNone) removed.push_back(item);
+        if (!tree_.is_detached(item) && !tree_.contains(item)) removed.push_back(item);
     }
     auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(), {.detached = detached}, executor);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");

@@ -2,6 +2,7 @@
 // The boxes of a World's objects: a tree of those that rest, a list of those that move. It finds out which is which.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/world/world.hpp>
 
@@ -53,7 +54,7 @@ class SpatialIndex {
     }
     [[nodiscard]] bool has_box(ItemId item) const { return items_[item].place != Place::nowhere; }
     [[nodiscard]] const Obb& box(ItemId item) const;  // of an item that has one
-    [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.layer_masks()[item]; }
+    [[nodiscard]] std::uint32_t layers(ItemId item) const { return tree_.structure().items().layer_masks()[item]; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return tree_; }
     [[nodiscard]] const cull::MovingBoxes& moving() const { return moving_.boxes(); }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/bake/container.hpp>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <cstdio>
 #include <ctime>
@@ -59,7 +60,7 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
             "a tree of height %u, %.1f MB\n",
             path.c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
             baked.mesh_count(), static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons),
-            baked.nodes().size(), baked.tree().height(), static_cast<double>(bytes) / 1e6);
+            baked.nodes().size(), baked.tree().structure().height(), static_cast<double>(bytes) / 1e6);
     if (options.json.empty()) return kSuccess;
     const auto written = write_json(options.json, {{"file", path},
                                                    {"version", bake::kVersion},
@@ -71,7 +72,7 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
                                                    {"triangles", triangles},
                                                    {"polygons", polygons},
                                                    {"nodes", baked.nodes().size()},
-                                                   {"tree_height", baked.tree().height()}});
+                                                   {"tree_height", baked.tree().structure().height()}});
     return written ? kSuccess : report_error("", written.error());
 }
 

@@ -202,8 +202,8 @@ const boxtree::BoxTree& Pipeline::tree() const {
 
 std::vector<scene::InstanceId> Pipeline::spatial_order() const {
     std::vector<scene::InstanceId> order;
-    for (const boxtree::ItemId item : state_->tree->slot_items())
-        if (item != boxtree::kNone && !state_->scene.is_removed(item)) order.push_back(item);
+    for (const boxtree::ItemId item : state_->tree->spatial_order())
+        if (!state_->scene.is_removed(item)) order.push_back(item);
     return order;
 }
 

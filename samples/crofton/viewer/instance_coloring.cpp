@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <crofton/boxtree/structure.hpp>
 
 namespace crofton::viewer {
 namespace {
@@ -11,11 +12,11 @@ constexpr std::uint8_t kPlain = 255;
 
 // Depth of the leaf that holds an item: steps from the root.
 unsigned depth_of(const boxtree::BoxTree& tree, boxtree::ItemId item) {
-    const std::uint32_t slot = tree.slot_of(item);
+    const std::uint32_t slot = tree.structure().slot_of(item);
     if (slot == boxtree::kNone) return 0;
     unsigned depth = 1;
-    for (boxtree::NodeId node = tree.leaves()[slot / boxtree::kWidth].parent; node != boxtree::kNone && node != 0;
-         node = tree.nodes()[node].parent)
+    for (boxtree::NodeId node = tree.structure().leaves()[slot / boxtree::kWidth].parent;
+         node != boxtree::kNone && node != 0; node = tree.structure().nodes()[node].parent)
         ++depth;
     return depth;
 }

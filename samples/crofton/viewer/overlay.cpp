@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/boxtree/structure.hpp>
 #include <glm/geometric.hpp>
 #include <iterator>
 
@@ -85,24 +86,25 @@ void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Loade
 }
 
 void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level) {
-    if (tree.nodes().empty()) return;
+    if (tree.structure().nodes().empty()) return;
     legend_.push_back({"bounds of the tree's nodes", kTree});
     Aabb all;
-    for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) all.include(tree.child_bounds(0, lane));
+    for (unsigned lane = 0; lane < tree.structure().nodes()[0].count; ++lane)
+        all.include(tree.structure().child_bounds(0, lane));
     if (level == 0 && !all.is_empty()) lines.box(obb_of(all), kTree);
     if (level == 0) return;
     std::vector<boxtree::NodeId> nodes{0}, next;
     for (int depth = 1; depth < level && !nodes.empty(); ++depth) {
         next.clear();
         for (const boxtree::NodeId node : nodes)
-            for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane)
-                if ((tree.nodes()[node].child[lane] & boxtree::kLeafBit) == 0)
-                    next.push_back(tree.nodes()[node].child[lane]);
+            for (unsigned lane = 0; lane < tree.structure().nodes()[node].count; ++lane)
+                if ((tree.structure().nodes()[node].child[lane] & boxtree::kLeafBit) == 0)
+                    next.push_back(tree.structure().nodes()[node].child[lane]);
         nodes.swap(next);
     }
     for (const boxtree::NodeId node : nodes)
-        for (unsigned lane = 0; lane < tree.nodes()[node].count; ++lane) {
-            const Aabb bounds = tree.child_bounds(node, lane);
+        for (unsigned lane = 0; lane < tree.structure().nodes()[node].count; ++lane) {
+            const Aabb bounds = tree.structure().child_bounds(node, lane);
             if (!bounds.is_empty()) lines.box(obb_of(bounds), kTree);
         }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/cull/moving_boxes.hpp>
 
 #include "tree/query.hpp"
@@ -11,8 +12,9 @@ Result<void> MovingBoxes::update(const boxtree::BoxTree& tree, std::span<const I
                                  std::span<const Obb> boxes, Executor& executor) {
     if (items.size() != boxes.size())
         return fail(ErrorCode::invalid_argument, kNoItem, "moving boxes: as many boxes as items are needed");
+    const boxtree::Items& known = tree.structure().items();
     for (const ItemId item : items)
-        if (!tree.is_detached(item))
+        if (!known.is_detached(item))
             return fail(ErrorCode::out_of_range, item, "moving boxes: the item has not been detached from the tree");
     const std::size_t valid = sets_[1 - now_].update(boxes, executor);
     if (valid < boxes.size()) return validate(boxes[valid], items[valid]);
@@ -42,6 +44,7 @@ void Query::add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::s
 // The items of the bits that are set, if they are in one of the view's layers.
 void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
                           std::size_t& count) {
+    const boxtree::Items& known = tree.structure().items();
     std::uint32_t* listed = visible_.listed_.data();
     std::size_t found = list_bits(bits, visible_.listed_);
     if (options_.limits) {
@@ -50,12 +53,12 @@ void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uin
             const std::uint32_t k = listed[i];
             const ItemId item = moving_->items()[k];
             listed[kept] = k;
-            kept += is_wanted(moving_->boxes()[k], item, tree.layer_masks()[item]);
+            kept += is_wanted(moving_->boxes()[k], item, known.layer_masks()[item]);
         }
         found = kept;
     }
     for (std::size_t i = 0; i < found; ++i) listed[i] = moving_->items()[listed[i]];
-    if (tree.detached_layers() & view_.layer_mask) {
+    if (known.detached_layers() & view_.layer_mask) {
         std::copy_n(listed, found, to + count);
         count += found;
         return;
@@ -63,9 +66,9 @@ void Query::append_moving(const boxtree::BoxTree& tree, std::span<const std::uin
     // Layers lie anywhere: they are asked for ahead. What is in none is overwritten by the next.
     constexpr std::size_t kAhead = 24;
     for (std::size_t i = 0; i < found; ++i) {
-        hwy::Prefetch(&tree.layer_masks()[listed[std::min(i + kAhead, found - 1)]]);
+        hwy::Prefetch(&known.layer_masks()[listed[std::min(i + kAhead, found - 1)]]);
         to[count] = listed[i];
-        count += (tree.layer_masks()[listed[i]] & view_.layer_mask) != 0;
+        count += (known.layer_masks()[listed[i]] & view_.layer_mask) != 0;
     }
 }
 

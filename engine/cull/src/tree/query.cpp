@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <crofton/boxtree/structure.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -190,17 +191,15 @@ std::size_t Query::list_marked(const std::uint64_t* seen, const std::uint64_t* m
 }
 
 void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
+    const boxtree::Structure& structure = tree.structure();
     start(tree.boxes().size() + (moving_ ? moving_->size() : 0));
     if (!is_usable(view_.frustum) || !has_unit_normals(view_.frustum)) return run_all(tree, executor);
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     KernelView view = kernel_view_of(view_);
-    bring_before(tree.nodes()[0], view);
-    const TreeKernelInput input{tree.nodes().data(),
-                                tree.leaves().data(),
-                                tree.leaf_ranges().data(),
-                                tree.leaf_counts().data(),
-                                tree.slot_items().data(),
-                                &view,
+    bring_before(structure.nodes()[0], view);
+    const TreeKernelInput input{structure.nodes().data(),        structure.leaves().data(),
+                                structure.leaf_ranges().data(),  structure.leaf_counts().data(),
+                                structure.slot_items().data(),   &view,
                                 options_.mode == CullMode::exact};
     const Tasks tasks(input, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)
@@ -209,7 +208,7 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     output.inside = visible_.ids_.data();
     output.straddling = visible_.straddling_.data();
     output.undecided = visible_.undecided_.data();
-    output.work_size = tree.nodes().size() + tree.leaves().size() + kPadding;
+    output.work_size = structure.nodes().size() + structure.leaves().size() + kPadding;
     grow(visible_.work_, kWorkLists * output.work_size);
     output.work = visible_.work_.data();
     if (options_.limits)
@@ -226,12 +225,13 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
 void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
                          Executor& executor) {
     constexpr std::size_t kGrain = kTreeGroup, kParts = Tasks::kMost / kGrain;
+    const boxtree::Structure& structure = tree.structure();
     // What each part can hold at most; 16 more for what vectors write past the end.
     const auto most = [&](std::uint64_t entry) {
         const auto child = static_cast<std::uint32_t>(entry >> 32);
         if (child & boxtree::kLeafBit) return std::size_t{boxtree::kWidth};
-        const std::size_t leaves = tree.leaf_ranges()[child].count;
-        return boxtree::kWidth * (leaves > 0 ? leaves : std::max(tree.leaves().size(), tree.nodes().size()));
+        const std::size_t leaves = structure.leaf_ranges()[child].count;
+        return boxtree::kWidth * (leaves > 0 ? leaves : std::max(structure.leaves().size(), structure.nodes().size()));
     };
     std::size_t starts[kParts + 1] = {};
     const std::size_t parts = (tasks.count + kGrain - 1) / kGrain;
@@ -280,7 +280,7 @@ void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& in
             const TreeKernelOutput& part = outputs[p];
             boxtree::ItemId* to = visible_.ids_.data() + whole_at[p];
             for (std::size_t i = 0; i < part.run_count; ++i)
-                to = std::copy_n(tree.slot_items().data() + part.runs[i].first, part.runs[i].count, to);
+                to = std::copy_n(structure.slot_items().data() + part.runs[i].first, part.runs[i].count, to);
             std::copy_n(part.inside, part.inside_count, visible_.ids_.data() + inside_at[p]);
             std::copy_n(part.straddling, part.straddling_count, visible_.straddling_.data() + straddling_at[p]);
         }
@@ -291,13 +291,15 @@ void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& in
 
 // A view that the kernels cannot take: item by item. If it is not finite, everything may be visible.
 void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
+    const boxtree::Structure& structure = tree.structure();
+    const std::span<const Obb> boxes = tree.boxes();
     std::size_t inside = 0, straddling = 0;
-    for (boxtree::LeafId l = 0; l < tree.leaves().size(); ++l)
-        for (std::uint32_t lane = 0; lane < tree.leaves()[l].count; ++lane) {
-            if (!(tree.leaves()[l].layers[lane] & view_.layer_mask)) continue;
-            const ItemId item = tree.slot_items()[l * boxtree::kWidth + lane];
-            if (!is_wanted(tree.boxes()[item], item, tree.leaves()[l].layers[lane])) continue;
-            const Verdict verdict = classify(view_.frustum, tree.boxes()[item], options_.mode);
+    for (boxtree::LeafId l = 0; l < structure.leaves().size(); ++l)
+        for (std::uint32_t lane = 0; lane < structure.leaves()[l].count; ++lane) {
+            if (!(structure.leaves()[l].layers[lane] & view_.layer_mask)) continue;
+            const ItemId item = structure.slot_items()[l * boxtree::kWidth + lane];
+            if (!is_wanted(boxes[item], item, structure.leaves()[l].layers[lane])) continue;
+            const Verdict verdict = classify(view_.frustum, boxes[item], options_.mode);
             if (verdict == Verdict::inside) visible_.ids_[inside++] = item;
             if (verdict == Verdict::straddling) visible_.straddling_[straddling++] = item;
         }
@@ -307,15 +309,17 @@ void Query::run_all(const boxtree::BoxTree& tree, Executor& executor) {
 // Replaces the undecided slots by the items that are visible after all, with kInside where that is so. Of the others,
 // those that no plane rejects are improper.
 std::size_t Query::decide(const boxtree::BoxTree& tree, TreeKernelOutput& output) {
+    const std::span<const ItemId> slot_items = tree.structure().slot_items();
+    const std::span<const Obb> boxes = tree.boxes();
+    const std::span<const std::uint32_t> layer_masks = tree.layer_masks();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < output.undecided_count; ++i) {
         // The boxes lie in the order of their ids, far from each other: ask for them ahead.
         constexpr std::size_t kAhead = 8;
-        if (i + kAhead < output.undecided_count)
-            hwy::Prefetch(&tree.boxes()[tree.slot_items()[output.undecided[i + kAhead]]]);
-        const ItemId item = tree.slot_items()[output.undecided[i]];
-        const Obb& box = tree.boxes()[item];
-        if (!is_wanted(box, item, tree.layer_masks()[item])) continue;
+        if (i + kAhead < output.undecided_count) hwy::Prefetch(&boxes[slot_items[output.undecided[i + kAhead]]]);
+        const ItemId item = slot_items[output.undecided[i]];
+        const Obb& box = boxes[item];
+        if (!is_wanted(box, item, layer_masks[item])) continue;
         const Verdict verdict = classify_usable(view_.frustum, box, options_.mode);
         if (verdict != Verdict::outside)
             output.undecided[kept++] = verdict == Verdict::inside ? item | kInside : item;

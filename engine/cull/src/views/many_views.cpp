@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
+#include <crofton/boxtree/structure.hpp>
 #include <crofton/core/diagnostics.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
@@ -15,7 +16,7 @@ namespace crofton::cull {
 class ManyViewsQuery {
   public:
     ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode)
-        : tree_(tree), views_(views), mode_(mode) {}
+        : tree_(tree.structure()), views_(views), mode_(mode) {}
 
     void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
         find_resting(visible, moving ? moving->size() : 0);
@@ -26,7 +27,7 @@ class ManyViewsQuery {
     // Leaves room for `more` items.
     void find_resting(ManyVisible& visible, std::size_t more) {
         const std::size_t leaves = tree_.leaves().size() + boxtree::kWidth;
-        grow(visible.ids_, tree_.boxes().size() + more + boxtree::kWidth);
+        grow(visible.ids_, tree_.items().boxes().size() + more + boxtree::kWidth);
         visible.mask_bytes_ = views_.size() > 16 ? 4 : views_.size() > 8 ? 2 : 1;
         grow(visible.masks_, visible.ids_.size() * visible.mask_bytes_);
         grow(visible.whole_, leaves);
@@ -47,7 +48,7 @@ class ManyViewsQuery {
         if (!vectors) return run_one_by_one(visible);
         const auto decide = [](const void* context, std::uint32_t slot, std::uint32_t view) {
             const auto& query = *static_cast<const ManyViewsQuery*>(context);
-            const Obb& box = query.tree_.boxes()[query.tree_.slot_items()[slot]];
+            const Obb& box = query.tree_.items().boxes()[query.tree_.slot_items()[slot]];
             return classify_usable(query.views_[view].frustum, box, query.mode_) != Verdict::outside;
         };
         const ManyViewsInput input{tree_.nodes().data(),
@@ -82,7 +83,7 @@ class ManyViewsQuery {
         for (std::size_t k = 0; k < masks.size(); ++k) {
             if (masks[k] == 0) continue;
             const ItemId item = moving.items()[k];
-            append(visible, item, masks[k] & views_with(tree_.layer_masks()[item]));
+            append(visible, item, masks[k] & views_with(tree_.items().layer_masks()[item]));
         }
     }
 
@@ -113,14 +114,14 @@ class ManyViewsQuery {
             if (item == boxtree::kNone) continue;
             std::uint32_t mask = 0;
             for (std::size_t v = 0; v < views_.size(); ++v)
-                if (tree_.layer_masks()[item] & views_[v].layer_mask &&
-                    classify(views_[v].frustum, tree_.boxes()[item], mode_) != Verdict::outside)
+                if (tree_.items().layer_masks()[item] & views_[v].layer_mask &&
+                    classify(views_[v].frustum, tree_.items().boxes()[item], mode_) != Verdict::outside)
                     mask |= 1u << v;
             append(visible, item, mask);
         }
     }
 
-    const boxtree::BoxTree& tree_;
+    const boxtree::Structure& tree_;
     std::span<const View> views_;
     CullMode mode_;
 };

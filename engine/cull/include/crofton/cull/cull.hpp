@@ -2,7 +2,6 @@
 // What does a view see of a tree: one view, many at once; as lists, bits and runs; with shadow casters.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/boxtree/layout.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>

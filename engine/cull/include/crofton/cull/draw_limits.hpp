@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is not worth drawing: too small in the picture, or too far away.
 #pragma once
-#include <crofton/boxtree/layout.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>

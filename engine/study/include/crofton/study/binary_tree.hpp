@@ -3,7 +3,7 @@
 // that come and go. BoxTree is the one to cull with where speed counts; this is the one to compare by, and the one that
 // has oriented inner bounds (docs/notes/boxtree.md).
 #pragma once
-#include <crofton/boxtree/layout.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/box.hpp>
@@ -15,7 +15,7 @@
 namespace crofton::study {
 
 using boxtree::ItemId;
-using boxtree::kNone;
+inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 enum class Split : std::uint8_t {
     median,  // halves along the longest axis: no measure at all

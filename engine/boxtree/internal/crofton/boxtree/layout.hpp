@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How a BoxTree lies in memory: plain arrays that vector kernels read as they are (no GLM here, see DESIGN section 3).
+// How nodes and leaves of a BoxTree lie in memory: plain arrays that vector kernels read as they are (no GLM here, see
+// DESIGN section 3).
 #pragma once
 #include <crofton/core/requirements.hpp>
 #include <cstdint>

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Which lanes of a tree's leaves have changed since the last refit, and which had before it.
+#pragma once
+#include <crofton/boxtree/layout.hpp>
+#include <crofton/core/memory.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::boxtree {
+
+class ChangeMarks {
+  public:
+    void reset(std::size_t leaves);  // nothing has changed
+    void add_leaf();
+
+    void mark(std::uint32_t slot) {
+        dirty_lanes_[slot / kWidth] = static_cast<std::uint16_t>(dirty_lanes_[slot / kWidth] | 1u << slot % kWidth);
+    }
+    void mark(std::span<const std::uint32_t> slots);
+
+    // Where no more of a leaf's boxes have changed, a move writes each into its lane; where more have, a refit writes
+    // them all.
+    [[nodiscard]] bool has_few_changes(LeafId leaf) const {
+        unsigned lanes = dirty_lanes_[leaf];
+        for (int few = 3; few > 0; --few) lanes &= lanes - 1;
+        return lanes == 0;
+    }
+    void list_dirty_leaves(Vector<LeafId>& leaves) const;
+
+    // Dirty lanes are clean, and remembered for two refits more.
+    void finish_refit();
+    // Changed before both of the last two refits.
+    [[nodiscard]] bool moves_often(std::uint32_t slot) const {
+        const unsigned lanes = moved_last_refit_[slot / kWidth] & moved_two_refits_ago_[slot / kWidth];
+        return (lanes >> slot % kWidth & 1) != 0;
+    }
+
+  private:
+    Vector<std::uint16_t> dirty_lanes_, moved_last_refit_, moved_two_refits_ago_;  // by leaf, one bit a lane
+};
+
+}  // namespace crofton::boxtree

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What a BoxTree knows of its items wherever they are: boxes, layers, which ids are free, which items are detached.
+#pragma once
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/box.hpp>
+#include <cstdint>
+#include <span>
+
+namespace crofton::boxtree {
+
+inline constexpr std::size_t kMaxItems = std::size_t{1} << 30;
+
+// By an eighth where there is no room: a tree that is loaded and then changes a little does not double its memory.
+template <class T>
+void grow_for_one(Vector<T>& items) {
+    if (items.size() == items.capacity()) items.reserve(items.size() + items.size() / 8 + 16);
+}
+
+class Items {
+  public:
+    // Copies the boxes and widens `centers` to all their centres. Errors: a box that fails validate(Obb), by its index.
+    [[nodiscard]] Result<void> assign(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
+                                      Aabb& centers);
+
+    [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
+    [[nodiscard]] std::span<const std::uint32_t> layer_masks() const { return layer_masks_; }
+    [[nodiscard]] std::span<const ItemId> free_ids() const { return free_ids_; }
+    [[nodiscard]] std::size_t size() const { return boxes_.size(); }  // ids given so far, free ones included
+    [[nodiscard]] std::size_t count_in_leaves() const { return boxes_.size() - free_ids_.size() - detached_count_; }
+    [[nodiscard]] bool is_detached(ItemId item) const {
+        return item / 64 < detached_bits_.size() && (detached_bits_[item / 64] >> item % 64 & 1) != 0;
+    }
+    // Bits that the layer masks of all detached items have, not necessarily every one.
+    [[nodiscard]] std::uint32_t detached_layers() const { return detached_layers_; }
+
+    // The id of the next item: one that is free, if there is one.
+    [[nodiscard]] ItemId next_id() const {
+        return free_ids_.empty() ? static_cast<ItemId>(boxes_.size()) : free_ids_.back();
+    }
+    [[nodiscard]] Result<ItemId> add(const Obb& box, std::uint32_t layer_mask);  // errors: 2^30 items
+    void free(ItemId item) { free_ids_.push_back(item); }
+    void set_box(ItemId item, const Obb& box) { boxes_[item] = box; }
+    void set_layers(ItemId item, std::uint32_t layer_mask);
+    void set_detached(ItemId item, bool detached);
+
+  private:
+    friend struct TreeStorage;
+    Vector<Obb> boxes_;
+    Vector<std::uint32_t> layer_masks_;
+    Vector<ItemId> free_ids_;
+    Vector<std::uint64_t> detached_bits_;  // by id, up to the last that was ever detached
+    std::size_t detached_count_ = 0;
+    std::uint32_t detached_layers_ = ~std::uint32_t{0};
+};
+
+}  // namespace crofton::boxtree

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Rebuilds a tree's structure in the background, a bounded step at a time, while the old one is in use and changes.
+#pragma once
+#include <crofton/boxtree/structure.hpp>
+#include <memory>
+
+namespace crofton::boxtree {
+
+// A step of a rebuild, counted where the work is done.
+struct RebuildStep {
+    std::size_t items_added = 0, items_synced = 0;  // for the new structure; into it, as they have changed since
+    std::size_t slots_cleared = 0, leaves_filled = 0, nodes_linked = 0, nodes_bounded = 0;
+    std::size_t divisions = 0;  // steps of dividing items among leaves and nodes, each of the budget's size
+};
+
+class Rebuilder {
+  public:
+    Rebuilder();
+    ~Rebuilder();
+
+    // Begins a rebuild where none is under way and there are items, and works on (see BoxTree::rebuild_step). Returns
+    // the new structure when it is complete, otherwise nothing.
+    [[nodiscard]] std::unique_ptr<Structure> step(const Structure& current, Items& items, std::size_t budget);
+
+    // The item was moved, inserted, removed or given other layers; `placed`: it was inserted or attached, so that it
+    // may be far from where the new structure has it.
+    void note_change(ItemId item, bool placed = false);
+    void note_changes(std::span<const ItemId> items);
+
+    // What the last step has done, whatever it was worth.
+    [[nodiscard]] const RebuildStep& last_step() const { return last_step_; }
+
+  private:
+    struct Work;
+    std::size_t run_stage(const Structure& current, std::size_t budget);
+    std::size_t add_items(const Structure& current, std::size_t budget);
+    std::size_t divide(const Structure& current, std::size_t budget);
+    std::size_t clear_slots(std::size_t budget);
+    std::size_t link_nodes(std::size_t budget);
+    std::size_t fill_leaves(const Structure& current, std::size_t budget);
+    std::size_t bound_nodes(std::size_t budget);
+    std::size_t apply_changes(const Structure& current, std::size_t budget);
+    void sync_item(ItemId item, bool present, bool placed);
+
+    std::unique_ptr<Work> work_;  // of the rebuild under way
+    RebuildStep last_step_;
+};
+
+}  // namespace crofton::boxtree

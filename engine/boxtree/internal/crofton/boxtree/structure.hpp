@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Nodes and leaves of a BoxTree, and which item is in which slot: what queries read and what changes keep right.
+// The leaves hold the items in slots: slot = 16 · leaf + lane, items in the lanes below the leaf's count.
+#pragma once
+#include <crofton/boxtree/change_marks.hpp>
+#include <crofton/boxtree/items.hpp>
+#include <crofton/boxtree/layout.hpp>
+#include <crofton/measure/criterion.hpp>
+#include <span>
+
+namespace crofton::boxtree {
+
+struct Topology;
+
+class Structure {
+  public:
+    // Of the items that are placed in it, all of them among `items`.
+    Structure(Items& items, const measure::Criterion& criterion) : items_(items), criterion_(criterion) {}
+    Structure(const Structure&) = delete;
+    Structure& operator=(const Structure&) = delete;
+
+    [[nodiscard]] const Items& items() const { return items_; }
+    [[nodiscard]] const measure::Criterion& criterion() const { return criterion_; }
+
+    // The root is nodes()[0]; there always is one.
+    [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+    [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
+    [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_; }          // kNone in empty slots
+    [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const { return leaf_counts_; }  // leaves()[i].count
+    [[nodiscard]] std::span<const LeafRange> leaf_ranges() const { return ranges_; }          // by NodeId
+    [[nodiscard]] unsigned height() const { return height_; }  // nodes on the longest path from the root to a leaf
+    [[nodiscard]] std::span<const std::uint32_t> item_slots() const { return item_slots_; }  // kNone: in no leaf
+    [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return item_slots_[item]; }
+    [[nodiscard]] bool contains(ItemId item) const { return item < item_slots_.size() && item_slots_[item] != kNone; }
+    // The bound of child `lane` of a node, as the exact box that the stored numbers stand for, rounded outward.
+    [[nodiscard]] Aabb child_bounds(NodeId node, unsigned lane) const;
+    [[nodiscard]] const ChangeMarks& marks() const { return marks_; }
+
+    // Making one: room, then leaves, then nodes, children before parents. Different leaves, and nodes that are not
+    // above each other, may be made by different threads.
+    void make_room(const Topology& topology);
+    void make_room_for_leaves(LeafId end);
+    void link_nodes(NodeId begin, NodeId end, const Topology& topology);
+    // Leaf l gets its items. Boxes of leaves before `end` may be asked for ahead: others may still be in the making.
+    // What is in no leaf of `current` is left out, where there is one.
+    void fill_leaf(LeafId l, LeafId end, const Topology& topology, const Structure* current = nullptr);
+    void bound_nodes(NodeId begin, NodeId end);
+    void reset_marks() { marks_.reset(leaves_.size()); }
+
+    // The same in steps, each from where the last one of its kind ended.
+    void begin_steps(const Topology& topology);
+    void add_items(ItemId end);
+    void add_nodes(NodeId end, const Topology& topology);
+    void add_leaves(LeafId end, const Topology& topology, const Structure& current);
+
+    // Changes, of items whose boxes and layers have been written into items() before: to their leaves, and marks for
+    // the next refit. What puts items into leaves and takes them out is a Placement.
+    void reserve_item(ItemId item);  // room for it, so that add_items(item + 1) cannot fail
+    void update_box(ItemId item);
+    void update_layers(ItemId item);
+    // How many items from the first on are in leaves; then moves them all, to items() as well.
+    [[nodiscard]] std::size_t find(std::span<const ItemId> items);
+    void move_found(std::span<const ItemId> items, std::span<const Obb> boxes);
+
+    // A structure that replaces another keeps its memory for work.
+    void take_scratch(Structure& from) { std::swap(scratch_, from.scratch_); }
+
+  private:
+    friend class Placement;
+    friend class Refit;
+    friend struct TreeStorage;
+    // Memory of moves and of refits, from call to call.
+    struct Scratch {
+        Vector<std::uint32_t> moved_slots;
+        Vector<LeafId> leaves;
+        Vector<NodeId> nodes, parents;
+        Vector<std::uint64_t> node_bits;
+    };
+
+    void init_node(NodeId n, const Topology& topology);
+    void write_leaf_layers(LeafId l);
+    void rewrite_leaf(LeafId l);
+    void write_item(ItemId item);
+    void refresh_node(NodeId n);
+    void refresh_layers(NodeId n, unsigned lane);
+    [[nodiscard]] std::uint32_t items_without_gaps(NodeId n) const;
+
+    Items& items_;
+    measure::Criterion criterion_;
+    Vector<Node> nodes_;
+    Vector<LeafRange> ranges_;
+    Vector<Leaf> leaves_;
+    Vector<std::uint8_t> leaf_counts_;
+    Vector<ItemId> slot_items_;
+    Vector<std::uint32_t> item_slots_;
+    unsigned height_ = 1;
+    ChangeMarks marks_;
+    bool layers_changed_ = false;  // since the last refit: then layers are looked at again, otherwise only bounds
+    Scratch scratch_;
+};
+
+// Does it keep all its promises? Errors name the node, leaf or item.
+[[nodiscard]] Result<void> validate(const Structure& structure, Trust trust);
+
+}  // namespace crofton::boxtree

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// A new tree from boxes.
+#include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/items.hpp>
+#include <crofton/boxtree/rebuilder.hpp>
+#include <crofton/boxtree/structure.hpp>
+#include <crofton/core/recovery.hpp>
+
+#include "builder.hpp"
+
+namespace crofton::boxtree {
+namespace {
+
+constexpr std::size_t kSubtreeBatch = 32;
+
+// A subtree's nodes, whose leaves are there.
+void finish_nodes(Structure& structure, NodeId begin, NodeId end, const Topology& topology) {
+    structure.link_nodes(begin, end, topology);
+    structure.bound_nodes(begin, end);
+}
+
+// Each subtree's leaves and nodes right after it is divided: its boxes are in the cache then.
+void build_subtrees(Structure& structure, Builder& builder, Executor& executor) {
+    const Topology& topology = builder.result();
+    const std::span<const Subtree> subtrees = builder.subtrees();
+    const std::span<const Obb> boxes = structure.items().boxes();
+    structure.make_room(topology);
+    Vector<SubtreeBuilder> workers(executor.concurrency());
+    for (std::size_t first = 0; first < subtrees.size(); first += kSubtreeBatch) {
+        const std::size_t count = std::min(kSubtreeBatch, subtrees.size() - first);
+        const Subtree& last = subtrees[first + count - 1];
+        structure.make_room_for_leaves(last.first_leaf + last.leaves);
+        detail::recoverable_for(executor, count, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
+            for (std::size_t s = first + begin; s < first + end; ++s) {
+                builder.build(s, workers[worker], boxes);
+                const Subtree& subtree = subtrees[s];
+                const LeafId leaves_end = subtree.first_leaf + subtree.leaves;
+                for (LeafId l = subtree.first_leaf; l < leaves_end; ++l) structure.fill_leaf(l, leaves_end, topology);
+                finish_nodes(structure, subtree.first_node, subtree.first_node + subtree.nodes, topology);
+            }
+        });
+    }
+    finish_nodes(structure, 0, subtrees.front().first_node, topology);
+}
+
+}  // namespace
+
+Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, const BuildOptions& options, Executor& executor) {
+    return build(boxes, {}, options, executor);
+}
+
+Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks,
+                               const BuildOptions& options, Executor& executor) {
+    return detail::recover([&]() -> Result<BoxTree> {
+        if (boxes.size() > kMaxItems) return fail(ErrorCode::out_of_range, kMaxItems, "box tree: more than 2^30 boxes");
+        if (!layer_masks.empty() && layer_masks.size() != boxes.size())
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "box tree: as many layer masks as boxes are needed, or none");
+        if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
+        Vector<std::uint64_t> moving((boxes.size() + 63) / 64, 0);
+        for (const ItemId item : options.moving) {
+            if (item >= boxes.size())
+                return fail(ErrorCode::out_of_range, item, "box tree: no box for an item that moves");
+            moving[item / 64] |= std::uint64_t{1} << item % 64;
+        }
+        const auto moves = [](const void* bits, ItemId item) {
+            return (static_cast<const std::uint64_t*>(bits)[item / 64] >> item % 64 & 1) != 0;
+        };
+        BoxTree tree(options.criterion);
+        Items& items = *tree.items_;
+        Aabb centers;
+        if (auto taken = items.assign(boxes, layer_masks, centers); !taken) return tl::unexpected(taken.error());
+        for (const ItemId item : options.detached) {
+            if (item >= boxes.size())
+                return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
+            if (!items.is_detached(item)) items.set_detached(item, true);
+        }
+        Builder builder(centers, items.count_in_leaves(), options.criterion);
+        for (ItemId item = 0; item < boxes.size(); ++item)
+            if (!items.is_detached(item)) builder.add(item, items.boxes()[item]);
+        while (!builder.prepare(~std::size_t{0} / 8, items.boxes(), {moves, moving.data()})) {
+        }
+        build_subtrees(*tree.structure_, builder, executor);
+        return tree;
+    });
+}
+
+}  // namespace crofton::boxtree

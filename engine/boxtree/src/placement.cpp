@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "placement.hpp"
+
+#include <array>
+#include <limits>
+
+#include "bounds.hpp"
+#include "partition.hpp"
+
+namespace crofton::boxtree {
+
+// The leaf's last item moves into the gap.
+void Placement::vacate(ItemId item) {
+    const std::uint32_t slot = structure_.item_slots_[item];
+    const LeafId l = slot / kWidth;
+    Leaf& leaf = leaves_[l];
+    const std::uint32_t last = --leaf.count;
+    structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
+    const ItemId moved = structure_.slot_items_[l * kWidth + last];
+    if (moved != item) {
+        structure_.slot_items_[slot] = moved;
+        structure_.item_slots_[moved] = slot;
+        structure_.write_item(moved);
+    }
+    clear_lane(leaf, last);
+    structure_.slot_items_[l * kWidth + last] = kNone;
+    structure_.item_slots_[item] = kNone;
+    invalidate_item_count(leaf.parent);
+    structure_.layers_changed_ = true;
+    structure_.marks_.mark(slot);
+}
+
+void Placement::place(ItemId item) {
+    const Aabb bounds = aabb_of(structure_.items_.boxes()[item]);
+    if (nodes_[0].count == 0) add_child(0, add_leaf() | kLeafBit);
+    LeafId l = best_leaf(bounds);
+    if (leaves_[l].count == kWidth) split_leaf(l);  // half of its lanes are free then
+    Leaf& leaf = leaves_[l];
+    const std::uint32_t slot = l * kWidth + leaf.count++;
+    structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
+    structure_.slot_items_[slot] = item;
+    structure_.item_slots_[item] = slot;
+    structure_.write_item(item);
+    invalidate_item_count(leaf.parent);
+    refresh_path(leaf.parent);
+}
+
+LeafId Placement::add_leaf() {
+    const auto fresh = static_cast<LeafId>(leaves_.size());
+    leaves_.emplace_back();
+    clear(leaves_[fresh]);
+    structure_.leaf_counts_.push_back(0);
+    structure_.slot_items_.resize(structure_.slot_items_.size() + kWidth, kNone);
+    structure_.marks_.add_leaf();
+    return fresh;
+}
+
+// Down from the root into the child whose criterion grows least.
+LeafId Placement::best_leaf(const Aabb& bounds) const {
+    const Cost cost(structure_.criterion_);
+    const auto of = [&](const Aabb& b) {
+        return b.is_empty() ? 0.0 : cost.of(b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z);
+    };
+    NodeId n = 0;
+    for (;;) {
+        const Node& node = nodes_[n];
+        unsigned best = 0;
+        double best_growth = std::numeric_limits<double>::infinity(), best_size = best_growth;
+        for (unsigned lane = 0; lane < node.count; ++lane) {
+            const Aabb old = bounds_of_lane(node, lane);
+            Aabb grown = bounds;
+            if (!old.is_empty()) grown.include(old);
+            const double size = of(old), growth = of(grown) - size;
+            if (growth < best_growth || (growth == best_growth && size < best_size)) {
+                best = lane;
+                best_growth = growth;
+                best_size = size;
+            }
+        }
+        if (node.child[best] & kLeafBit) return node.child[best] & ~kLeafBit;
+        n = node.child[best];
+    }
+}
+
+// Half of a full leaf's items go to a new leaf beside it.
+void Placement::split_leaf(LeafId l) {
+    BuildItem items[kWidth];
+    for (unsigned lane = 0; lane < kWidth; ++lane) {
+        const ItemId item = structure_.slot_items_[l * kWidth + lane];
+        const Obb& box = structure_.items_.boxes()[item];
+        items[lane] = {};
+        for (int j = 0; j < 3; ++j) {
+            const auto center = static_cast<float>(box.center[j] - leaves_[l].origin[j]);
+            items[lane].extreme[j] = -center;
+            items[lane].extreme[4 + j] = center;
+        }
+        items[lane].set_id(item);
+    }
+    const Children halves = divide(items, {0, kWidth}, kWidth / 2, Cost(structure_.criterion_));
+    const LeafId fresh = add_leaf();
+    const NodeId parent = leaves_[l].parent;
+    const std::uint32_t lane_in_parent = leaves_[l].lane_in_parent;
+    const LeafId both[2] = {l, fresh};
+    for (unsigned side = 0; side < 2; ++side) {
+        ItemId ids[kWidth];
+        std::uint32_t count = 0;
+        for (std::uint32_t i = halves.ranges[side].begin; i < halves.ranges[side].end; ++i)
+            ids[count++] = items[i].id();
+        make_leaf(both[side], std::span(ids).first(count), parent, lane_in_parent);
+    }
+    add_child(parent, fresh | kLeafBit);
+    refresh_path(leaves_[l].parent);
+    refresh_path(leaves_[fresh].parent);
+}
+
+void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent) {
+    Leaf& leaf = leaves_[l];
+    clear(leaf);
+    leaf.parent = parent;
+    leaf.lane_in_parent = lane_in_parent;
+    for (unsigned lane = 0; lane < kWidth; ++lane) structure_.slot_items_[l * kWidth + lane] = kNone;
+    for (const ItemId item : items) {
+        const std::uint32_t slot = l * kWidth + leaf.count++;
+        structure_.slot_items_[slot] = item;
+        structure_.item_slots_[item] = slot;
+    }
+    structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
+    structure_.write_leaf_layers(l);
+    structure_.rewrite_leaf(l);
+}
+
+void Placement::link(NodeId parent, unsigned lane, std::uint32_t child) {
+    nodes_[parent].child[lane] = child;
+    if (child & kLeafBit) {
+        leaves_[child & ~kLeafBit].parent = parent;
+        leaves_[child & ~kLeafBit].lane_in_parent = lane;
+    } else {
+        nodes_[child].parent = parent;
+        nodes_[child].lane_in_parent = lane;
+        nodes_[parent].only_leaves = 0;
+    }
+}
+
+void Placement::add_child(NodeId parent, std::uint32_t child) {
+    while (nodes_[parent].count == kWidth) parent = split_node(parent);
+    Node& node = nodes_[parent];
+    node.count++;
+    link(parent, node.count - 1, child);
+    // No longer one run of leaves, here and above.
+    for (NodeId n = parent; n != kNone; n = nodes_[n].parent) structure_.ranges_[n] = {};
+}
+
+// Half of a full node's children go to a new node; returns the one of the two that the caller may add to. Splitting the
+// root makes a new level below node 0.
+NodeId Placement::split_node(NodeId n) {
+    BuildItem items[kWidth];
+    for (unsigned lane = 0; lane < kWidth; ++lane) {
+        items[lane] = {};
+        for (unsigned j = 0; j < 3; ++j) {
+            items[lane].extreme[j] = -static_cast<float>(low_of(nodes_[n], lane, j));
+            items[lane].extreme[4 + j] = static_cast<float>(high_of(nodes_[n], lane, j));
+        }
+        items[lane].set_id(lane);
+    }
+    const Children halves = divide(items, {0, kWidth}, kWidth / 2, Cost(structure_.criterion_));
+    std::array<std::uint32_t, kWidth> children;  // those of the first half, then the others
+    for (unsigned i = 0; i < kWidth; ++i) children[i] = nodes_[n].child[items[i].id()];
+    const auto half = [&](unsigned side) {
+        return std::span<const std::uint32_t>(children).subspan(halves.ranges[side].begin, halves.ranges[side].size());
+    };
+    const auto fresh = static_cast<NodeId>(nodes_.size());
+    if (n == 0) {
+        nodes_.resize(fresh + 2);
+        structure_.ranges_.resize(fresh + 2);
+        make_node(fresh, half(0), 0, 0);
+        make_node(fresh + 1, half(1), 0, 1);
+        const std::uint32_t both[2] = {fresh, fresh + 1};
+        make_node(0, both, kNone, 0);
+        ++structure_.height_;
+        structure_.refresh_node(fresh);
+        structure_.refresh_node(fresh + 1);
+        structure_.refresh_node(0);
+        return fresh;
+    }
+    nodes_.emplace_back();
+    structure_.ranges_.emplace_back();
+    const NodeId parent = nodes_[n].parent;
+    make_node(n, half(0), parent, nodes_[n].lane_in_parent);
+    make_node(fresh, half(1), parent, 0);
+    structure_.refresh_node(n);
+    structure_.refresh_node(fresh);
+    add_child(parent, fresh);
+    refresh_path(nodes_[n].parent);
+    refresh_path(nodes_[fresh].parent);
+    return n;
+}
+
+void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent) {
+    clear(nodes_[n]);
+    structure_.ranges_[n] = {};
+    nodes_[n].parent = parent;
+    nodes_[n].lane_in_parent = lane_in_parent;
+    nodes_[n].only_leaves = 1;
+    for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
+}
+
+void Placement::refresh_path(NodeId n) {
+    for (; n != kNone; n = nodes_[n].parent) structure_.refresh_node(n);
+}
+
+// The items of a leaf below here are no longer as many as they were.
+void Placement::invalidate_item_count(NodeId n) {
+    for (; n != kNone && structure_.ranges_[n].items != 0; n = nodes_[n].parent) structure_.ranges_[n].items = 0;
+}
+
+}  // namespace crofton::boxtree

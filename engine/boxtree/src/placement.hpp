@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Items into the leaves of a structure, and out of them.
+#pragma once
+#include <crofton/boxtree/structure.hpp>
+
+namespace crofton::boxtree {
+
+class Placement {
+  public:
+    explicit Placement(Structure& structure)
+        : structure_(structure), nodes_(structure.nodes_), leaves_(structure.leaves_) {}
+
+    // Of an item in no leaf: into the leaf whose criterion grows least. Bounds are right at once.
+    void place(ItemId item);
+    // Out of its leaf; bounds shrink at the next refit.
+    void vacate(ItemId item);
+
+  private:
+    [[nodiscard]] LeafId best_leaf(const Aabb& bounds) const;
+    LeafId add_leaf();
+    void split_leaf(LeafId l);
+    void make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent);
+    void add_child(NodeId parent, std::uint32_t child);
+    void link(NodeId parent, unsigned lane, std::uint32_t child);
+    NodeId split_node(NodeId n);
+    void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent);
+    void refresh_path(NodeId n);
+    void invalidate_item_count(NodeId n);
+
+    Structure& structure_;
+    Vector<Node>& nodes_;
+    Vector<Leaf>& leaves_;
+};
+
+}  // namespace crofton::boxtree

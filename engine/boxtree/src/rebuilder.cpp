@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include <crofton/boxtree/rebuilder.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "bounds.hpp"
+#include "builder.hpp"
+#include "placement.hpp"
+#include "refit.hpp"
+
+namespace crofton::boxtree {
+namespace {
+
+// What things cost, in items' worth: adding one to a builder is worth 1.
+constexpr std::size_t kSlotsPerItem = 16;  // cleared
+constexpr std::size_t kNodeLinked = 8, kLeafFilled = 32, kNodeBounded = 32;
+constexpr std::size_t kWordsPerItem = 16;
+constexpr std::size_t kItemMoved = 2, kItemPlaced = 64;  // brought up to date
+
+std::size_t steps(std::size_t budget, std::size_t cost) {
+    return std::max<std::size_t>(budget / cost, 1);
+}
+
+bool moves_often(const void* context, ItemId item) {
+    const Structure& current = *static_cast<const Structure*>(context);
+    return current.contains(item) && current.marks().moves_often(current.slot_of(item));
+}
+
+}  // namespace
+
+struct Rebuilder::Work {
+    // One after the other; in `apply_changes` what has changed meanwhile is brought into `next`.
+    enum class Stage : std::uint8_t { add, divide, clear_slots, link, fill, bound, apply_changes, done };
+
+    Work(const Structure& current, Items& all)
+        : items(all),
+          builder(bounds_of(current.nodes()[0]), all.count_in_leaves(), current.criterion()),
+          next(std::make_unique<Structure>(all, current.criterion())),
+          changed((all.size() + 63) / 64, 0),
+          placed(changed.size(), 0) {}
+    void enter(Stage next_stage, std::size_t from = 0) {
+        stage = next_stage;
+        at = from;
+    }
+
+    Items& items;
+    Builder builder;
+    std::unique_ptr<Structure> next;
+    Stage stage = Stage::add;
+    std::size_t at = 0;  // item, slot, leaf, node or word of `changed`
+    // One bit an item: what has changed since the rebuild began, and which of these were placed anew.
+    Vector<std::uint64_t> changed, placed;
+    std::size_t changed_count = 0;
+    std::size_t new_work = 0;  // what the changes since the last step are worth
+};
+
+Rebuilder::Rebuilder() = default;
+Rebuilder::~Rebuilder() = default;
+
+void Rebuilder::note_change(ItemId item, bool placed) {
+    if (!work_) return;
+    if (work_->changed.size() <= item / 64) {
+        work_->changed.resize(item / 64 + 1, 0);
+        work_->placed.resize(item / 64 + 1, 0);
+    }
+    std::uint64_t& word = work_->changed[item / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (item % 64);
+    work_->changed_count += (word & bit) == 0;
+    work_->new_work += placed ? kItemPlaced : kItemMoved;
+    word |= bit;
+    if (placed) work_->placed[item / 64] |= bit;
+}
+
+void Rebuilder::note_changes(std::span<const ItemId> items) {
+    if (!work_) return;
+    for (const ItemId item : items) note_change(item);
+}
+
+std::unique_ptr<Structure> Rebuilder::step(const Structure& current, Items& items, std::size_t budget) {
+    last_step_ = {};
+    if (!work_) {
+        if (items.count_in_leaves() == 0) return nullptr;
+        work_ = std::make_unique<Work>(current, items);
+    }
+    if (work_->stage == Work::Stage::apply_changes) budget += work_->new_work;
+    work_->new_work = 0;
+    while (budget > 0 && work_->stage != Work::Stage::done) budget -= std::min(budget, run_stage(current, budget));
+    if (work_->stage != Work::Stage::done) return nullptr;
+    std::unique_ptr<Structure> result = std::move(work_->next);
+    work_.reset();
+    return result;
+}
+
+// A step of about `budget` items' worth; returns what it was.
+std::size_t Rebuilder::run_stage(const Structure& current, std::size_t budget) {
+    switch (work_->stage) {
+        case Work::Stage::add:
+            return add_items(current, budget);
+        case Work::Stage::divide:
+            return divide(current, budget);
+        case Work::Stage::clear_slots:
+            return clear_slots(budget);
+        case Work::Stage::link:
+            return link_nodes(budget);
+        case Work::Stage::fill:
+            return fill_leaves(current, budget);
+        case Work::Stage::bound:
+            return bound_nodes(budget);
+        default:
+            return apply_changes(current, budget);
+    }
+}
+
+std::size_t Rebuilder::add_items(const Structure& current, std::size_t budget) {
+    const std::size_t all = work_->items.size(), end = std::min(all, work_->at + budget), spent = end - work_->at;
+    for (; work_->at < end; ++work_->at, ++last_step_.items_added) {
+        const auto item = static_cast<ItemId>(work_->at);
+        if (current.contains(item)) work_->builder.add(item, work_->items.boxes()[item]);
+    }
+    if (end == all) work_->enter(Work::Stage::divide);
+    return spent;
+}
+
+std::size_t Rebuilder::divide(const Structure& current, std::size_t budget) {
+    ++last_step_.divisions;
+    if (!work_->builder.step(budget, work_->items.boxes(), {moves_often, &current})) return budget;
+    work_->builder.release_scratch();
+    work_->next->begin_steps(work_->builder.result());
+    work_->enter(Work::Stage::clear_slots);
+    return budget;
+}
+
+std::size_t Rebuilder::clear_slots(std::size_t budget) {
+    const std::size_t all = work_->items.size(), end = std::min(all, work_->at + budget * kSlotsPerItem);
+    const std::size_t spent = (end - work_->at) / kSlotsPerItem + 1;
+    last_step_.slots_cleared += end - work_->at;
+    work_->next->add_items(static_cast<ItemId>(end));
+    work_->at = end;
+    if (end == all) work_->enter(Work::Stage::link);
+    return spent;
+}
+
+std::size_t Rebuilder::link_nodes(std::size_t budget) {
+    const Topology& topology = work_->builder.result();
+    const std::size_t all = topology.nodes.size(), end = std::min(all, work_->at + steps(budget, kNodeLinked));
+    const std::size_t linked = end - work_->at;
+    work_->next->add_nodes(static_cast<NodeId>(end), topology);
+    last_step_.nodes_linked += linked;
+    work_->at = end;
+    if (end == all) work_->enter(Work::Stage::fill);
+    return linked * kNodeLinked;
+}
+
+std::size_t Rebuilder::fill_leaves(const Structure& current, std::size_t budget) {
+    const Topology& topology = work_->builder.result();
+    const std::size_t all = topology.leaves.size(), end = std::min(all, work_->at + steps(budget, kLeafFilled));
+    const std::size_t filled = end - work_->at;
+    work_->next->add_leaves(static_cast<LeafId>(end), topology, current);
+    last_step_.leaves_filled += filled;
+    work_->at = end;
+    if (end < all) return filled * kLeafFilled;
+    work_->next->reset_marks();
+    work_->enter(Work::Stage::bound, topology.nodes.size());
+    return filled * kLeafFilled;
+}
+
+std::size_t Rebuilder::bound_nodes(std::size_t budget) {
+    const std::size_t count = std::min(work_->at, steps(budget, kNodeBounded));
+    work_->next->bound_nodes(static_cast<NodeId>(work_->at - count), static_cast<NodeId>(work_->at));
+    last_step_.nodes_bounded += count;
+    work_->at -= count;
+    if (work_->at == 0) work_->enter(Work::Stage::apply_changes);
+    return count * kNodeBounded;
+}
+
+// What has changed since the rebuild began, into the new structure.
+std::size_t Rebuilder::apply_changes(const Structure& current, std::size_t budget) {
+    Structure& next = *work_->next;
+    next.add_items(static_cast<ItemId>(work_->items.size()));
+    std::size_t spent = 1;
+    for (; work_->changed_count > 0 && spent < budget; ++work_->at) {
+        if (work_->at >= work_->changed.size()) work_->at = 0;
+        const std::uint64_t placed_word = std::exchange(work_->placed[work_->at], 0);
+        spent += work_->at % kWordsPerItem == 0;
+        for (std::uint64_t rest = std::exchange(work_->changed[work_->at], 0); rest; rest &= rest - 1) {
+            const auto item = static_cast<ItemId>(64 * work_->at + static_cast<unsigned>(std::countr_zero(rest)));
+            const bool present = current.contains(item), placed = (placed_word & rest & (~rest + 1)) != 0;
+            spent += present && (placed || !next.contains(item)) ? kItemPlaced : kItemMoved;
+            sync_item(item, present, placed);
+            ++last_step_.items_synced;
+            --work_->changed_count;
+        }
+    }
+    Refit(next).run();
+    next.reset_marks();
+    if (work_->changed_count == 0) work_->stage = Work::Stage::done;
+    return spent;
+}
+
+// The new structure agrees with the item's box, layers and presence.
+void Rebuilder::sync_item(ItemId item, bool present, bool placed) {
+    Structure& next = *work_->next;
+    if (next.contains(item) && (!present || placed)) Placement(next).vacate(item);
+    if (!present) return;
+    if (!next.contains(item)) return Placement(next).place(item);
+    const std::uint32_t slot = next.slot_of(item);
+    if (next.leaves()[slot / kWidth].layers[slot % kWidth] != work_->items.layer_masks()[item])
+        next.update_layers(item);
+    next.update_box(item);
+}
+
+}  // namespace crofton::boxtree

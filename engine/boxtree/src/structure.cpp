@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Leaves from items, nodes from what is below them.
+#include <crofton/boxtree/structure.hpp>
+
+#include <hwy/cache_control.h>
+#include <algorithm>
+#include <crofton/core/diagnostics.hpp>
+
+#include "bounds.hpp"
+#include "leaf_writer.hpp"
+#include "subtree.hpp"
+
+namespace crofton::boxtree {
+
+Aabb Structure::child_bounds(NodeId node, unsigned lane) const {
+    CROFTON_ASSERT(node < nodes_.size() && lane < nodes_[node].count, "no such child");
+    return bounds_of_lane(nodes_[node], lane);
+}
+
+void Structure::make_room(const Topology& topology) {
+    height_ = topology.height;
+    nodes_.resize(topology.nodes.size());
+    ranges_.resize(topology.nodes.size());
+    leaf_counts_.assign(topology.leaves.size(), 0);
+    slot_items_.assign(topology.leaves.size() * kWidth, kNone);
+    item_slots_.assign(items_.size(), kNone);
+    marks_.reset(topology.leaves.size());
+    leaves_.reserve(topology.leaves.size());
+}
+
+// They are written soon after: before they have left the cache where they were made.
+void Structure::make_room_for_leaves(LeafId end) {
+    leaves_.resize(end);
+}
+
+void Structure::link_nodes(NodeId begin, NodeId end, const Topology& topology) {
+    for (NodeId n = begin; n < end; ++n) init_node(n, topology);
+}
+
+void Structure::init_node(NodeId n, const Topology& topology) {
+    const Topology::NodeRecord& record = topology.nodes[n];
+    Node& node = nodes_[n];
+    clear(node);
+    ranges_[n] = record.leaves;
+    node.count = record.count;
+    node.parent = record.parent;
+    node.lane_in_parent = record.lane_in_parent;
+    node.only_leaves = 1;
+    for (std::uint32_t lane = 0; lane < record.count; ++lane) {
+        node.child[lane] = record.child[lane];
+        if (!(record.child[lane] & kLeafBit)) node.only_leaves = 0;
+    }
+}
+
+void Structure::fill_leaf(LeafId l, LeafId end, const Topology& topology, const Structure* current) {
+    const Topology::LeafRecord& record = topology.leaves[l];
+    // The boxes lie in the order of their ids: ask early for those of the leaf after the next.
+    if (l + 2 < end) {
+        const Topology::LeafRecord& ahead = topology.leaves[l + 2];
+        for (std::uint32_t i = 0; i < ahead.count; ++i) {
+            const ItemId item = topology.order[ahead.first + i];
+            hwy::Prefetch(&items_.boxes()[item]);
+            hwy::Prefetch(&items_.boxes()[item].half_extents);
+            hwy::Prefetch(&items_.layer_masks()[item]);
+            hwy::Prefetch(&item_slots_[item]);
+        }
+    }
+    Leaf& leaf = leaves_[l];
+    clear(leaf);
+    leaf.parent = record.parent;
+    leaf.lane_in_parent = record.lane_in_parent;
+    for (std::uint32_t i = 0; i < record.count; ++i) {
+        const ItemId item = topology.order[record.first + i];
+        if (current != nullptr && !current->contains(item)) continue;
+        const std::uint32_t slot = l * kWidth + leaf.count++;
+        slot_items_[slot] = item;
+        item_slots_[item] = slot;
+    }
+    leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
+    write_leaf_layers(l);
+    rewrite_leaf(l);
+}
+
+// Bounds, layers and the number of items, from the children's. Parents come before children.
+void Structure::bound_nodes(NodeId begin, NodeId end) {
+    for (NodeId n = end; n-- > begin;) {
+        refresh_node(n);
+        ranges_[n].items = items_without_gaps(n);
+    }
+}
+
+void Structure::begin_steps(const Topology& topology) {
+    height_ = topology.height;
+    item_slots_.reserve(items_.size());
+    nodes_.reserve(topology.nodes.size());
+    ranges_.reserve(topology.nodes.size());
+    leaves_.reserve(topology.leaves.size());
+    leaf_counts_.reserve(topology.leaves.size());
+    slot_items_.reserve(topology.leaves.size() * kWidth);
+}
+
+void Structure::add_items(ItemId end) {
+    if (end > item_slots_.size()) item_slots_.resize(end, kNone);
+}
+
+void Structure::add_nodes(NodeId end, const Topology& topology) {
+    const auto begin = static_cast<NodeId>(nodes_.size());
+    nodes_.resize(end);
+    ranges_.resize(end);
+    link_nodes(begin, end, topology);
+}
+
+void Structure::add_leaves(LeafId end, const Topology& topology, const Structure& current) {
+    const auto begin = static_cast<LeafId>(leaves_.size()), all = static_cast<LeafId>(topology.leaves.size());
+    leaves_.resize(end);
+    leaf_counts_.resize(end, 0);
+    slot_items_.resize(std::size_t{end} * kWidth, kNone);
+    for (LeafId l = begin; l < end; ++l) fill_leaf(l, all, topology, &current);
+}
+
+void Structure::write_leaf_layers(LeafId l) {
+    Leaf& leaf = leaves_[l];
+    leaf.layers_every = ~std::uint32_t{0};
+    for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
+        leaf.layers[lane] = items_.layer_masks()[slot_items_[l * kWidth + lane]];
+        leaf.layers_every &= leaf.layers[lane];
+    }
+}
+
+// Writes all boxes anew in a fitting frame.
+void Structure::rewrite_leaf(LeafId l) {
+    Leaf& leaf = leaves_[l];
+    Aabb centers;
+    double longest = 0.0;
+    for (std::uint32_t lane = 0; lane < leaf.count; ++lane) {
+        const Obb& box = items_.boxes()[slot_items_[l * kWidth + lane]];
+        centers.include(box.center);
+        longest = std::max(longest, longest_edge(box));
+    }
+    fit_frame(leaf, centers, longest);
+    [[maybe_unused]] const std::size_t written =
+        write_lanes(leaves_.data(), std::span(&l, 1), slot_items_.data(), items_.boxes().data());
+    CROFTON_ASSERT(written == 1, "a frame around boxes must take them");
+}
+
+// An item's box and layers into its slot, all boxes anew if the leaf's frame does not take it.
+void Structure::write_item(ItemId item) {
+    const std::uint32_t slot = item_slots_[item];
+    write_layers(leaves_[slot / kWidth], slot % kWidth, items_.layer_masks()[item]);
+    if (!write_lane(leaves_[slot / kWidth], slot % kWidth, items_.boxes()[item])) rewrite_leaf(slot / kWidth);
+}
+
+// Bounds and layers of all lanes from the children, in a fitting frame.
+void Structure::refresh_node(NodeId n) {
+    Node& node = nodes_[n];
+    Aabb bounds[kWidth], whole;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        const std::uint32_t child = node.child[lane];
+        bounds[lane] = child & kLeafBit ? bounds_of(leaves_[child & ~kLeafBit]) : bounds_of(nodes_[child]);
+        if (!bounds[lane].is_empty()) whole.include(bounds[lane]);
+    }
+    fit_frame(node, whole);
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane]);
+        CROFTON_ASSERT(fits, "a frame around bounds must take them");
+        refresh_layers(n, lane);
+    }
+}
+
+void Structure::refresh_layers(NodeId n, unsigned lane) {
+    Node& node = nodes_[n];
+    const std::uint32_t child = node.child[lane];
+    if (child & kLeafBit) {
+        const Leaf& leaf = leaves_[child & ~kLeafBit];
+        write_layers(node, lane, leaf.layers, leaf.layers, leaf.count);
+    } else {
+        const Node& below = nodes_[child];
+        write_layers(node, lane, below.layers_any, below.layers_all, below.count);
+    }
+    node.layers_every = ~std::uint32_t{0};
+    for (unsigned i = 0; i < node.count; ++i) node.layers_every &= node.layers_all[i];
+}
+
+// 0 where a slot is empty that is not among the last.
+std::uint32_t Structure::items_without_gaps(NodeId n) const {
+    const Node& node = nodes_[n];
+    if (ranges_[n].count == 0) return 0;
+    std::uint32_t items = 0;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+        const std::uint32_t child = node.child[lane], id = child & ~kLeafBit;
+        const LeafRange below = child & kLeafBit ? LeafRange{id, 1, leaf_counts_[id]} : ranges_[child];
+        const bool has_gap = below.items == 0 || (lane + 1 < node.count && below.items < below.count * kWidth);
+        if (has_gap) return 0;
+        items += below.items;
+    }
+    return items;
+}
+
+}  // namespace crofton::boxtree

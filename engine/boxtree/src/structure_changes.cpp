@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Boxes and layers of items that stay in their slots.
+#include <hwy/cache_control.h>
+#include <crofton/boxtree/structure.hpp>
+
+#include "bounds.hpp"
+
+namespace crofton::boxtree {
+namespace {
+
+// Scattered items wait for memory: slots and boxes are asked for so many items ahead of their use, then leaves.
+constexpr std::size_t kAhead = 32, kNear = 12;
+
+template <class T>
+void prefetch_all(const T& value) {
+    for (std::size_t at = 0; at < sizeof(T); at += 64) hwy::Prefetch(reinterpret_cast<const char*>(&value) + at);
+}
+
+}  // namespace
+
+void Structure::reserve_item(ItemId item) {
+    if (item >= item_slots_.size()) grow_for_one(item_slots_);
+}
+
+void Structure::update_box(ItemId item) {
+    const std::uint32_t slot = item_slots_[item];
+    marks_.mark(slot);
+    if (marks_.has_few_changes(slot / kWidth)) write_item(item);
+}
+
+void Structure::update_layers(ItemId item) {
+    const std::uint32_t slot = item_slots_[item];
+    write_layers(leaves_[slot / kWidth], slot % kWidth, items_.layer_masks()[item]);
+    layers_changed_ = true;
+    marks_.mark(slot);
+}
+
+std::size_t Structure::find(std::span<const ItemId> items) {
+    const std::uint32_t* slots = item_slots_.data();
+    Vector<std::uint32_t>& found = scratch_.moved_slots;
+    found.resize(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i + kAhead < items.size() && items[i + kAhead] < item_slots_.size())
+            hwy::Prefetch(slots + items[i + kAhead]);
+        if (!contains(items[i])) return i;
+        found[i] = slots[items[i]];
+    }
+    return items.size();
+}
+
+void Structure::move_found(std::span<const ItemId> items, std::span<const Obb> boxes) {
+    const std::span<const std::uint32_t> slots = scratch_.moved_slots;
+    marks_.mark(slots);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i + kAhead < items.size()) prefetch_all(items_.boxes()[items[i + kAhead]]);
+        if (i + kNear < items.size() && marks_.has_few_changes(slots[i + kNear] / kWidth))
+            prefetch_all(leaves_[slots[i + kNear] / kWidth]);
+        items_.set_box(items[i], boxes[i]);
+        const LeafId leaf = slots[i] / kWidth;
+        if (marks_.has_few_changes(leaf) && !write_lane(leaves_[leaf], slots[i] % kWidth, boxes[i])) rewrite_leaf(leaf);
+    }
+}
+
+}  // namespace crofton::boxtree
