@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What does a view see of a tree: one view, many at once; as lists, bits and runs; with shadow casters.
 #pragma once
-#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
@@ -15,6 +14,10 @@
 #include <cstring>
 #include <glm/vec3.hpp>
 #include <span>
+
+namespace crofton::boxtree {
+class BoxTree;
+}
 
 namespace crofton::cull {
 
