@@ -14,6 +14,7 @@ cp "$work"/town/*0003.png town.png
 "$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
 "$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
 ./crofton.py >crofton.svg
+./modules.py >modules.svg
 if command -v chromium >/dev/null; then
     "$crofton" frames town --frames 120 --size 480x270 --verify --report "$work/report.html"
     chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" \

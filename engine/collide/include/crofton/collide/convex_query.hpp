@@ -3,7 +3,6 @@
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <crofton/mesh/mesh_query.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>

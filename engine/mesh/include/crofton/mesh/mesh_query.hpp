@@ -4,13 +4,15 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <crofton/mesh/mesh_tree.hpp>
+#include <glm/vec3.hpp>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 
 namespace crofton::mesh {
+
+class MeshTree;
 
 // Do two triangles meet? Exactly, whatever their shape.
 

@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws the map of the modules, in 0.1 and now, for docs/architecture.md. Reads today's arrows from engine/*/CMakeLists.txt.
+modules.py > modules.svg"""
+import pathlib
+import re
+
+# 0.1, as its build files had it.
+BEFORE = {
+    "core": [], "geometry": ["core"], "measure": ["geometry"], "fit": ["measure"], "tree": ["fit"], "scene": ["fit"], "cull": ["tree"],
+    "collide": ["scene", "tree"], "triangulate": ["measure"], "radiosity": ["tree", "triangulate"], "bake": ["tree", "scene"],
+    "render": ["core", "geometry"], "capi": ["fit", "scene", "cull", "collide", "triangulate", "bake"],
+}
+LEFT_OUT = {"simd", "study"}  # what kernels share; and what uses every module
+
+
+def today():
+    modules = {}
+    for path in sorted(pathlib.Path(__file__).parents[2].glob("engine/*/CMakeLists.txt")):
+        uses = re.search(r"crofton_module\(NAME \w+\s+DEPENDS ([a-z_ ]+)", path.read_text())
+        modules[path.parent.name] = uses[1].split() if uses else []
+    modules["render"] = ["core", "geometry"]
+    return {name: [other for other in used if other not in LEFT_OUT] for name, used in modules.items() if name not in LEFT_OUT}
+
+
+def levels(modules):
+    """Each module one level above the highest that it uses; and of its arrows those that no other path says."""
+    level, below = {}, {}
+
+    def visit(name):
+        if name not in level:
+            for other in modules[name]:
+                visit(other)
+            below[name] = {other for direct in modules[name] for other in below[direct] | {direct}}
+            level[name] = 1 + max((level[other] for other in modules[name]), default=-1)
+        return level[name]
+
+    for name in modules:
+        visit(name)
+    arrows = [(name, other) for name in modules for other in modules[name]
+              if not any(other in below[direct] for direct in modules[name])]
+    return level, arrows
+
+
+def place(level, arrows, left, width):
+    """Rows of boxes; each row is put in the order of the mean place of what its modules use."""
+    at, rows = {}, {}
+    for name in sorted(level):
+        rows.setdefault(level[name], []).append(name)
+    for row in sorted(rows):
+        def mean(name):
+            used = [at[other][0] for user, other in arrows if user == name and other in at]
+            return sum(used) / len(used) if used else left
+        rows[row].sort(key=lambda name: (mean(name), name))
+        for i, name in enumerate(rows[row]):
+            at[name] = (left + width * (i + 1) / (len(rows[row]) + 1), 470 - 58 * row)
+    return at
+
+
+def draw(title, modules, left, width):
+    level, arrows = levels(modules)
+    at = place(level, arrows, left, width)
+    out = [f'<text class="title" x="{left + width / 2}" y="28">{title}</text>']
+    for user, used in arrows:
+        (x0, y0), (x1, y1) = at[user], at[used]
+        out.append(f'<path class="arrow" d="M{x0:.0f} {y0 + 14:.0f} C{x0:.0f} {y0 + 38:.0f} {x1:.0f} {y1 - 38:.0f} {x1:.0f} {y1 - 14:.0f}"/>')
+    for name, (x, y) in at.items():
+        kind = {"world": "door", "render": "component"}.get(name, "module")
+        half = 5 + 3.9 * len(name)
+        out.append(f'<rect class="{kind}" x="{x - half:.0f}" y="{y - 13:.0f}" width="{2 * half:.0f}" height="26" rx="5"/>'
+                   f'<text x="{x:.0f}" y="{y + 4:.0f}">{name}</text>')
+    return out
+
+
+STYLE = """<style>
+svg { background: #fff; }
+text { font: 12px sans-serif; text-anchor: middle; fill: #222; }
+.title { font-size: 15px; }
+.note { text-anchor: start; }
+.arrow { fill: none; stroke: #9ab; stroke-width: 1.2; }
+rect { stroke: #567; fill: #eef3f8; }
+.door { fill: #ffe2a8; stroke: #b37a00; }
+.component { stroke-dasharray: 4 3; fill: #fff; }
+@media (prefers-color-scheme: dark) {
+svg { background: #16191d; }
+text { fill: #e4e7ea; }
+.arrow { stroke: #56677a; }
+rect { fill: #24303c; stroke: #8ab; }
+.door { fill: #5d4610; stroke: #ffc966; }
+.component { fill: #16191d; }
+}
+</style>"""
+
+now = today()
+body = draw("0.1", BEFORE, 0, 360) + draw("now", now, 370, 640)
+legend = "an arrow: uses; arrows that others imply are left out · yellow: the front door · dashed: a library of its own · not drawn: study, which uses all, and simd"
+print('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1020 530" width="1020" height="530">')
+print("\n".join([STYLE, *body, f'<text class="note" x="16" y="516">{legend}</text>', "</svg>"]))
