@@ -132,7 +132,7 @@ TEST_SUITE("mesh/mesh_mesh") {
 
     TEST_CASE("contacts come in order with the segments and normals of their triangles, to the bit") {
         std::mt19937_64 random(15);
-        const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 120, 60);
+        const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 200, 90);
         const auto tree = tree_of(mesh);
         std::size_t most = 0;
         for (int trial = 0; trial < 12; ++trial) {

@@ -254,12 +254,13 @@ PointPair search_features(const BoxPairInDouble& pair, PointPair best) {
 
 Distance distance(const Obb& a, const Obb& b) {
     const BoxPairInDouble pair(a, b);
-    const BoxOverlap overlap = overlap_of(a, b, pair);
-    const bool meet = overlap.surely_meet() || (!overlap.surely_apart() && intersects(a, b));
-    glm::dvec3 axis = least_of(overlap).axis;
+    const AxisMeasures measures = measures_of(a, b);
+    const bool meet = measures.surely_meet || (!measures.surely_apart && intersects(a, b));
+    const int least = least_axis(measures);
+    glm::dvec3 axis = pair.axis(least);
     if (glm::dot(axis, pair.offset) < 0.0) axis = -axis;
     bool proven = false;
-    PointPair nearest = descend(pair, axis, -least_of(overlap).depth(), proven);
+    PointPair nearest = descend(pair, axis, -depth_along(measures, least), proven);
     if (!proven && !meet) nearest = search_features(pair, nearest);
     Distance result;
     result.distance = meet ? 0.0 : std::max(kLeastDistance, glm::length(nearest.way));
