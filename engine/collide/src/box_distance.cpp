@@ -126,9 +126,9 @@ PointPair blended(const BoxPairInDouble& pair, const Simplex& s, const Blend& bl
     for (int n = 0; n < blend.count; ++n)
         for (int side = 0; side < 2; ++side)
             for (int k = 0; k < 3; ++k) {
-                const double ends[2] = {-pair.half[side][k], pair.half[side][k]};
-                const std::uint32_t sign = s.point[blend.index[n]].signs >> (3 * side + k) & 1u;
-                result.at[side][k] += blend.weight[n] * ends[side == 0 ? 1u - sign : sign];
+                const bool other = (s.point[blend.index[n]].signs >> (3 * side + k) & 1u) != 0;
+                const double end = other == (side == 0) ? -pair.half[side][k] : pair.half[side][k];
+                result.at[side][k] += blend.weight[n] * end;
             }
     result.way = blend.way;
     return result;
