@@ -87,7 +87,7 @@ const mesh::MeshTree* tree_of(const char* name) {
     static std::map<std::string, mesh::MeshTree> trees;
     const auto [place, is_new] = trees.try_emplace(name);
     if (is_new)
-        if (auto built = mesh::MeshTree::build(mesh_of(name))) place->second = std::move(*built);
+        if (auto built = mesh::MeshTree::build(mesh_of(name), {.rays = true})) place->second = std::move(*built);
     return place->second.triangle_count() == 0 ? nullptr : &place->second;
 }
 
