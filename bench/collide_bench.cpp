@@ -141,19 +141,6 @@ void mesh_build(benchmark::State& state, const char* name, MeshBoxes boxes = Mes
     state.counters["edge sum"] = mean_edge_sum(input->tree);
 }
 
-void mesh_rays(benchmark::State& state, MeshBoxes boxes) {
-    const MeshCase* input = mesh_case("bunny", state, boxes);
-    if (input == nullptr) return;
-    const auto rays = random_rays(input->mesh, 10000);
-    int hits = 0;
-    for (auto _ : state) {
-        hits = 0;
-        for (const Ray& ray : rays) hits += mesh::raycast(ray, input->tree).has_value();
-    }
-    state.counters["hits"] = hits;
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
-}
-
 BENCHMARK(box_pairs_streaming)->Name("sat/1M pairs from boxes/crofton")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(packed_pairs, streaming, 1'000'000)
     ->Name("sat/1M pairs packed/crofton")
@@ -202,8 +189,6 @@ void mesh_benchmarks() {
             add(mesh + std::string(" all"), [=](benchmark::State& state) { mesh_all(state, mesh, boxes); });
             add(mesh + std::string(" build"), [=](benchmark::State& state) { mesh_build(state, mesh, boxes); });
         }
-        benchmark::RegisterBenchmark((std::string("rays/bunny nearest/") + kind.name).c_str(), mesh_rays, boxes)
-            ->Unit(benchmark::kMillisecond);
     }
 }
 const bool registered = (mesh_benchmarks(), true);

@@ -97,7 +97,7 @@ void few_movers(benchmark::State& state) {
 
 void mesh_refit(benchmark::State& state) {
     TriangleMesh mesh = shared_mesh("bunny");
-    auto tree = mesh::MeshTree::build(mesh, {.refittable = true});
+    auto tree = mesh::MeshTree::build(mesh, {.refittable = true, .rays = true});
     if (!tree) return state.SkipWithError("shared data is absent");
     std::vector<glm::vec3> bent[2];
     for (std::size_t k = 0; k < 2; ++k)

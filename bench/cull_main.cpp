@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "least_times.hpp"
-#include "simd_target.hpp"
 
 namespace {
 
@@ -51,9 +50,6 @@ class Ratios : public crofton::bench::LeastTimes {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!crofton::bench::take_target_option(argc, argv)) return 1;
-    std::printf("Instruction set: %s\n", crofton::bench::target_in_use());
     Ratios reporter;
-    benchmark::AddCustomContext("instruction_set", crofton::bench::target_in_use());  // for bench/results.py
     return crofton::bench::run(argc, argv, reporter);
 }

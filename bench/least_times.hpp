@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "simd_target.hpp"
+
 namespace crofton::bench {
 
 enum class Clock { cpu, elapsed };
@@ -37,7 +39,10 @@ class LeastTimes : public benchmark::ConsoleReporter {
     std::map<std::string, double> times_;
 };
 
+// The options of Google Benchmark, and --target=NAME.
 inline int run(int argc, char** argv, LeastTimes& reporter) {
+    if (!take_target_option(argc, argv)) return 1;
+    benchmark::AddCustomContext("instruction_set", target_in_use());  // for bench/results.py
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
     benchmark::RunSpecifiedBenchmarks(&reporter);

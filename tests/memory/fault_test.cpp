@@ -212,7 +212,7 @@ TEST_SUITE("memory/fault") {
         const TriangleMesh mesh = grid(12);
         sweep("MeshTree::build", [&] { return outcome_of(mesh::MeshTree::build(mesh)); });
         sweep("MeshTree::build, refittable",
-              [&] { return outcome_of(mesh::MeshTree::build(mesh, {.refittable = true})); });
+              [&] { return outcome_of(mesh::MeshTree::build(mesh, {.refittable = true, .rays = true})); });
     }
 
     TEST_CASE("triangulations, a Triangulator answers as before after one that failed") {

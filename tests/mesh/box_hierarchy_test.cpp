@@ -16,21 +16,30 @@ bool holds(const FloatBox& outer, const FloatBox& inner) {
     return true;
 }
 
+FloatBox box_of(const BoxNode& node, std::uint32_t lane) {
+    FloatBox box;
+    for (int i = 0; i < 3; ++i) {
+        box.low[i] = node.bounds[i][lane];
+        box.high[i] = node.bounds[i + 3][lane];
+    }
+    return box;
+}
+
 // Nodes on the longest path; checks that every box holds what lies below it, and that each item is in one leaf.
 int check(const BoxHierarchy& tree, std::span<const FloatBox> boxes, std::uint32_t leaf_size) {
     std::vector<int> depth(tree.nodes.size(), 0), seen(boxes.size(), 0);
     depth[0] = 1;
     for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
-        const BoxHierarchy::Node& node = tree.nodes[n];
+        const BoxNode& node = tree.nodes[n];
         REQUIRE(node.count >= 1);
-        REQUIRE(node.count <= BoxHierarchy::kWidth);
+        REQUIRE(node.count <= kBoxNodeWidth);
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
             const std::uint32_t child = node.child[lane];
-            if (child & BoxHierarchy::kLeaf) {
-                const BoxHierarchy::Leaf& leaf = tree.leaves.at(child & ~BoxHierarchy::kLeaf);
+            if (child & kMeshLeaf) {
+                const BoxHierarchy::Leaf& leaf = tree.leaves.at(child & ~kMeshLeaf);
                 CHECK(leaf.end - leaf.begin <= leaf_size);
                 for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-                    CHECK(holds(node.box[lane], boxes[tree.order.at(i)]));
+                    CHECK(holds(box_of(node, lane), boxes[tree.order.at(i)]));
                     ++seen[tree.order[i]];
                 }
                 continue;
@@ -38,8 +47,8 @@ int check(const BoxHierarchy& tree, std::span<const FloatBox> boxes, std::uint32
             REQUIRE(child > n);
             REQUIRE(depth.at(child) == 0);
             depth[child] = depth[n] + 1;
-            const BoxHierarchy::Node& below = tree.nodes[child];
-            for (std::uint32_t l = 0; l < below.count; ++l) CHECK(holds(node.box[lane], below.box[l]));
+            const BoxNode& below = tree.nodes[child];
+            for (std::uint32_t l = 0; l < below.count; ++l) CHECK(holds(box_of(node, lane), box_of(below, l)));
         }
     }
     CHECK(std::count(seen.begin(), seen.end(), 1) == static_cast<std::ptrdiff_t>(boxes.size()));

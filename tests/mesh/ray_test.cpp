@@ -34,6 +34,10 @@ std::optional<double> oracle_hit(const Ray& ray, const TriangleMesh& mesh) {
     return best->get_d();
 }
 
+bool are_same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
+    return a.has_value() == b.has_value() && (!a || (a->t == b->t && a->triangle == b->triangle));
+}
+
 }  // namespace
 
 TEST_SUITE("mesh/ray") {
@@ -66,8 +70,9 @@ TEST_SUITE("mesh/ray") {
         TriangleMesh mesh;
         mesh.positions = {{0, 0, 1}, {4, 0, 1}, {0, 4, 1}};
         mesh.indices = {0, 1, 2, 0, 1, 2, 0, 2, 1};
-        const auto tree = mesh::MeshTree::build(mesh);
+        const auto tree = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
         const auto hit = raycast(Ray{{1, 1, 0}, {0, 0, 1}, 1.0}, *tree);
+        CHECK(are_same(hit, raycast(Ray{{1, 1, 0}, {0, 0, 1}, 1.0}, *prepared)));
         REQUIRE(hit.has_value());
         CHECK(hit->t == 1.0);
         CHECK(hit->triangle == 0);
@@ -81,7 +86,7 @@ TEST_SUITE("mesh/ray") {
     TEST_CASE("random rays, rays at vertices and at edges: as rational arithmetic says") {
         std::mt19937_64 random(3);
         const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 12, 8);
-        const auto tree = mesh::MeshTree::build(mesh);
+        const auto tree = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
         int hits = 0;
         for (int trial = 0; trial < 600; ++trial) {
             Ray ray{3.0 * random_vector(random), random_vector(random)};
@@ -91,6 +96,8 @@ TEST_SUITE("mesh/ray") {
             if (trial % 5 == 0) ray.origin = glm::dvec3(glm::ivec3(ray.origin));
             const auto truth = oracle_hit(ray, mesh);
             const auto hit = raycast(ray, *tree);
+            CHECK(are_same(hit, raycast(ray, *prepared)));
+            CHECK(hits_any(ray, *prepared) == hit.has_value());
             CHECK(hit.has_value() == truth.has_value());
             CHECK(hits_any(ray, *tree) == truth.has_value());
             std::optional<double> nearest;
@@ -116,7 +123,7 @@ TEST_SUITE("mesh/ray") {
             TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 5, 4);
             const glm::vec3 shift(trial % 2 ? 0.0f : static_cast<float>(1e3 * size));
             for (glm::vec3& p : mesh.positions) p = p * static_cast<float>(size) + shift;
-            const auto tree = mesh::MeshTree::build(mesh);
+            const auto tree = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
             const std::size_t t = random() % mesh.triangle_count();
             const glm::dvec3 a = vertex(mesh, t, 0), b = vertex(mesh, t, 1);
             const double along = static_cast<double>(random() % 5) / 4.0;
@@ -128,6 +135,8 @@ TEST_SUITE("mesh/ray") {
             ray.direction = (target - ray.origin) * std::pow(10.0, static_cast<int>(random() % 201) - 100);
             const auto truth = oracle_hit(ray, mesh);
             const auto hit = raycast(ray, *tree);
+            CHECK(are_same(hit, raycast(ray, *prepared)));
+            CHECK(hits_any(ray, *prepared) == hit.has_value());
             CHECK(hit.has_value() == truth.has_value());
             CHECK(hits_any(ray, *tree) == truth.has_value());
             if (hit && truth) CHECK(hit->t == doctest::Approx(*truth).epsilon(1e-6));
@@ -135,6 +144,38 @@ TEST_SUITE("mesh/ray") {
         }
         CHECK(hits > 1000);
         CHECK(misses > 300);
+    }
+
+    TEST_CASE("rays are prepared on request, and answered by the same bits before, after a refit and in a copy") {
+        std::mt19937_64 random(17);
+        TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 90, 60);
+        auto plain = mesh::MeshTree::build(mesh, {.refittable = true});
+        REQUIRE(plain.has_value());
+        CHECK(plain->ray_nodes().empty());
+        auto asked = *plain;
+        REQUIRE(asked.prepare_rays().has_value());
+        const std::size_t count = asked.ray_nodes().size();
+        CHECK(count > 100);
+        REQUIRE(asked.prepare_rays().has_value());  // the second time nothing is done
+        CHECK(asked.ray_nodes().size() == count);
+        CHECK(plain->ray_nodes().empty());
+        int hits = 0;
+        for (int round = 0; round < 2; ++round) {
+            for (int trial = 0; trial < 5000; ++trial) {
+                Ray ray{2.0 * random_vector(random), random_vector(random)};
+                if (trial % 4 == 0) ray.direction[trial / 4 % 3] = 0.0;
+                if (trial % 7 == 0) ray.max_t = 1.0;
+                const auto hit = raycast(ray, asked);
+                CHECK(are_same(hit, raycast(ray, *plain)));
+                CHECK(hits_any(ray, *plain) == hit.has_value());
+                hits += hit.has_value();
+            }
+            for (glm::vec3& p : mesh.positions) p.x += 0.3f * p.y * p.y;
+            REQUIRE(asked.refit(mesh.positions).has_value());
+            REQUIRE(plain->refit(mesh.positions).has_value());
+        }
+        CHECK(hits > 1000);
+        CHECK(mesh::MeshTree().prepare_rays().has_value());  // of no triangles
     }
 
     TEST_CASE("a closed mesh has no leaks: rays from inside always hit") {
@@ -175,7 +216,7 @@ TEST_SUITE("mesh/ray") {
     TEST_CASE("watertight: no ray from inside a closed mesh is lost at an edge or a vertex") {
         const TriangleMesh meshes[] = {cube_mesh(), wavy_torus(1.0, 0.6, 0.2, 24, 12)};
         for (const TriangleMesh& mesh : meshes) {
-            const auto tree = mesh::MeshTree::build(mesh);
+            const auto tree = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
             std::mt19937_64 random(8);
             std::vector<glm::dvec3> origins;
             while (origins.size() < 4) {
@@ -185,6 +226,7 @@ TEST_SUITE("mesh/ray") {
             int lost = 0;
             const auto shoot = [&](const glm::dvec3& from, const glm::dvec3& target) {
                 lost += !raycast(Ray{from, target - from}, *tree).has_value();
+                lost += !raycast(Ray{from, target - from}, *prepared).has_value();
                 lost += !hits_any(Ray{from, 1e-7 * (target - from)}, *tree);
             };
             for (const glm::dvec3& from : origins)
@@ -209,10 +251,12 @@ TEST_SUITE("mesh/ray") {
                 mesh.positions.push_back(
                     glm::vec3(origin + (3.0 + random_vector(random).x) * direction + off * random_vector(random)));
             mesh.indices = {0, 1, 2};
-            const auto tree = mesh::MeshTree::build(mesh);
+            const auto tree = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
             const Ray ray{origin, direction};
             const auto truth = oracle_hit(ray, mesh);
             const auto hit = raycast(ray, *tree);
+            CHECK(are_same(hit, raycast(ray, *prepared)));
+            CHECK(hits_any(ray, *prepared) == hit.has_value());
             CHECK(hit.has_value() == truth.has_value());
             if (hit && truth) {
                 CHECK(hit->t > 1.9);

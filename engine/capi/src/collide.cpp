@@ -105,7 +105,7 @@ crofton_status crofton_collider_create(const crofton_mesh* mesh, crofton_collide
     CROFTON_CHECK(check_pointer(collider, __func__));
     TriangleMesh copy;
     CROFTON_CHECK(to_mesh(mesh, __func__, copy));
-    auto built = mesh::MeshTree::build(copy);
+    auto built = mesh::MeshTree::build(copy, {.rays = true});
     if (!built) return report(built.error(), __func__);
     return create(collider, __func__, std::move(*built));
 }

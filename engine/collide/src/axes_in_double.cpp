@@ -82,19 +82,47 @@ HWY_INLINE Gaps gaps_of(const PairColumns& pair) {
     return gaps;
 }
 
+// Products of edges that are shorter are noise as directions.
+constexpr double kLeastSquaredSine = 1e-12;
+
+HWY_INLINE Three largest(const Three& u) {
+    return larger(u, larger(next(u), after_next(u)));
+}
+HWY_INLINE int first_axis(std::uint32_t axes) {
+    return axes == 0 ? 0 : static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(axes));
+}
+
 void MeasureAxes(const PairColumns& pair, AxisMeasures& measures) {
     const Gaps gaps = gaps_of(pair);
     const Columns a[3] = {columns(pair.a), next(columns(pair.a)), after_next(columns(pair.a))};
     const Columns b[3] = {columns(pair.b), next(columns(pair.b)), after_next(columns(pair.b))};
     const Columns axes[5] = {cross(a[1], a[2]), cross(b[1], b[2]), cross(a[0], b[0]), cross(a[0], b[1]),
                              cross(a[0], b[2])};
+    Three ratio[5];  // the signed square of the gap per length: as ordered as the gap itself
     for (int g = 0; g < 5; ++g) {
+        const Three squared = dot(axes[g], axes[g]);
         store3(gaps.gap[g], measures.gap[g]);
-        store3(dot(axes[g], axes[g]), measures.squared_length[g]);
+        store3(squared, measures.squared_length[g]);
+        ratio[g] = gaps.gap[g] * magnitude(gaps.gap[g]) / squared;
+        if (g >= 2) ratio[g] = where_above(squared, kLeastSquaredSine, ratio[g], -1e300);
     }
     alignas(32) double size[4];
     store3(gaps.size, size);
     measures.size = size[0];
+    const Three face = largest(larger(ratio[0], ratio[1]));
+    const Three edge = largest(larger(ratio[2], larger(ratio[3], ratio[4])));
+    const std::uint32_t faces[5] = {lanes_equal(ratio[0], face), lanes_equal(ratio[1], face), 0, 0, 0};
+    const std::uint32_t edges[5] = {0, 0, lanes_equal(ratio[2], edge), lanes_equal(ratio[3], edge),
+                                    lanes_equal(ratio[4], edge)};
+    const bool has_edge = (lanes_below(all3(-1e300), edge) & 1u) != 0;
+    measures.face = first_axis(axis_set(faces));
+    measures.edge = has_edge ? first_axis(axis_set(edges)) : -1;
+    measures.edge_is_widest = has_edge && (lanes_below(face, edge) & 1u) != 0;
+    const Three error = gaps.size * all3(0x1p-49) + all3(1e-300);
+    measures.surely_meet = lanes_all_below(gaps.gap, all3(0.0) - error) == 7u;
+    const Three widest =
+        larger(larger(gaps.gap[0], gaps.gap[1]), larger(gaps.gap[2], larger(gaps.gap[3], gaps.gap[4])));
+    measures.surely_apart = lanes_below(error, widest) != 0;
 }
 
 AxisVerdicts JudgeAxes(const PairColumns& pair) {

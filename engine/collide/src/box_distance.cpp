@@ -35,19 +35,26 @@ glm::dvec3 way_of(const BoxPairInDouble& pair, const double (&at)[2][3]) {
     return way;
 }
 
+// A corner of each box, and the way from the first to the second.
+struct CornerPair {
+    glm::dvec3 way{0.0};
+    std::uint32_t signs = 0;  // bit 3 · side + k: a corner of a at −half along axis k, or one of b at +half
+};
+
 // The corners nearest to each other along `direction`.
-PointPair support(const BoxPairInDouble& pair, const glm::dvec3& direction) {
-    PointPair result;
-    for (int k = 0; k < 3; ++k) {
-        result.at[0][k] = glm::dot(pair.axes[0][k], direction) < 0.0 ? -pair.half[0][k] : pair.half[0][k];
-        result.at[1][k] = glm::dot(pair.axes[1][k], direction) < 0.0 ? pair.half[1][k] : -pair.half[1][k];
-    }
-    result.way = way_of(pair, result.at);
+CornerPair support(const BoxPairInDouble& pair, const glm::dvec3& direction) {
+    CornerPair result{pair.offset, 0};
+    for (int side = 0; side < 2; ++side)
+        for (int k = 0; k < 3; ++k) {  // without branches, which nothing could predict
+            const double along = glm::dot(pair.axes[side][k], direction);
+            result.way -= std::copysign(pair.half[side][k], along) * pair.axes[side][k];
+            result.signs |= (std::signbit(along) ? 1u : 0u) << (3 * side + k);
+        }
     return result;
 }
 
 struct Simplex {
-    PointPair point[4];
+    CornerPair point[4];
     int count = 0;
 };
 
@@ -79,7 +86,8 @@ const Blend& nearer_of(const Blend& a, const Blend& b) {
     return b.squared < a.squared ? b : a;
 }
 
-// By the regions around a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+// By the regions around a triangle (Ericson, Real-Time Collision Detection, 5.1.5). k is the newest point: the edge
+// without it did not improve when it was found.
 Blend nearest_on_triangle(const Simplex& s, int i, int j, int k) {
     const glm::dvec3 &a = s.point[i].way, &b = s.point[j].way, &c = s.point[k].way;
     const glm::dvec3 ab = b - a, ac = c - a;
@@ -91,7 +99,7 @@ Blend nearest_on_triangle(const Simplex& s, int i, int j, int k) {
         const glm::dvec3 way = a + v * ab + w * ac;
         return {way, glm::dot(way, way), {1.0 - v - w, v, w}, {i, j, k}, 3};
     }
-    return nearer_of(nearer_of(nearest_on_segment(s, i, j), nearest_on_segment(s, j, k)), nearest_on_segment(s, i, k));
+    return nearer_of(nearest_on_segment(s, j, k), nearest_on_segment(s, i, k));
 }
 
 // Of the faces that have the last point: the other did not improve when that point was found.
@@ -113,11 +121,15 @@ Blend nearest_of(const Simplex& s) {
     return s.count == 3 ? nearest_on_triangle(s, 0, 1, 2) : nearest_on_tetrahedron(s);
 }
 
-PointPair blended(const Simplex& s, const Blend& blend) {
+PointPair blended(const BoxPairInDouble& pair, const Simplex& s, const Blend& blend) {
     PointPair result;
     for (int n = 0; n < blend.count; ++n)
         for (int side = 0; side < 2; ++side)
-            for (int k = 0; k < 3; ++k) result.at[side][k] += blend.weight[n] * s.point[blend.index[n]].at[side][k];
+            for (int k = 0; k < 3; ++k) {
+                const bool other = (s.point[blend.index[n]].signs >> (3 * side + k) & 1u) != 0;
+                const double end = other == (side == 0) ? -pair.half[side][k] : pair.half[side][k];
+                result.at[side][k] += blend.weight[n] * end;
+            }
     result.way = blend.way;
     return result;
 }
@@ -138,21 +150,20 @@ PointPair descend(const BoxPairInDouble& pair, const glm::dvec3& axis, double le
         const double length = std::sqrt(best.squared);
         proven = length - least <= accepted;
         if (proven || simplex.count == 4) break;
-        const PointPair next = support(pair, best.way);
+        const CornerPair next = support(pair, best.way);
         proven = best.squared - glm::dot(best.way, next.way) <= accepted * length;
         if (proven) break;
-        Simplex wider = simplex;
-        wider.point[wider.count++] = next;
-        const Blend nearer = nearest_of(wider);
+        simplex.point[simplex.count++] = next;
+        const Blend nearer = nearest_of(simplex);
         if (!(nearer.squared < best.squared)) break;
         best = nearer;
-        for (int n = 0; n < best.count; ++n) {
-            simplex.point[n] = wider.point[best.index[n]];
+        for (int n = 0; n < best.count; ++n) {  // indices ascend
+            simplex.point[n] = simplex.point[best.index[n]];
             best.index[n] = n;
         }
         simplex.count = best.count;
     }
-    return blended(simplex, best);
+    return blended(pair, simplex, best);
 }
 
 // All pairs of features: corners, edges and faces that are free within `tolerance` of `direction`. A pair of points is
@@ -254,12 +265,13 @@ PointPair search_features(const BoxPairInDouble& pair, PointPair best) {
 
 Distance distance(const Obb& a, const Obb& b) {
     const BoxPairInDouble pair(a, b);
-    const BoxOverlap overlap = overlap_of(a, b, pair);
-    const bool meet = overlap.surely_meet() || (!overlap.surely_apart() && intersects(a, b));
-    glm::dvec3 axis = least_of(overlap).axis;
+    const AxisMeasures measures = measures_of(a, b);
+    const bool meet = measures.surely_meet || (!measures.surely_apart && intersects(a, b));
+    const int least = least_axis(measures);
+    glm::dvec3 axis = pair.axis(least);
     if (glm::dot(axis, pair.offset) < 0.0) axis = -axis;
     bool proven = false;
-    PointPair nearest = descend(pair, axis, -least_of(overlap).depth(), proven);
+    PointPair nearest = descend(pair, axis, -depth_along(measures, least), proven);
     if (!proven && !meet) nearest = search_features(pair, nearest);
     Distance result;
     result.distance = meet ? 0.0 : std::max(kLeastDistance, glm::length(nearest.way));

@@ -4,47 +4,55 @@
 #include <cmath>
 #include <crofton/collide/obb_obb.hpp>
 #include <crofton/geometry/box.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+
+#include "pair_columns.hpp"
 
 namespace crofton::collide {
 
 // Two boxes about the first one's centre, so that nothing is lost far from the origin.
 struct BoxPairInDouble {
-    BoxPairInDouble(const Obb& first, const Obb& second);
+    BoxPairInDouble(const Obb& first, const Obb& second) : offset(second.center - first.center) {
+        size = std::abs(offset.x) + std::abs(offset.y) + std::abs(offset.z);
+        for (int side = 0; side < 2; ++side) {
+            const Obb& box = side == 0 ? first : second;
+            for (int k = 0; k < 3; ++k) {
+                axes[side][k] = glm::dvec3(box.axes[k]);
+                half[side][k] = static_cast<double>(box.half_extents[k]);
+                size += half[side][k];
+            }
+        }
+    }
+    // Across the face's edges; as long as these are.
+    [[nodiscard]] glm::dvec3 normal(int side, int k) const {
+        return glm::cross(axes[side][(k + 1) % 3], axes[side][(k + 2) % 3]);
+    }
+    [[nodiscard]] glm::dvec3 axis(int number) const {
+        if (number < 6) return normal(number / 3, number % 3);
+        return glm::cross(axes[0][(number - 6) / 3], axes[1][(number - 6) % 3]);
+    }
 
     glm::dvec3 offset;      // center_b − center_a
     glm::dvec3 axes[2][3];  // of a and of b
     double half[2][3];
-    glm::dvec3 normals[2][3];  // cross products of the other two axes
-    double size;               // |offset|₁ + all half extents: rounding errors scale with it
+    double size;  // |offset|₁ + all half extents: rounding errors scale with it
 };
 
-// An axis, numbered as in obb_obb.hpp, and the overlap along it times the axis's length.
-struct AxisOverlap {
-    glm::dvec3 axis{0.0};
-    double scaled_depth = 0.0, squared_length = 1.0;
-    int number = kNotSeparated;
+[[nodiscard]] AxisMeasures measures_of(const Obb& a, const Obb& b);
 
-    [[nodiscard]] double depth() const { return scaled_depth / std::sqrt(squared_length); }
-    // Without dividing.
-    [[nodiscard]] bool is_less_than(const AxisOverlap& other) const {
-        return scaled_depth * std::abs(scaled_depth) * other.squared_length <
-               other.scaled_depth * std::abs(other.scaled_depth) * squared_length;
-    }
-};
-
-struct BoxOverlap {
-    AxisOverlap faces[6];
-    AxisOverlap edge;          // the least of the edges' that are not parallel; number is −1 where all are
-    double error_bound = 0.0;  // of the scaled depths
-    double least = 0.0;        // scaled depth of all axes, parallel edges too
-
-    // Boxes whose depths are all beyond the error bound surely meet; where one is below it, they surely do not.
-    [[nodiscard]] bool surely_meet() const { return least > error_bound; }
-    [[nodiscard]] bool surely_apart() const { return least < -error_bound; }
-};
-[[nodiscard]] BoxOverlap overlap_of(const Obb& a, const Obb& b, const BoxPairInDouble& pair);
-// The least of all; a face comes before an edge product of equal depth.
-[[nodiscard]] const AxisOverlap& least_of(const BoxOverlap& overlap);
+// The axis of the least overlap, numbered as in obb_obb.hpp; a face comes before an edge product of equal depth.
+[[nodiscard]] inline int least_axis(const AxisMeasures& measures) {
+    return measures.edge_is_widest ? measures.edge : measures.face;
+}
+[[nodiscard]] inline double squared_length(const AxisMeasures& measures, int axis) {
+    const AxisPlace place = place_of(axis);
+    return measures.squared_length[place.group][place.lane];
+}
+// How deep the boxes overlap along an axis; negative: the gap.
+[[nodiscard]] inline double depth_along(const AxisMeasures& measures, int axis) {
+    const AxisPlace place = place_of(axis);
+    return -measures.gap[place.group][place.lane] / std::sqrt(measures.squared_length[place.group][place.lane]);
+}
 
 }  // namespace crofton::collide

@@ -6,14 +6,6 @@
 
 namespace crofton::collide {
 
-void add_point(const ContactPoint& point, double error_bound, Manifold& manifold) {
-    for (int i = 0; i < manifold.count; ++i) {
-        const glm::dvec3 apart = manifold.points[i].position - point.position;
-        if (glm::dot(apart, apart) <= error_bound * error_bound) return;
-    }
-    if (manifold.count < 8) manifold.points[manifold.count++] = point;
-}
-
 void reduce(Manifold& manifold) {
     if (manifold.count <= 4) return;
     const ContactPoint(&points)[8] = manifold.points;

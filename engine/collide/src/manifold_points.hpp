@@ -5,9 +5,6 @@
 
 namespace crofton::collide {
 
-// Adds a point unless one is there within `error_bound` or there are eight.
-void add_point(const ContactPoint& point, double error_bound, Manifold& manifold);
-
 // Keeps at most four points, in their order: the deepest, the one farthest from it, and the two that with these span
 // the largest area on either side.
 void reduce(Manifold& manifold);

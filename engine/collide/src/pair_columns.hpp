@@ -35,11 +35,26 @@ struct AxisVerdicts {
     std::uint32_t separated = 0, unknown = 0;
 };
 
+// The group of an axis and its lane in there.
+struct AxisPlace {
+    int group, lane;
+};
+[[nodiscard]] constexpr AxisPlace place_of(int axis) {
+    if (axis < 6) return {axis / 3, axis % 3};
+    const int i = (axis - 6) / 3, j = (axis - 6) % 3;
+    return {2 + (j - i + 3) % 3, i};
+}
+
 // Of each axis, by group and lane: the gap along it, which is negative where the boxes overlap, times its length, and
 // the square of that length. Gaps are off by less than 2^-49 of `size`, the sum of all half extents and |offset|₁.
+// `face` and `edge` are the first axes of the largest gap per length among faces and among edges that are not
+// parallel; `edge` is −1 where all are. `surely_meet` and `surely_apart` are judge_axes' verdicts.
 struct AxisMeasures {
     alignas(32) double gap[5][4], squared_length[5][4];
     double size;
+    int face, edge;
+    bool edge_is_widest;  // beyond the face
+    bool surely_meet, surely_apart;
 };
 void measure_axes(const PairColumns& pair, AxisMeasures& measures);
 

@@ -41,6 +41,12 @@ HWY_INLINE Three operator-(const Three& u, const Three& v) {
 HWY_INLINE Three operator*(const Three& u, const Three& v) {
     return map3(u, v, [](auto x, auto y) HWY_ATTR { return hn::Mul(x, y); });
 }
+HWY_INLINE Three operator/(const Three& u, const Three& v) {
+    return map3(u, v, [](auto x, auto y) HWY_ATTR { return hn::Div(x, y); });
+}
+HWY_INLINE Three larger(const Three& u, const Three& v) {
+    return map3(u, v, [](auto x, auto y) HWY_ATTR { return hn::Max(x, y); });
+}
 HWY_INLINE Three magnitude(const Three& u) {
     return map3(u, u, [](auto x, auto) HWY_ATTR { return hn::Abs(x); });
 }
@@ -78,6 +84,17 @@ HWY_INLINE std::uint32_t lanes_where(Comparison comparison) {
 // Bit i for lane i, where u < v.
 HWY_INLINE std::uint32_t lanes_below(const Three& u, const Three& v) {
     return lanes_where([&](std::size_t i) HWY_ATTR { return hn::Lt(u.part[i], v.part[i]); });
+}
+HWY_INLINE std::uint32_t lanes_equal(const Three& u, const Three& v) {
+    return lanes_where([&](std::size_t i) HWY_ATTR { return hn::Eq(u.part[i], v.part[i]); });
+}
+// u where `size` is above `least`, else `otherwise`.
+HWY_INLINE Three where_above(const Three& size, double least, const Three& u, double otherwise) {
+    Three result;
+    for (std::size_t i = 0; i < kParts; ++i)
+        result.part[i] =
+            hn::IfThenElse(hn::Gt(size.part[i], hn::Set(D3(), least)), u.part[i], hn::Set(D3(), otherwise));
+    return result;
 }
 // The same where each of five is below v.
 HWY_INLINE std::uint32_t lanes_all_below(const Three (&u)[5], const Three& v) {

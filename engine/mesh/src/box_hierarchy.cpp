@@ -11,7 +11,7 @@
 namespace crofton::mesh {
 namespace {
 
-constexpr std::size_t kWidth = BoxHierarchy::kWidth;
+constexpr std::size_t kWidth = kBoxNodeWidth;
 constexpr std::size_t kBins = 16;
 // From this depth on ranges are halved by number: 2^30 triangles then need no more than 30 further levels.
 constexpr int kMaxUnevenDepth = 30;
@@ -49,12 +49,13 @@ class Builder {
             stack.pop_back();
             std::array<Range, kWidth> parts;
             const std::size_t count = split_into_eight(todo.range, parts);
-            BoxHierarchy::Node node{};
+            BoxNode node{};
             node.count = static_cast<std::uint32_t>(count);
+            for (std::uint32_t lane = 0; lane < kWidth; ++lane)
+                set_bounds(node, lane, lane < count ? parts[lane].box : FloatBox{});
             for (std::size_t lane = 0; lane < count; ++lane) {
-                node.box[lane] = parts[lane].box;
                 if (parts[lane].size() <= leaf_size_) {
-                    node.child[lane] = static_cast<std::uint32_t>(result.leaves.size()) | BoxHierarchy::kLeaf;
+                    node.child[lane] = static_cast<std::uint32_t>(result.leaves.size()) | kMeshLeaf;
                     result.leaves.push_back({parts[lane].begin, parts[lane].end});
                 } else {
                     node.child[lane] = static_cast<std::uint32_t>(result.nodes.size());
@@ -186,6 +187,13 @@ void FloatBox::include(const glm::vec3& point) {
 void FloatBox::include(const FloatBox& box) {
     low = glm::min(low, box.low);
     high = glm::max(high, box.high);
+}
+
+void set_bounds(BoxNode& node, std::uint32_t lane, const FloatBox& box) {
+    for (int i = 0; i < 3; ++i) {
+        node.bounds[i][lane] = box.low[i];
+        node.bounds[i + 3][lane] = box.high[i];
+    }
 }
 
 BoxHierarchy build_box_hierarchy(std::span<const FloatBox> boxes, std::uint32_t leaf_size) {

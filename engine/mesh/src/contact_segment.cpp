@@ -3,6 +3,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
+#include "contact_segment.hpp"
 #include "exact_signs.hpp"
 
 namespace crofton::mesh {
@@ -34,9 +35,18 @@ void add_point(SegmentOfContact& best, int& count, const glm::dvec3& point) {
         best.begin = point;
 }
 
+// Where the segment from p to q crosses a plane, by its ends' heights above it.
+glm::dvec3 crossing(const glm::dvec3& p, const glm::dvec3& q, double at_p, double at_q) {
+    return p + std::clamp(at_p / (at_p - at_q), 0.0, 1.0) * (q - p);
+}
+
+glm::dvec3 scaled_normal(const Triangle& t) {
+    return glm::cross(t[1] - t[0], t[2] - t[0]);
+}
+
 // Points at which the edges of `t` cross the plane of `other` within it, or run in it.
 void add_edge_points(const Triangle& t, const Triangle& other, SegmentOfContact& best, int& count) {
-    const glm::dvec3 n = glm::cross(other[1] - other[0], other[2] - other[0]);
+    const glm::dvec3 n = scaled_normal(other);
     for (std::size_t k = 0; k < 3; ++k) {
         const glm::dvec3 &p = t[k], &q = t[(k + 1) % 3];
         if (!segment_meets_triangle(p, q, other)) continue;
@@ -44,7 +54,7 @@ void add_edge_points(const Triangle& t, const Triangle& other, SegmentOfContact&
         const bool crosses =
             orientation(other[0], other[1], other[2], p) != 0 || orientation(other[0], other[1], other[2], q) != 0;
         if (crosses && at_p != at_q) {
-            add_point(best, count, p + std::clamp(at_p / (at_p - at_q), 0.0, 1.0) * (q - p));
+            add_point(best, count, crossing(p, q, at_p, at_q));
             continue;
         }
         Interval range;
@@ -66,6 +76,24 @@ SegmentOfContact contact_segment(const Triangle& a, const Triangle& b) {
     int count = 0;
     add_edge_points(a, b, best, count);
     add_edge_points(b, a, best, count);
+    return best;
+}
+
+SegmentOfContact contact_segment(const Triangle& a, const Triangle& b, std::uint32_t edges) {
+    if (edges == 0) return contact_segment(a, b);
+    SegmentOfContact best{a[0], a[0]};
+    int count = 0;
+    for (int side = 0; side < 2; ++side) {
+        const Triangle &t = side == 0 ? a : b, &other = side == 0 ? b : a;
+        const std::uint32_t crossed = edges >> (3 * side) & 7u;
+        if (crossed == 0) continue;
+        const glm::dvec3 n = scaled_normal(other);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if ((crossed >> k & 1u) == 0) continue;
+            const glm::dvec3 &p = t[k], &q = t[(k + 1) % 3];
+            add_point(best, count, crossing(p, q, glm::dot(n, p - other[0]), glm::dot(n, q - other[0])));
+        }
+    }
     return best;
 }
 

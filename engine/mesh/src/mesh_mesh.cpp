@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include <crofton/geometry/closest_points.hpp>
+#include "contact_segment.hpp"
 #include "mesh_pair.hpp"
 #include "pair_sort.hpp"
 #include "posed_mesh.hpp"
@@ -60,6 +61,7 @@ MeshPair make_pair(const mesh::MeshTree& a, const mesh::MeshTree& b, const Rigid
 struct Hit {
     const mesh::MeshLeaf &in_a, &in_b;
     std::uint32_t lane_a, lane_b;
+    std::uint32_t edges;  // as PairVisitor's; 0: not known
 
     [[nodiscard]] TrianglePair indices() const { return {in_a.triangle[lane_a], in_b.triangle[lane_b]}; }
 };
@@ -69,10 +71,10 @@ template <class Found>
 void for_each_hit(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose, bool at_once,
                   MeshStatistics* statistics, Found found) {
     std::uint64_t exact_tests = 0;
-    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool certain) {
-        const Hit hit{a.leaves()[of_a.leaf], b.leaves()[of_b.leaf], of_a.lane, of_b.lane};
-        exact_tests += !certain;
-        if (!certain && !intersects(triangle_of(hit.in_a, hit.lane_a), triangle_of(hit.in_b, hit.lane_b, pose)))
+    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges) {
+        const Hit hit{a.leaves()[of_a.leaf], b.leaves()[of_b.leaf], of_a.lane, of_b.lane, edges};
+        exact_tests += edges == 0;
+        if (edges == 0 && !intersects(triangle_of(hit.in_a, hit.lane_a), triangle_of(hit.in_b, hit.lane_b, pose)))
             return false;
         return found(hit);
     };
@@ -114,13 +116,12 @@ void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTrans
     found.clear();
     for_each_hit(a, b, b_to_a, false, statistics, [&](const Hit& hit) {
         const Triangle first = triangle_of(hit.in_a, hit.lane_a), second = triangle_of(hit.in_b, hit.lane_b, b_to_a);
-        MeshContact contact{hit.indices(), contact_segment(first, second), unit_normal(second)};
+        MeshContact contact{hit.indices(), contact_segment(first, second, hit.edges), unit_normal(second)};
         if (contact.normal == glm::dvec3(0.0)) contact.normal = unit_normal(first);
         found.push_back(contact);
         return false;
     });
-    std::sort(found.begin(), found.end(),
-              [](const MeshContact& x, const MeshContact& y) { return x.triangles < y.triangles; });
+    sort_by_triangles(found);
 }
 
 namespace {
@@ -147,7 +148,7 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
     ClosestPoints best;
     best.squared = limit * limit;
     Nearest nearest = towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())), best.squared);
-    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool) {
+    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t) {
         const mesh::MeshLeaf &in_a = a.leaves()[of_a.leaf], &in_b = b.leaves()[of_b.leaf];
         const Triangle first = triangle_of(in_a, of_a.lane), second = triangle_of(in_b, of_b.lane, b_to_a);
         const TrianglePair indices{in_a.triangle[of_a.lane], in_b.triangle[of_b.lane]};
@@ -178,7 +179,7 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
 bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a, double tolerance,
                  MeshStatistics* statistics) {
     bool close = false;
-    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, bool) {
+    const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t) {
         const Triangle first = triangle_of(a.leaves()[of_a.leaf], of_a.lane),
                        second = triangle_of(b.leaves()[of_b.leaf], of_b.lane, b_to_a);
         if (statistics != nullptr) ++statistics->exact_tests;

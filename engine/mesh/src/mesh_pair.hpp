@@ -26,13 +26,22 @@ struct MeshPair {
 // Of eight pairs of triangles: which surely meet, and which only exact arithmetic can tell; the others surely do not.
 struct LaneVerdict {
     std::uint32_t hits = 0, open = 0;
+    std::uint32_t pierced[6] = {};  // of the hits: by edge 0-2 of a, 3-5 of b
+
+    // One bit for each edge that passes through the other triangle.
+    [[nodiscard]] std::uint32_t edges(std::uint32_t lane) const {
+        std::uint32_t bits = 0;
+        for (std::uint32_t e = 0; e < 6; ++e) bits |= (pierced[e] >> lane & 1u) << e;
+        return bits;
+    }
 };
 
 struct LeafTriangle {
     std::uint32_t leaf = 0, lane = 0;
 };
-// A triangle of a and one of b that meet, or where `certain` is false may meet; true ends the traversal.
-using PairVisitor = FunctionRef<bool(LeafTriangle of_a, LeafTriangle of_b, bool certain)>;
+// A triangle of a and one of b that meet: bit e is set where edge e of a, or edge e − 3 of b, passes through the other.
+// Without a bit they may meet. True ends the traversal.
+using PairVisitor = FunctionRef<bool(LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges)>;
 
 struct TraversalCounts {
     std::uint64_t box_tests = 0, triangle_tests = 0;

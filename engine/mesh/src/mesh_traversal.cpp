@@ -81,7 +81,8 @@ HWY_INLINE bool flush(TrianglePairs& gathered, PairVisitor visit) {
     gathered.count = 0;
     for (std::uint32_t lanes = verdict.hits | verdict.open; lanes != 0; lanes &= lanes - 1) {
         const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
-        if (visit(gathered.of_a[lane], gathered.of_b[lane], verdict.hits >> lane & 1u)) return true;
+        if (visit(gathered.of_a[lane], gathered.of_b[lane], verdict.edges(static_cast<std::uint32_t>(lane))))
+            return true;
     }
     return false;
 }
@@ -170,7 +171,8 @@ HWY_INLINE bool flush_nearest(TrianglePairs& gathered, const Nearest& nearest, P
     gathered.count = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
         const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
-        if (visit(gathered.of_a[lane], gathered.of_b[lane], verdict.hits >> lane & 1u)) return true;
+        if (visit(gathered.of_a[lane], gathered.of_b[lane], verdict.edges(static_cast<std::uint32_t>(lane))))
+            return true;
     }
     return false;
 }

@@ -260,7 +260,8 @@ Result<MeshTree> MeshTreeBuilder::build() {
         set_leaf_ranges(0);
         tree_.refit_.root.end_leaf[0] = static_cast<std::uint32_t>(tree_.leaves_.size());
     }
-    tree_.build_ray_nodes();
+    if (options_.rays)
+        if (auto prepared = tree_.prepare_rays(); !prepared) return tl::unexpected(prepared.error());
     return std::move(tree_);
 }
 

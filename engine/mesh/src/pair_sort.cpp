@@ -59,4 +59,29 @@ void sort_pairs(std::span<IdPair> pairs) {
     std::sort(pairs.begin(), pairs.end(), [](const IdPair& x, const IdPair& y) { return key_of(x) < key_of(y); });
 }
 
+// Keys are sorted, and every contact is moved once: it is five times as large as its key and place.
+void sort_by_triangles(std::span<MeshContact> contacts) {
+    struct Place {
+        Key key;
+        std::uint32_t from;
+    };
+    if (contacts.size() > kMost) {
+        std::sort(contacts.begin(), contacts.end(),
+                  [](const MeshContact& x, const MeshContact& y) { return key_of(x.triangles) < key_of(y.triangles); });
+        return;
+    }
+    Place places[kMost];
+    const auto count = static_cast<std::uint32_t>(contacts.size());
+    for (std::uint32_t i = 0; i < count; ++i) places[i] = {key_of(contacts[i].triangles), i};
+    std::sort(places, places + count, [](const Place& x, const Place& y) { return x.key < y.key; });
+    for (std::uint32_t i = 0; i < count; ++i) {  // by cycles
+        if (places[i].from == i) continue;
+        const MeshContact first = contacts[i];
+        std::uint32_t to = i;
+        for (std::uint32_t from; (from = std::exchange(places[to].from, to)) != i; to = from)
+            contacts[to] = contacts[from];
+        contacts[to] = first;
+    }
+}
+
 }  // namespace crofton::mesh

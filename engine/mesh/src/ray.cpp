@@ -94,6 +94,7 @@ RayAnswer trace(const Ray& ray, const mesh::MeshTree& mesh, bool any) {
     // reach.
     query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
     query.nodes = mesh.ray_nodes().data();
+    query.mesh_nodes = mesh.nodes().data();
     query.leaves = mesh.leaves().data();
     query.any = any;
     return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The hierarchy of aligned boxes over a mesh tree's leaves, for rays.
 #include <algorithm>
+#include <crofton/core/recovery.hpp>
 #include <crofton/mesh/box_hierarchy.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
+#include <utility>
 
 namespace crofton::mesh {
 namespace {
-
-static_assert(kRayNodeWidth == BoxHierarchy::kWidth && kMeshLeaf == BoxHierarchy::kLeaf);
 
 FloatBox bounds_of(const MeshLeaf& leaf) {
     FloatBox box;
@@ -20,7 +20,7 @@ FloatBox bounds_of(const MeshLeaf& leaf) {
     return box;
 }
 
-FloatBox bounds_of(const RayNode& node) {
+FloatBox bounds_of(const BoxNode& node) {
     FloatBox box;
     for (int i = 0; i < 3; ++i) {
         box.low[i] = *std::min_element(std::begin(node.bounds[i]), std::end(node.bounds[i]));
@@ -29,41 +29,29 @@ FloatBox bounds_of(const RayNode& node) {
     return box;
 }
 
-void set_bounds(RayNode& node, std::uint32_t lane, const FloatBox& box) {
-    for (int i = 0; i < 3; ++i) {
-        node.bounds[i][lane] = box.low[i];
-        node.bounds[i + 3][lane] = box.high[i];
-    }
-}
-
 }  // namespace
 
-void MeshTree::build_ray_nodes() {
-    Vector<FloatBox> boxes;
-    boxes.reserve(leaves_.size());
-    for (const MeshLeaf& leaf : leaves_) boxes.push_back(bounds_of(leaf));
-    const BoxHierarchy tree = build_box_hierarchy(boxes, 1);
-    ray_nodes_.reserve(tree.nodes.size());
-    for (const BoxHierarchy::Node& from : tree.nodes) {
-        RayNode& node = ray_nodes_.emplace_back();
-        for (std::uint32_t lane = 0; lane < kRayNodeWidth; ++lane) {
-            const bool used = lane < from.count;
-            const std::uint32_t child = from.child[lane];
-            node.child[lane] = !used ? RayNode::kUnused
-                               : child & BoxHierarchy::kLeaf
-                                   ? tree.order[tree.leaves[child & ~kMeshLeaf].begin] | kMeshLeaf
-                                   : child;
-            set_bounds(node, lane, used ? from.box[lane] : FloatBox{});
-        }
-    }
+Result<void> MeshTree::prepare_rays() {
+    if (!ray_nodes_.empty() || leaves_.empty()) return {};
+    return detail::recover([&]() -> Result<void> {
+        Vector<FloatBox> boxes;
+        boxes.reserve(leaves_.size());
+        for (const MeshLeaf& leaf : leaves_) boxes.push_back(bounds_of(leaf));
+        BoxHierarchy tree = build_box_hierarchy(boxes, 1);
+        for (BoxNode& node : tree.nodes)
+            for (std::uint32_t lane = 0; lane < node.count; ++lane)
+                if (std::uint32_t& child = node.child[lane]; child & kMeshLeaf)
+                    child = tree.order[tree.leaves[child & ~kMeshLeaf].begin] | kMeshLeaf;
+        ray_nodes_ = std::move(tree.nodes);
+        return {};
+    });
 }
 
 // Children stand behind their parents.
 void MeshTree::refit_ray_nodes() {
     for (std::size_t n = ray_nodes_.size(); n-- > 0;)
-        for (std::uint32_t lane = 0; lane < kRayNodeWidth; ++lane) {
+        for (std::uint32_t lane = 0; lane < ray_nodes_[n].count; ++lane) {
             const std::uint32_t child = ray_nodes_[n].child[lane];
-            if (child == RayNode::kUnused) continue;
             set_bounds(ray_nodes_[n], lane,
                        child & kMeshLeaf ? bounds_of(leaves_[child & ~kMeshLeaf]) : bounds_of(ray_nodes_[child]));
         }

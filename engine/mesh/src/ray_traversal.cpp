@@ -13,55 +13,108 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, mesh::kRayNodeWidth>;
-using V = hn::Vec<D>;
-
 template <class Tag>
 HWY_INLINE std::uint32_t bits_of(Tag d, hn::Mask<Tag> mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]);
+    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
-// The ray against aligned boxes grown by the slop: for each axis the coordinates where it meets the nearer face and the
-// farther one, seen from its start.
-struct Slabs {
-    V near_start[3], far_start[3], inverse[3];
-    std::size_t near[3], far[3];  // rows of RayNode::bounds
+// The hierarchy of aligned boxes, grown by the slop: for each axis where the ray meets the nearer face and the farther
+// one, seen from its start. The parameter is a fused or plain product less one made beforehand: what that one's
+// rounding does is to move a face by 2^-24 of the start, for which the slop has room.
+class AlignedBoxes {
+  public:
+    using Node = BoxNode;
+    static constexpr std::uint32_t kWidth = kBoxNodeWidth;
 
-    HWY_INLINE explicit Slabs(const RayQuery& q) {
+    HWY_INLINE explicit AlignedBoxes(const RayQuery& q) : nodes_(q.nodes) {
         const D d;
         for (int i = 0; i < 3; ++i) {
             const bool backward = q.direction_f[i] < 0.0f;
             const float slop = backward ? -q.slop : q.slop;
-            near_start[i] = hn::Set(d, q.start[i] + slop);
-            far_start[i] = hn::Set(d, q.start[i] - slop);
-            inverse[i] = hn::Set(d, q.inverse[i]);
-            near[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
-            far[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);
+            near_start_[i] = hn::Set(d, (q.start[i] + slop) * q.inverse[i]);
+            far_start_[i] = hn::Set(d, (q.start[i] - slop) * q.inverse[i]);
+            inverse_[i] = hn::Set(d, q.inverse[i]);
+            near_[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
+            far_[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);
         }
     }
+    HWY_INLINE const Node& node(std::uint32_t index) const { return nodes_[index]; }
+
+    // The lanes that are met before `limit`, and where.
+    HWY_INLINE std::uint32_t entries(const Node& node, float limit, float* entry) const {
+        const D d;
+        std::uint32_t lanes = 0;
+        for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
+            V first = hn::Zero(d), last = hn::Set(d, limit);
+            for (int i = 0; i < 3; ++i) {
+                const V near = hn::Load(d, node.bounds[near_[i]] + l), far = hn::Load(d, node.bounds[far_[i]] + l);
+                first = hn::Max(first, hn::MulSub(near, inverse_[i], near_start_[i]));
+                last = hn::Min(last, hn::MulSub(far, inverse_[i], far_start_[i]));
+            }
+            // The reciprocals and the products are within 3 · 2^-24 each.
+            hn::Store(first, d, entry + l);
+            lanes |= bits_of(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
+        }
+        return lanes;
+    }
+
+  private:
+    using D = hn::CappedTag<float, kWidth>;
+    using V = hn::Vec<D>;
+    const Node* nodes_;
+    V near_start_[3], far_start_[3], inverse_[3];
+    std::size_t near_[3], far_[3];  // rows of BoxNode::bounds
 };
 
-// The lanes that are met before `limit`, and where.
-HWY_INLINE std::uint32_t box_entries(const mesh::RayNode& node, const Slabs& slabs, float limit, float* entry) {
-    const D d;
-    std::uint32_t lanes = 0;
-    for (std::size_t l = 0; l < mesh::kRayNodeWidth; l += hn::Lanes(d)) {
-        V first = hn::Zero(d), last = hn::Set(d, limit);
-        for (int i = 0; i < 3; ++i) {
-            const V near = hn::Load(d, node.bounds[slabs.near[i]] + l),
-                    far = hn::Load(d, node.bounds[slabs.far[i]] + l);
-            first = hn::Max(first, hn::Mul(hn::Sub(near, slabs.near_start[i]), slabs.inverse[i]));
-            last = hn::Min(last, hn::Mul(hn::Sub(far, slabs.far_start[i]), slabs.inverse[i]));
+// The hierarchy for pairs of meshes, where there is no other: the slabs of an oriented box are a long chain of
+// dependent operations.
+class OrientedBoxes {
+  public:
+    using Node = MeshNode;
+    static constexpr std::uint32_t kWidth = kMeshNodeWidth;
+
+    HWY_INLINE explicit OrientedBoxes(const RayQuery& q) : query_(q) {}
+    HWY_INLINE const Node& node(std::uint32_t index) const { return query_.mesh_nodes[index]; }
+
+    HWY_INLINE std::uint32_t entries(const Node& node, float limit, float* entry) const {
+        const D d;
+        std::uint32_t lanes = 0;
+        for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
+            V offset[3], first = hn::Zero(d), last = hn::Set(d, limit);
+            for (int i = 0; i < 3; ++i)
+                offset[i] = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, query_.start[i]));
+            for (int k = 0; k < 3; ++k) {
+                V along = hn::Zero(d), speed = hn::Zero(d);
+                for (int i = 0; i < 3; ++i) {
+                    const V axis = hn::Load(d, node.axes[k][i] + l);
+                    along = hn::MulAdd(axis, offset[i], along);
+                    speed = hn::MulAdd(axis, hn::Set(d, query_.direction_f[i]), speed);
+                }
+                const V half = hn::Add(hn::Load(d, node.half[k] + l), hn::Set(d, query_.slop));
+                // Parallel to the slab: a tiny speed keeps the bounds finite and on the right sides.
+                const V least = hn::Set(d, 1e-18f);
+                speed = hn::IfThenElse(hn::Lt(hn::Abs(speed), least), least, speed);
+                const V inverse = hn::Div(hn::Set(d, 1.0f), speed);
+                const V t0 = hn::Mul(hn::Sub(along, half), inverse), t1 = hn::Mul(hn::Add(along, half), inverse);
+                first = hn::Max(first, hn::Min(t0, t1));
+                last = hn::Min(last, hn::Max(t0, t1));
+            }
+            // 2^-20 covers the divisions.
+            first = hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f));
+            last = hn::Mul(last, hn::Set(d, 1.0f + 0x1p-20f));
+            hn::Store(first, d, entry + l);
+            lanes |= bits_of(d, hn::Le(first, last)) << l;
         }
-        // The differences, the reciprocals and the products are within 3 · 2^-24 each.
-        hn::Store(first, d, entry + l);
-        const auto met = hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last);
-        lanes |= bits_of(d, met) << l;
+        return lanes & ((1u << node.count) - 1u);
     }
-    return lanes;
-}
+
+  private:
+    using D = hn::CappedTag<float, kWidth>;
+    using V = hn::Vec<D>;
+    const RayQuery& query_;
+};
 
 // Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
 // passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
@@ -101,7 +154,7 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
         const auto beyond = hn::Gt(nearest, hn::Set(d, limit - along + q.slop));
         lanes |= bits_of(d, hn::Or(apart, beyond)) << l;
     }
-    return ~lanes & ((1u << leaf.count) - 1u);
+    return ~lanes & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle
 }
 
 // Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a
@@ -199,7 +252,8 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 
 // The nearest of the children that are met; the others go to the stack, the nearest of them on top. Most nodes have one
 // or two: these take no loop, whose number of rounds could not be predicted.
-HWY_INLINE std::uint32_t descend(const mesh::RayNode& node, std::uint32_t lanes, const float* entry, Step*& top) {
+template <class Node>
+HWY_INLINE std::uint32_t descend(const Node& node, std::uint32_t lanes, const float* entry, Step*& top) {
     const auto next = [&]() HWY_ATTR {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
         lanes &= lanes - 1;
@@ -222,18 +276,19 @@ HWY_INLINE std::uint32_t descend(const mesh::RayNode& node, std::uint32_t lanes,
     return nearest.child;
 }
 
-RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
-    Step stack[8 * 64];  // BoxHierarchy::kWidth · kMaxDepth
+template <class Boxes>
+HWY_INLINE RayAnswer trace_boxes(const RayQuery& q, LineTest line_meets) {
+    Step stack[8 * 64];  // BoxHierarchy::kWidth · kMaxDepth; a mesh tree's own needs 15 · 7
     Step* top = stack;
     RayAnswer answer{q.max_t, 0, false};
-    const Slabs slabs(q);
+    const Boxes boxes(q);
     float limit = limit_of(q, answer.t);
     std::uint32_t child = 0;
     for (;;) {
         if (!(child & mesh::kMeshLeaf)) {
-            HWY_ALIGN float entry[mesh::kRayNodeWidth];
-            const mesh::RayNode& node = q.nodes[child];
-            const std::uint32_t lanes = box_entries(node, slabs, limit, entry);
+            HWY_ALIGN float entry[Boxes::kWidth];
+            const auto& node = boxes.node(child);
+            const std::uint32_t lanes = boxes.entries(node, limit, entry);
             if (lanes != 0) {
                 child = descend(node, lanes, entry, top);
                 continue;
@@ -248,6 +303,10 @@ RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
         } while (top->entry > limit);
         child = top->child;
     }
+}
+
+RayAnswer Trace(const RayQuery& q, LineTest line_meets) {
+    return q.nodes != nullptr ? trace_boxes<AlignedBoxes>(q, line_meets) : trace_boxes<OrientedBoxes>(q, line_meets);
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE

@@ -104,7 +104,7 @@ HWY_INLINE void judge_lanes(DD d, const TrianglePairs& pairs, std::size_t l, Lan
     const VD error_a[3] = {of_a.error, of_a.error, of_a.error}, error_b[3] = {of_b.error, of_b.error, of_b.error};
     VD certain = hn::Min(certainty(of_a.value, error_a), certainty(of_b.value, error_b));
     VD value[3][3];  // [edge of a][edge of b]
-    VD hit = hn::Zero(d);
+    VD pierced[6];   // by the edges of a, then of b: in the sign bits
     for (int e = 0; e < 3; ++e) {
         const int f = (e + 1) % 3;
         VD along_a[3], error[3];
@@ -118,15 +118,18 @@ HWY_INLINE void judge_lanes(DD d, const TrianglePairs& pairs, std::size_t l, Lan
             error[j] = hn::MulAdd(size_b[j], length, hn::Set(d, kUnderflow));
         }
         certain = hn::Min(certain, certainty(value[e], error));
-        hit = hn::Or(hit, pierces(of_a.value[e], of_a.value[f], value[e][0], value[e][1], value[e][2]));
+        pierced[e] = pierces(of_a.value[e], of_a.value[f], value[e][0], value[e][1], value[e][2]);
     }
     for (int j = 0; j < 3; ++j)
-        hit = hn::Or(hit, pierces(of_b.value[j], of_b.value[(j + 1) % 3], value[0][j], value[1][j], value[2][j]));
+        pierced[3 + j] = pierces(of_b.value[j], of_b.value[(j + 1) % 3], value[0][j], value[1][j], value[2][j]);
     const MD sure = hn::Gt(certain, hn::Zero(d));
     const hn::RebindToSigned<DD> di;
-    const MD meet = hn::RebindMask(d, hn::Lt(hn::BitCast(di, hit), hn::Zero(di)));
-    verdict.hits |= bits_of(d, hn::AndNot(apart, hn::And(sure, meet)), l);
+    const MD decided = hn::AndNot(apart, sure);
     verdict.open |= bits_of(d, hn::Not(hn::Or(apart, sure)), l);
+    for (int e = 0; e < 6; ++e) {
+        const MD through = hn::RebindMask(d, hn::Lt(hn::BitCast(di, pierced[e]), hn::Zero(di)));
+        verdict.pierced[e] |= bits_of(d, hn::And(decided, through), l);
+    }
 }
 
 // Pairs that surely meet, and pairs that need exact arithmetic.
@@ -136,7 +139,12 @@ HWY_INLINE LaneVerdict judge(const TrianglePairs& pairs) {
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d))
         if (l < pairs.count) judge_lanes(d, pairs, l, verdict);
     const std::uint32_t used = (1u << pairs.count) - 1u;
-    return {verdict.hits & used, verdict.open & used};
+    verdict.open &= used;
+    for (std::uint32_t& lanes : verdict.pierced) {
+        lanes &= used;
+        verdict.hits |= lanes;
+    }
+    return verdict;
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE

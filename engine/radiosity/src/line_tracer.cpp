@@ -56,7 +56,7 @@ Result<LineTracer> LineTracer::build(const TriangleMesh& mesh) {
 }
 
 std::size_t LineTracer::bytes() const {
-    return nodes_.capacity() * sizeof(detail::TracerNode) + leaves_.capacity() * sizeof(detail::TracerLeaf);
+    return nodes_.capacity() * sizeof(mesh::BoxNode) + leaves_.capacity() * sizeof(detail::TracerLeaf);
 }
 
 void LineTracer::all_hits(std::span<const Line> lines, LineHits& result) const {

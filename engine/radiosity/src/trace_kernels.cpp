@@ -32,13 +32,14 @@ struct Spread {
 
 // Which children the line passes between t_low and t_high, and where it enters each. Each of the three steps of a
 // plane's parameter rounds by 2^-24; widening the interval by 2^-21 of its ends covers them.
-HWY_INLINE unsigned children(D d, const TracerNode& node, const Spread& ray, float t_low, float t_high, float* entry) {
+HWY_INLINE unsigned children(D d, const mesh::BoxNode& node, const Spread& ray, float t_low, float t_high,
+                             float* entry) {
     unsigned bits = 0;
     for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
         V enter = hn::Set(d, t_low), leave = hn::Set(d, t_high);
         for (int k = 0; k < 3; ++k) {
-            const V a = hn::Mul(hn::Sub(hn::Load(d, node.low[k] + i), ray.point[k]), ray.inverse[k]);
-            const V b = hn::Mul(hn::Sub(hn::Load(d, node.high[k] + i), ray.point[k]), ray.inverse[k]);
+            const V a = hn::Mul(hn::Sub(hn::Load(d, node.bounds[k] + i), ray.point[k]), ray.inverse[k]);
+            const V b = hn::Mul(hn::Sub(hn::Load(d, node.bounds[k + 3] + i), ray.point[k]), ray.inverse[k]);
             enter = hn::Max(enter, hn::Min(a, b));
             leave = hn::Min(leave, hn::Max(a, b));
         }
@@ -124,7 +125,7 @@ std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t c
                 }
                 continue;
             }
-            const TracerNode& node = tree.nodes[item];
+            const mesh::BoxNode& node = tree.nodes[item];
             for (unsigned bits = children(d, node, ray, -kFar, kFar, values); bits != 0; bits &= bits - 1)
                 stack[top++] = node.child[static_cast<unsigned>(__builtin_ctz(bits))];
         }
@@ -165,7 +166,7 @@ void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count,
                 }
                 continue;
             }
-            const TracerNode& node = tree.nodes[entry.item];
+            const mesh::BoxNode& node = tree.nodes[entry.item];
             const std::size_t base = top;
             for (unsigned bits = children(d, node, ray, 0.0f, best_key, values); bits != 0; bits &= bits - 1) {
                 const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));

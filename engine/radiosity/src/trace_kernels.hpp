@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The inner loops of LineTracer, on plain floats (no GLM here: see docs/architecture.md on vector kernels).
 #pragma once
+#include <crofton/mesh/mesh_layout.hpp>
 #include <cstddef>
 #include <cstdint>
 
 namespace crofton::radiosity::detail {
 
-inline constexpr std::size_t kLanes = 8;
-inline constexpr std::uint32_t kLeaf = 0x80000000u;   // in a child: the rest is a leaf's index
-inline constexpr std::uint32_t kFront = 0x80000000u;  // in a hit: the line comes from the front
+inline constexpr std::size_t kLanes = mesh::kBoxNodeWidth;
+inline constexpr std::uint32_t kLeaf = mesh::kMeshLeaf;  // in a child: the rest is a leaf's index
+inline constexpr std::uint32_t kFront = 0x80000000u;     // in a hit: the line comes from the front
 inline constexpr std::uint32_t kMiss = ~std::uint32_t{0};
 inline constexpr std::size_t kMaxDepth = 64;  // of the tree; the builder sees to it
-
-// Boxes of up to eight children; unused lanes are empty (low > high).
-struct alignas(64) TracerNode {
-    float low[3][kLanes], high[3][kLanes];
-    std::uint32_t child[kLanes];
-    std::uint32_t count;
-};
 
 // Corner and edges of up to eight triangles; unused lanes have no area.
 struct alignas(64) TracerLeaf {
@@ -36,7 +30,7 @@ struct FlatHit {
 };
 
 struct TracerView {
-    const TracerNode* nodes;
+    const mesh::BoxNode* nodes;
     const TracerLeaf* leaves;
     float tie;  // crossings closer together than this along a line count as one place: fronts come first there
 };

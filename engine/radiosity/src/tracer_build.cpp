@@ -2,26 +2,13 @@
 #include "tracer_build.hpp"
 
 #include <crofton/mesh/box_hierarchy.hpp>
+#include <utility>
 
 namespace crofton::radiosity::detail {
 namespace {
 
 using mesh::BoxHierarchy, mesh::FloatBox;
-static_assert(kLanes == BoxHierarchy::kWidth && kLeaf == BoxHierarchy::kLeaf && kMaxDepth >= BoxHierarchy::kMaxDepth);
-
-TracerNode node_of(const BoxHierarchy::Node& from) {
-    TracerNode node{};
-    node.count = from.count;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const bool used = lane < from.count;
-        node.child[lane] = used ? from.child[lane] : 0;
-        for (int k = 0; k < 3; ++k) {
-            node.low[k][lane] = used ? from.box[lane].low[k] : 1.0f;
-            node.high[k][lane] = used ? from.box[lane].high[k] : -1.0f;
-        }
-    }
-    return node;
-}
+static_assert(kMaxDepth >= BoxHierarchy::kMaxDepth);
 
 TracerLeaf leaf_of(std::span<const std::uint32_t> triangles, const TriangleMesh& mesh,
                    std::span<const glm::vec3> points) {
@@ -42,7 +29,7 @@ TracerLeaf leaf_of(std::span<const std::uint32_t> triangles, const TriangleMesh&
 
 }  // namespace
 
-void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<TracerNode>& nodes,
+void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<mesh::BoxNode>& nodes,
                   Vector<TracerLeaf>& leaves) {
     Vector<glm::vec3> points;
     points.reserve(mesh.positions.size());
@@ -50,9 +37,8 @@ void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<Tra
     Vector<FloatBox> boxes(mesh.triangle_count());
     for (std::size_t t = 0; t < boxes.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) boxes[t].include(points[mesh.indices[3 * t + k]]);
-    const BoxHierarchy tree = mesh::build_box_hierarchy(boxes, kLanes);
-    nodes.reserve(tree.nodes.size());
-    for (const BoxHierarchy::Node& node : tree.nodes) nodes.push_back(node_of(node));
+    BoxHierarchy tree = mesh::build_box_hierarchy(boxes, kLanes);
+    nodes = std::move(tree.nodes);
     leaves.reserve(tree.leaves.size());
     const std::span<const std::uint32_t> order(tree.order);
     for (const BoxHierarchy::Leaf& leaf : tree.leaves)

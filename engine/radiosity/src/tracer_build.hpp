@@ -10,7 +10,7 @@ namespace crofton::radiosity::detail {
 
 // Eight-way tree over the mesh's triangles, positions relative to `origin`. nodes[0] is the root. The mesh is valid and
 // not empty.
-void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<TracerNode>& nodes,
+void build_tracer(const TriangleMesh& mesh, const glm::dvec3& origin, Vector<mesh::BoxNode>& nodes,
                   Vector<TracerLeaf>& leaves);
 
 }  // namespace crofton::radiosity::detail

@@ -67,7 +67,7 @@ void Bodies::set_mesh(scene::MeshId mesh, bool wants_triangles) {
 void Bodies::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
     if (mesh.can_refit && mesh.tree.refit(triangles.positions) && spread_of(mesh.tree) <= kWornOut * mesh.spread)
         return;
-    auto built = mesh::MeshTree::build(triangles, {.refittable = mesh.deforms});
+    auto built = mesh::MeshTree::build(triangles, {.refittable = mesh.deforms, .rays = true});
     mesh.is_usable = built.has_value();
     mesh.tree = built ? std::move(*built) : mesh::MeshTree();
     mesh.can_refit = mesh.is_usable && mesh.deforms;

@@ -28,13 +28,13 @@ struct alignas(64) MeshLeaf {
     std::uint32_t count;
 };
 
-// Aligned boxes side by side, for rays: a slab test of them has a third of the latency of an oriented box's. Unused
-// lanes are empty.
-inline constexpr std::uint32_t kRayNodeWidth = 8;
-struct alignas(64) RayNode {
-    float bounds[6][kRayNodeWidth];  // low x, y, z; high x, y, z
-    static constexpr std::uint32_t kUnused = ~std::uint32_t{0};
-    std::uint32_t child[kRayNodeWidth];  // as MeshNode::child, or kUnused
+// Aligned boxes side by side, for rays and lines: a slab test of them has a third of the latency of an oriented box's.
+// Unused lanes are empty.
+inline constexpr std::uint32_t kBoxNodeWidth = 8;
+struct alignas(64) BoxNode {
+    float bounds[6][kBoxNodeWidth];      // low x, y, z; high x, y, z
+    std::uint32_t child[kBoxNodeWidth];  // as MeshNode::child
+    std::uint32_t count;                 // lanes in use: the first ones
 };
 
 struct MeshBox {

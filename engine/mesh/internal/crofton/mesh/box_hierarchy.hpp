@@ -2,6 +2,7 @@
 // A hierarchy of aligned boxes, eight to a node, over items that have such boxes: for rays and lines.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/mesh/mesh_layout.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -15,19 +16,14 @@ struct FloatBox {
     void include(const FloatBox& box);
 };
 
+void set_bounds(BoxNode& node, std::uint32_t lane, const FloatBox& box);
+
 struct BoxHierarchy {
-    static constexpr std::uint32_t kWidth = 8;
-    static constexpr std::uint32_t kLeaf = 0x80000000u;  // set in a child that is a leaf: the rest is its index
-    static constexpr int kMaxDepth = 64;                 // nodes from the root to a leaf, for 2^30 items
-    struct Node {
-        FloatBox box[kWidth];
-        std::uint32_t child[kWidth];
-        std::uint32_t count;  // lanes in use: the first ones
-    };
+    static constexpr int kMaxDepth = 64;  // nodes from the root to a leaf, for 2^30 items
     struct Leaf {
         std::uint32_t begin, end;  // of `order`
     };
-    Vector<Node> nodes;  // the root is the first; children stand behind their parents
+    Vector<BoxNode> nodes;  // the root is the first; children stand behind their parents
     Vector<Leaf> leaves;
     Vector<std::uint32_t> order;  // items
 };

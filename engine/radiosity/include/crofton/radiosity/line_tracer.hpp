@@ -10,12 +10,15 @@
 #include <cstdint>
 #include <span>
 
+namespace crofton::mesh {
+struct BoxNode;
+}
+
 namespace crofton::radiosity {
 
 // What lines and rays meet among many triangles: every crossing in order, or the first.
 
 namespace detail {
-struct TracerNode;
 struct TracerLeaf;
 }  // namespace detail
 
@@ -64,7 +67,7 @@ class LineTracer {
     Aabb bounds_;
     glm::dvec3 origin_{0.0};
     float tie_ = 0.0f;
-    Vector<detail::TracerNode> nodes_;
+    Vector<mesh::BoxNode> nodes_;
     Vector<detail::TracerLeaf> leaves_;
 };
 

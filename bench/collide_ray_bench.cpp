@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// Rays at meshes beside Embree: kinds of rays, few that stay in the cache and many that do not.
+#include <benchmark/benchmark.h>
+
+#include <crofton/mesh/mesh_query.hpp>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <random>
+#include <string>
+
+#include "collide_inputs.hpp"
+
+#if defined(CROFTON_HAVE_EMBREE)
+#include <embree3/rtcore.h>
+#endif
+
+namespace crofton::bench {
+namespace {
+
+// From just above random points of the surface into the half space above.
+std::vector<Ray> diffuse_rays(const TriangleMesh& mesh, std::size_t count) {
+    std::mt19937_64 random(5);
+    const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    std::vector<Ray> rays;
+    while (rays.size() < count) {
+        const std::size_t t = random() % mesh.triangle_count();
+        glm::dvec3 p[3];
+        for (std::size_t v = 0; v < 3; ++v) p[v] = glm::dvec3(mesh.positions[mesh.indices[3 * t + v]]);
+        const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+        if (!(glm::length(n) > 0.0)) continue;
+        const double x = unit(), y = unit();
+        const double z = unit();
+        glm::dvec3 way = 2.0 * glm::dvec3(x, y, z) - 1.0;
+        if (!(glm::length(way) > 0.1)) continue;
+        if (glm::dot(way, n) < 0.0) way = -way;
+        const glm::dvec3 middle = (p[0] + p[1] + p[2]) / 3.0;
+        rays.push_back({middle + 1e-3 * glm::length(p[1] - p[0]) * glm::normalize(n), glm::normalize(way)});
+    }
+    return rays;
+}
+
+// A picture of the mesh, line by line.
+std::vector<Ray> camera_rays(const TriangleMesh& mesh, std::size_t count) {
+    Aabb bound;
+    for (const glm::vec3& p : mesh.positions) bound.include(glm::dvec3(p));
+    const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
+    const double size = glm::length(bound.half_extents());
+    const glm::dvec3 from = bound.center() + glm::dvec3(0.3, 0.2, 2.5) * size;
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < side * side; ++i) {
+        const double x = 2.0 * static_cast<double>(i % side) / static_cast<double>(side) - 1.0,
+                     y = 2.0 * static_cast<double>(i / side) / static_cast<double>(side) - 1.0;
+        rays.push_back({from, glm::normalize(bound.center() + size * glm::dvec3(x, y, 0.0) - from)});
+    }
+    return rays;
+}
+
+// Those of random directions that leave from the sphere around the mesh and pass it by.
+std::vector<Ray> missing_rays(const TriangleMesh& mesh, std::size_t count) {
+    std::vector<Ray> rays = random_rays(mesh, count);
+    for (Ray& ray : rays) ray.direction = glm::normalize(glm::cross(ray.origin, glm::dvec3(0.31, 0.52, 0.79)));
+    return rays;
+}
+
+using RayMaker = std::vector<Ray> (*)(const TriangleMesh&, std::size_t);
+constexpr struct {
+    const char* name;
+    RayMaker make;
+} kKinds[] = {{"random", random_rays}, {"diffuse", diffuse_rays}, {"camera", camera_rays}, {"missing", missing_rays}};
+
+const TriangleMesh& mesh_of(const char* name) {
+    static std::map<std::string, TriangleMesh> meshes;
+    const auto [place, is_new] = meshes.try_emplace(name);
+    if (is_new) place->second = shared_mesh(name);
+    return place->second;
+}
+
+void count_rays(benchmark::State& state, std::size_t rays, int hits) {
+    state.counters["hits"] = hits;
+    state.counters["ns/ray"] = benchmark::Counter(
+        static_cast<double>(rays) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+const mesh::MeshTree* tree_of(const char* name) {
+    static std::map<std::string, mesh::MeshTree> trees;
+    const auto [place, is_new] = trees.try_emplace(name);
+    if (is_new)
+        if (auto built = mesh::MeshTree::build(mesh_of(name), {.rays = true})) place->second = std::move(*built);
+    return place->second.triangle_count() == 0 ? nullptr : &place->second;
+}
+
+void single_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
+    const mesh::MeshTree* const tree = tree_of(name);
+    if (tree == nullptr) return state.SkipWithError("shared data is absent");
+    const auto rays = make(mesh_of(name), count);
+    int hits = 0;
+    for (auto _ : state) {
+        hits = 0;
+        for (const Ray& ray : rays) hits += mesh::raycast(ray, *tree).has_value();
+    }
+    count_rays(state, rays.size(), hits);
+}
+
+#if defined(CROFTON_HAVE_EMBREE)
+
+RTCScene embree_scene(const char* name) {
+    static std::map<std::string, RTCScene> scenes;
+    const auto [place, is_new] = scenes.try_emplace(name);
+    if (!is_new) return place->second;
+    const TriangleMesh& mesh = mesh_of(name);
+    static const RTCDevice device = rtcNewDevice("threads=1");
+    const RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* points =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size());
+    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(points));
+    void* indices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangle_count());
+    std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<std::uint32_t*>(indices));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcCommitScene(scene);
+    return place->second = scene;
+}
+
+void embree_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
+    if (mesh_of(name).indices.empty()) return state.SkipWithError("shared data is absent");
+    const RTCScene scene = embree_scene(name);
+    const auto rays = make(mesh_of(name), count);
+    int hits = 0;
+    for (auto _ : state) {
+        hits = 0;
+        for (const Ray& ray : rays) {
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            RTCRayHit query{};
+            query.ray = {float(ray.origin.x),
+                         float(ray.origin.y),
+                         float(ray.origin.z),
+                         0.0f,
+                         float(ray.direction.x),
+                         float(ray.direction.y),
+                         float(ray.direction.z),
+                         0.0f,
+                         INFINITY,
+                         ~0u,
+                         0,
+                         0};
+            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(scene, &context, &query);
+            hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+    count_rays(state, rays.size(), hits);
+}
+
+#endif
+
+void ray_benchmarks() {
+    for (const char* mesh : {"bunny", "armadillo"})
+        for (const auto& kind : kKinds)
+            for (const std::size_t count : {std::size_t{256}, std::size_t{20'000}}) {
+                const std::string name =
+                    std::string("rays/") + mesh + " " + kind.name + " " + std::to_string(count) + "/";
+                benchmark::RegisterBenchmark((name + "crofton").c_str(), single_rays, mesh, kind.make, count)
+                    ->Unit(benchmark::kMicrosecond);
+#if defined(CROFTON_HAVE_EMBREE)
+                benchmark::RegisterBenchmark((name + "embree").c_str(), embree_rays, mesh, kind.make, count)
+                    ->Unit(benchmark::kMicrosecond);
+#endif
+            }
+}
+const bool registered = (ray_benchmarks(), true);
+
+}  // namespace
+}  // namespace crofton::bench
