@@ -2,7 +2,9 @@
 // Clusters of boxes of which each lies within a filter's rounding of a plane: what the kernels decide in floats and
 // small integers must be classify's verdict, which edge_test.cpp compares with exact arithmetic.
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <algorithm>
+#include <bit>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <oracle/near_misses.hpp>
@@ -64,6 +66,20 @@ std::vector<Obb> cluster_at(oracle::NearMisses& random, const Frustum& frustum, 
     }
     return boxes;
 }
+
+// Every instruction set that this processor has, trial by trial in turn.
+class TargetInTurn {
+  public:
+    explicit TargetInTurn(int trial) {
+        const std::int64_t all = hwy::SupportedTargets();
+        std::int64_t rest = all;
+        for (int i = trial % std::popcount(static_cast<std::uint64_t>(all)); i > 0; --i) rest &= rest - 1;
+        hwy::SetSupportedTargetsForTest(rest & -rest);
+    }
+    TargetInTurn(const TargetInTurn&) = delete;
+    TargetInTurn& operator=(const TargetInTurn&) = delete;
+    ~TargetInTurn() { hwy::SetSupportedTargetsForTest(0); }
+};
 
 struct Answer {
     std::vector<cull::ItemId> ids;
@@ -144,6 +160,7 @@ TEST_SUITE("cull/kernel edges") {
         oracle::NearMisses near(23), away(26, 1e8);
         std::uint64_t exact_tests = 0;
         for (int trial = 0; trial < 3000; ++trial) {
+            const TargetInTurn target(trial / 7);
             oracle::NearMisses& random = trial % 4 == 3 ? away : near;
             Camera camera = random.camera();
             // Far off the surface lies far from the view's origin: then the planes' own rounding counts.
@@ -188,16 +205,21 @@ TEST_SUITE("cull/kernel edges") {
     TEST_CASE("boxes that only lists take, of axes that are far from unit vectors, get classify's verdicts") {
         oracle::NearMisses random(25);
         for (int trial = 0; trial < 1500; ++trial) {
+            const TargetInTurn target(trial);
             const Frustum frustum = *frustum_of(random.camera());
             const double size = std::exp(random.number(-5.0, 3.0));
-            auto boxes = cluster_at(random, frustum, {glm::dvec3(size), size}, 16);
+            // Many boxes are tested by spheres first, few are not.
+            auto boxes = cluster_at(random, frustum, {glm::dvec3(size), size}, trial % 10 ? 16 : 260);
             for (Obb& box : boxes) {
                 const Plane& plane = frustum.planes[random.index(6)];
                 const glm::dvec3 n = plane.normal;
                 // Needles for the most part, one end of which is brought to a plane again.
                 const int k = static_cast<int>(random.index(3));
                 box.axes[k] *= float(random.number(0.3, 1.9)) / std::max(1.0f, glm::length(box.axes[k]));
-                if (random.index(3)) box.half_extents[(k + 1) % 3] = box.half_extents[(k + 2) % 3] = 0.0f;
+                // Sheared ones, of axes that are nearly parallel.
+                const bool sheared = random.index(3) == 0;
+                if (sheared) box.axes[(k + 1) % 3] = 0.9f * box.axes[k] + 0.2f * box.axes[(k + 1) % 3];
+                if (!sheared && random.index(3)) box.half_extents[(k + 1) % 3] = box.half_extents[(k + 2) % 3] = 0.0f;
                 double reach = 0.0;
                 for (int j = 0; j < 3; ++j)
                     reach += double{box.half_extents[j]} * std::fabs(glm::dot(n, glm::dvec3(box.axes[j])));

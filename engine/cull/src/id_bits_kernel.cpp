@@ -87,7 +87,7 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
 #else
     constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
     std::size_t count = 0;
-    for (std::uint32_t l = 0; l < 64; l += kLanes) {
+    for (std::uint32_t l = 0; l < 64 && word >> l != 0; l += kLanes) {
         const std::uint32_t bits = static_cast<std::uint32_t>(word >> l) & kAll;
         count += simd::store_positions(du, bits, base + l, ids + count);
     }

@@ -10,7 +10,7 @@ struct KernelPlane {
     double normal[3];
     double offset;
     float normal_f[3];  // normal, rounded
-    float length_f;     // of normal, within 2^-23
+    float length_f;     // of normal, within 2^-23: where balls are asked for
 };
 
 // A normal in units of 2^-14, rounded to the nearest, as pairs of 16-bit integers.
@@ -23,7 +23,7 @@ struct KernelView {
     static constexpr unsigned kMaxPlanes = 12;
     double origin[3];
     KernelPlane planes[kMaxPlanes];
-    PairPlane pair_planes[kMaxPlanes];
+    PairPlane pair_planes[kMaxPlanes];  // where a tree is asked
     double far[kMaxPlanes];  // what a plane's value at a block's origin may be off by (block_planes.hpp)
     std::uint32_t plane_count;
     std::uint32_t layer_mask;

@@ -37,6 +37,8 @@ struct BoxRows {
         VF base, slack, reach, slope[3];
     };
     Row rows[KernelView::kMaxPlanes];
+    std::uint32_t
+        cut[KernelView::kMaxPlanes];  // bit l: lane l is wanted, and its box not certainly inside of the plane
     unsigned count = 0;
     VF unit;
 
@@ -46,7 +48,7 @@ struct BoxRows {
         : unit(boxes.unit) {
         for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            Row& row = rows[count++];
+            Row& row = rows[count];
             row.base = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
             row.slack = boxes.slack(local[i]);
             row.reach = hn::Zero(DF());
@@ -54,7 +56,18 @@ struct BoxRows {
                 row.slope[k] = boxes.slope(view.planes[i], k);
                 row.reach = hn::Add(row.reach, hn::Abs(row.slope[k]));
             }
+            keep_next(boxes.present);
         }
+    }
+
+    // Counts the row behind the last in, unless all wanted boxes are certainly inside of its plane.
+    HWY_INLINE void keep_next(MF wanted) {
+        const DF d;
+        const Row& row = rows[count];
+        const VF size = hn::MulAdd(row.reach, unit, hn::Abs(row.base));
+        const VF bottom = hn::Sub(row.base, hn::Mul(row.reach, unit));
+        cut[count] = bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(d, 0x1p-19f), row.slack))));
+        count += cut[count] != 0;
     }
 };
 
@@ -124,6 +137,8 @@ HWY_INLINE PairTest test_pairs(const BoxRows& box, MF wanted) {
     PairTest result{hn::FirstN(d, 0), wanted};
     for (unsigned i = 0; i < box.count; ++i)
         for (unsigned j = i + 1; j < box.count; ++j) {
+            // Where a box is inside of one of the two, they exclude it only if the other does alone.
+            if ((box.cut[i] & box.cut[j]) == 0) continue;
             const VF(&a)[3] = box.rows[i].slope;
             const VF(&b)[3] = box.rows[j].slope;
             for (unsigned k = 0; k < 3; ++k) {
@@ -143,20 +158,15 @@ HWY_INLINE PairTest test_pairs(const BoxRows& box, MF wanted) {
     return result;
 }
 
-// Lanes that at most two of the planes may cut: the whole cube is inside of the others.
-HWY_INLINE MF cut_twice_at_most(const BoxRows& box) {
-    const DF d;
-    MF once = hn::FirstN(d, 0), twice = once, thrice = once;
+// Wanted lanes that at most two of the planes may cut: the whole cube is inside of the others.
+HWY_INLINE MF cut_twice_at_most(const BoxRows& box, MF wanted) {
+    std::uint32_t once = 0, twice = 0, thrice = 0;
     for (unsigned i = 0; i < box.count; ++i) {
-        const auto& row = box.rows[i];
-        const VF size = hn::MulAdd(row.reach, box.unit, hn::Abs(row.base));
-        const VF bottom = hn::Sub(row.base, hn::Mul(row.reach, box.unit));
-        const MF cut = hn::Lt(bottom, hn::MulAdd(size, hn::Set(d, 0x1p-19f), row.slack));
-        thrice = hn::Or(thrice, hn::And(twice, cut));
-        twice = hn::Or(twice, hn::And(once, cut));
-        once = hn::Or(once, cut);
+        thrice |= twice & box.cut[i];
+        twice |= once & box.cut[i];
+        once |= box.cut[i];
     }
-    return hn::Not(thrice);
+    return hn::AndNot(hn::RebindMask(DF(), mask_of(thrice)), wanted);
 }
 
 // The second stage in vectors: what it cannot resolve either is undecided. No plane certainly rejects a box that needs
@@ -165,7 +175,7 @@ HWY_INLINE void resolve(const BoxRows& box, BoxTest& test) {
     const DF d;
     const PairTest pairs = test_pairs(box, test.needs_edge_test);
     test.improper = pairs.separated;
-    MF meets = hn::And(pairs.met, cut_twice_at_most(box));
+    MF meets = hn::And(pairs.met, cut_twice_at_most(box, test.needs_edge_test));
     const MF rest = hn::AndNot(hn::Or(meets, pairs.separated), test.needs_edge_test);
     if (!hn::AllFalse(d, rest)) meets = hn::Or(meets, has_witness(box, rest));
     test.straddling = hn::Or(test.straddling, meets);

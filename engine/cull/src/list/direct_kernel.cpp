@@ -35,44 +35,36 @@ struct DirectBoxes {
 
 // Rows of four: the centre relative to the view's origin, rounded, and one number without meaning; the axes and half
 // extents.
-template <>
-struct Batch<DirectBox> {
-    alignas(64) float quads[4][kBatch][4];
+HWY_INLINE simd::Row row_of(const DirectBox& box, std::size_t q) {
+    if (q == 0) return simd::load_difference(box.bytes, box.origin);
+    return simd::load_row(box.bytes + 8 + 16 * q);
+}
 
-    HWY_INLINE void copy(std::size_t to, const DirectBox& box) {
-#if HWY_TARGET == HWY_SCALAR
-        for (std::size_t j = 0; j < 3; ++j) {
-            double center;
-            std::memcpy(&center, box.bytes + 8 * j, 8);
-            quads[0][to][j] = static_cast<float>(center - box.origin[j]);
-        }
-#else
-        const hn::CappedTag<double, 4> d;
-        const hn::Rebind<float, decltype(d)> df;
-        for (std::size_t j = 0; j < 4; j += hn::Lanes(d)) {
-            const auto center = hn::LoadU(d, reinterpret_cast<const double*>(box.bytes) + j);
-            hn::StoreU(hn::DemoteTo(df, hn::Sub(center, hn::LoadU(d, box.origin + j))), df, quads[0][to] + j);
-        }
-#endif
-        for (std::size_t q = 0; q < 3; ++q) std::memcpy(quads[q + 1][to], box.bytes + 24 + 16 * q, 16);
-    }
-    HWY_INLINE void load(std::size_t quad, std::size_t at, VF& a, VF& b, VF& c, VF& d) const {
-        hn::LoadInterleaved4(DF(), quads[quad][at], a, b, c, d);
-    }
-};
+HWY_INLINE void prefetch_record(const DirectBoxes&, std::uint32_t) {}  // read a moment ago
 
 struct DirectLanes {
     VF center[3], axis[9], half[3];
 
-    HWY_INLINE DirectLanes(const Batch<DirectBox>& batch, std::size_t at) {
-        VF unused;
-        batch.load(0, at, center[0], center[1], center[2], unused);
-        batch.load(1, at, axis[0], axis[1], axis[2], axis[3]);
-        batch.load(2, at, axis[4], axis[5], axis[6], axis[7]);
-        batch.load(3, at, axis[8], half[0], half[1], half[2]);
+    // rows(q, out): numbers 4 q to 4 q + 3 of the boxes.
+    template <class Rows>
+    HWY_INLINE explicit DirectLanes(const Rows& rows) {
+        VF out[4];
+        rows(0, out);
+        for (int k = 0; k < 3; ++k) center[k] = out[k];
+        rows(1, out);
+        for (int k = 0; k < 4; ++k) axis[k] = out[k];
+        rows(2, out);
+        for (int k = 0; k < 4; ++k) axis[4 + k] = out[k];
+        rows(3, out);
+        axis[8] = out[0];
+        for (int k = 0; k < 3; ++k) half[k] = out[1 + k];
     }
-    HWY_INLINE VF distance() const {
-        return hn::Add(hn::Add(hn::Abs(center[0]), hn::Abs(center[1])), hn::Abs(center[2]));
+    HWY_INLINE VF distance() const { return size_of(center); }
+    HWY_INLINE VF extent() const { return size_of(half); }
+
+  private:
+    static HWY_INLINE VF size_of(const VF (&v)[3]) {
+        return hn::Add(hn::Add(hn::Abs(v[0]), hn::Abs(v[1])), hn::Abs(v[2]));
     }
 };
 
@@ -81,10 +73,14 @@ struct DirectLanes {
 // of the centre and one of each edge; 12 u < 20 u.
 inline constexpr float kDirectError = 0x1.4p-20f;
 
-HWY_INLINE BoxLanes lanes_of(const Batch<DirectBox>& batch, std::size_t at, std::size_t count) {
+HWY_INLINE DirectLanes lanes_of_picked(const Picked<DirectBoxes>& picked) {
+    return DirectLanes([&](std::size_t q, VF(&out)[4]) HWY_ATTR { picked.load(q, out[0], out[1], out[2], out[3]); });
+}
+
+HWY_INLINE BoxLanes lanes_of(const Picked<DirectBoxes>& picked, std::size_t count) {
     const DF d;
     const DU du;
-    const DirectLanes in(batch, at);
+    const DirectLanes in = lanes_of_picked(picked);
     BoxLanes boxes;
     boxes.x = in.center[0];
     boxes.y = in.center[1];
@@ -101,51 +97,102 @@ HWY_INLINE BoxLanes lanes_of(const Batch<DirectBox>& batch, std::size_t at, std:
         for (unsigned j = 0; j < 3; ++j) boxes.edge[3 * k + j] = hn::Mul(in.axis[3 * k + j], half);
     }
     // No component of an axis exceeds 2.
-    const VF edges = hn::Mul(hn::Add(hn::Add(a, b), c), hn::Set(d, 6.0f));
-    boxes.edge_slack = hn::Mul(hn::Add(in.distance(), edges), hn::Set(d, kDirectError));
+    const VF size = hn::MulAdd(in.extent(), hn::Set(d, 6.0f), in.distance());
+    boxes.edge_slack = hn::Mul(size, hn::Set(d, kDirectError));
     return boxes;
 }
 
 namespace {
 
-// Spheres around the boxes: decide most.
-struct SphereBits {
-    std::uint32_t outside, inside, valid;
+// Bit l for lane l.
+struct DirectBits {
+    std::uint32_t outside, inside, needs_edge_test, undecided;
 };
 
-HWY_INLINE SphereBits test_spheres(const DirectLanes& boxes, const KernelView& view, const LocalPlane* planes,
-                                   float most_slack) {
+// A plane with its numbers side by side.
+struct DirectPlane {
+    float normal[3], offset;
+};
+
+// A plane's value at the centres.
+HWY_INLINE VF value_at(const DirectPlane& plane, const VF (&at)[3]) {
     const DF d;
-    VF least = hn::Set(d, 3e38f);
-    for (std::uint32_t i = 0; i < view.plane_count; ++i)
-        least = hn::Min(
-            least, plane_value(view.planes[i], boxes.center[0], boxes.center[1], boxes.center[2], planes[i].offset));
-    // No corner is farther than |Σ ±edge|² ≤ Σ |edge_k|² + 2 Σ |edge_i · edge_k|, whatever the axes are.
-    VF edge[9], square = hn::Zero(d), largest_axis = hn::Zero(d);
-    for (unsigned k = 0; k < 3; ++k)
-        for (unsigned j = 0; j < 3; ++j) {
-            edge[3 * k + j] = hn::Mul(boxes.axis[3 * k + j], boxes.half[k]);
-            square = hn::MulAdd(edge[3 * k + j], edge[3 * k + j], square);
-            largest_axis = hn::Max(largest_axis, hn::Abs(boxes.axis[3 * k + j]));
-        }
-    VF skew = hn::Zero(d);
+    const VF rest = hn::MulAdd(hn::Set(d, plane.normal[2]), at[2], hn::Set(d, plane.offset));
+    return hn::MulAdd(hn::Set(d, plane.normal[0]), at[0], hn::MulAdd(hn::Set(d, plane.normal[1]), at[1], rest));
+}
+
+// Whether the kernel can take the boxes, from the sum of the squares of their axes' components, none of which exceeds 2
+// if that does not exceed 4. Numbers that are not finite make `squares` or `size` one as well.
+HWY_INLINE MF are_valid(VF squares, VF size) {
+    return hn::And(hn::Le(squares, hn::Set(DF(), 4.0f)), hn::Lt(size, hn::Set(DF(), 8e29f)));
+}
+
+// By spheres around the boxes, which settle most of many. `slack` is the largest of the planes'.
+HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
+                                   float slack) {
+    const DF d;
+    // No corner is farther than |Σ ±h_k a_k|² ≤ Σ h_k² a_k · a_k + 2 Σ |h_i h_j a_i · a_j|, whatever the axes a are.
+    const auto product = [&](unsigned i, unsigned j) HWY_ATTR {
+        const VF *a = boxes.axis + 3 * i, *b = boxes.axis + 3 * j;
+        return hn::MulAdd(a[0], b[0], hn::MulAdd(a[1], b[1], hn::Mul(a[2], b[2])));
+    };
+    VF squares = hn::Zero(d), square = hn::Zero(d), skew = hn::Zero(d);
     for (unsigned k = 0; k < 3; ++k) {
-        const VF* a = edge + 3 * k;
-        const VF* b = edge + 3 * ((k + 1) % 3);
-        skew = hn::Add(skew, hn::Abs(hn::MulAdd(a[0], b[0], hn::MulAdd(a[1], b[1], hn::Mul(a[2], b[2])))));
+        const unsigned next = (k + 1) % 3;
+        const VF own = product(k, k), h = boxes.half[k];
+        squares = hn::Add(squares, own);
+        square = hn::MulAdd(hn::Mul(h, h), own, square);
+        skew = hn::Add(skew, hn::Abs(hn::Mul(hn::Mul(h, boxes.half[next]), product(k, next))));
     }
     square = hn::MulAdd(skew, hn::Set(d, 2.0f), square);
-    // Normals are up to 1.0005 long; 2^-18 covers fifteen roundings, 1e-18 squares that underflow.
+    const VF distance = boxes.distance(), size = hn::MulAdd(boxes.extent(), hn::Set(d, 6.0f), distance);
+    // Normals are up to 1.0005 long; 2^-18 covers twenty roundings, 1e-18 squares that underflow.
     const VF radius = hn::MulAdd(hn::Sqrt(square), hn::Set(d, 1.0005f * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
-    const VF distance = boxes.distance();
-    const VF slack = hn::MulAdd(distance, hn::Set(d, kDirectError), hn::Set(d, most_slack));
-    const VF margin = hn::Add(radius, slack);
-    // A number that is not finite makes `square` or `distance` one as well.
-    const VF largest_half = hn::Max(hn::Max(hn::Abs(boxes.half[0]), hn::Abs(boxes.half[1])), hn::Abs(boxes.half[2]));
-    MF valid = hn::And(hn::Lt(square, hn::Set(d, 1e36f)), hn::Lt(distance, hn::Set(d, 8e29f)));
-    valid = hn::And(valid, hn::And(hn::Le(largest_axis, hn::Set(d, 2.0f)), hn::Le(largest_half, hn::Set(d, 9e29f))));
-    return {bits_of(hn::Lt(least, hn::Neg(margin))), bits_of(hn::Ge(least, margin)), bits_of(valid)};
+    const VF margin = hn::Add(radius, hn::MulAdd(distance, hn::Set(d, kDirectError), hn::Set(d, slack)));
+    VF least = hn::Set(d, 3e38f);
+    for (std::uint32_t i = 0; i < count; ++i) least = hn::Min(least, value_at(planes[i], boxes.center));
+    const std::uint32_t valid = bits_of(are_valid(squares, size));
+    return {bits_of(hn::Lt(least, hn::Neg(margin))) & valid, bits_of(hn::Ge(least, margin)) & valid, 0, 0};
 }
+
+// By the boxes themselves.
+HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count, float slack,
+                                  bool exact) {
+    const DF d;
+    VF edge[9], squares = hn::Zero(d);
+    for (unsigned k = 0; k < 9; ++k) {
+        edge[k] = hn::Mul(boxes.axis[k], boxes.half[k / 3]);
+        squares = hn::MulAdd(boxes.axis[k], boxes.axis[k], squares);
+    }
+    const VF size = hn::MulAdd(boxes.extent(), hn::Set(d, 6.0f), boxes.distance());
+    const VF error = hn::MulAdd(size, hn::Set(d, kDirectError), hn::Set(d, slack)), beyond = hn::Neg(error);
+    const VF most = hn::Set(d, 3e38f);
+    VF top = most, bottom = most, next_bottom = most, middle = most;  // the least of all planes, and the next
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const VF x = hn::Set(d, planes[i].normal[0]), y = hn::Set(d, planes[i].normal[1]),
+                 z = hn::Set(d, planes[i].normal[2]);
+        const VF value = value_at(planes[i], boxes.center);
+        VF slope[3];
+        for (unsigned k = 0; k < 3; ++k)
+            slope[k] = hn::Abs(hn::MulAdd(x, edge[3 * k], hn::MulAdd(y, edge[3 * k + 1], hn::Mul(z, edge[3 * k + 2]))));
+        const VF reach = hn::Add(hn::Add(slope[0], slope[1]), slope[2]);
+        const VF low = hn::Sub(value, reach);
+        top = hn::Min(top, hn::Add(value, reach));
+        next_bottom = hn::Min(next_bottom, hn::Max(bottom, low));
+        bottom = hn::Min(bottom, low);
+        middle = hn::Min(middle, value);
+    }
+    const MF outside = hn::Lt(top, beyond), inside = hn::Ge(bottom, error);
+    const MF crossing = hn::And(hn::Ge(top, error), hn::Lt(bottom, beyond));
+    // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
+    const MF meets = hn::Or(hn::Ge(next_bottom, error), hn::Ge(middle, error));
+    const std::uint32_t valid = bits_of(are_valid(squares, size)), out = bits_of(outside) & valid,
+                        in = bits_of(inside) & valid, cross = bits_of(crossing) & valid;
+    return {out, in, exact ? cross & ~bits_of(meets) : 0, ~(out | in | cross)};
+}
+
+// Of fewer boxes than this most are near the view's surface, so that spheres around them would settle few.
+constexpr std::size_t kFew = 256;
 
 class DirectQuery {
   public:
@@ -155,75 +202,131 @@ class DirectQuery {
     }
 
     void run() {
-        out_.undecided_count = 0;
-        const std::size_t count = test_all_spheres();
+        out_.undecided_count = out_.resolved_count = 0;
+        out_.improper = 0;
+        const std::size_t straddling = test_all();
         OpenCounts counts;
-        if (count > 0) {
+        if (resolve_count_ > 0) {
             ListChunk chunk{};  // the view's origin as the boxes'
             std::copy_n(origin_, 3, chunk.origin);
             OpenRecords<DirectBox, DirectQuery, DirectBoxes> records(
                 *in_.view, chunk, boxes_, (1u << in_.view->plane_count) - 1, in_.exact, *this);
-            std::uint32_t needs_edge_test[kChunk + 16];
-            counts = records.test(open_, count, needs_edge_test);
+            counts = records.resolve(resolve_, resolve_count_);
         }
-        out_.resolved_count = counts.resolved;
+        out_.resolved_count = resolve_count_;
         out_.improper = counts.improper;
-        out_.open = counts.straddling + out_.undecided_count;
+        out_.open = straddling + counts.straddling + out_.undecided_count;
     }
 
     HWY_INLINE void outside(std::uint32_t i) { out_.visible[i / 64] &= ~bit(i); }
-    HWY_INLINE void inside(std::uint32_t i) { out_.inside[i / 64] |= bit(i); }
     HWY_INLINE void undecided(std::uint32_t i) { out_.undecided[out_.undecided_count++] = i; }
 
   private:
+    static constexpr std::size_t kLanes = hn::MaxLanes(DF());
     static HWY_INLINE std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << (i % 64); }
 
-    // Lists what the spheres leave open; returns how many.
-    std::size_t test_all_spheres() {
+    // Lists what the planes leave open; returns how many straddle for certain.
+    std::size_t test_all() {
         const KernelView& view = *in_.view;
-        LocalPlane planes[KernelView::kMaxPlanes];
-        const LocalOrigin at = local_origin(view, origin_, 0.0f);
-        float most_slack = 0.0f;
+        DirectPlane planes[KernelView::kMaxPlanes];
+        float slack = 0.0f;
         for (std::uint32_t i = 0; i < view.plane_count; ++i) {
-            planes[i] = local_plane(view.planes[i], at);
-            most_slack = std::max(most_slack, planes[i].slack);
+            // As local_plane() has it for the view's own origin.
+            const double offset = view.planes[i].offset;
+            std::copy_n(view.planes[i].normal_f, 3, planes[i].normal);
+            planes[i].offset = static_cast<float>(offset);
+            slack = std::max(slack, static_cast<float>(0x1.41p-20 * std::fabs(offset) + 1e-37));
         }
-        Batch<DirectBox> batch;
-        std::size_t open_count = 0;
-        for (std::size_t first = 0; first < in_.count; first += 64) {
-            const std::size_t size = std::min<std::size_t>(64, in_.count - first);
-            for (std::size_t i = 0; i < size; ++i) batch.copy(i, boxes_[first + i]);
-            std::uint64_t outside = 0, inside = 0, valid = 0;
-            for (std::size_t l = 0; l < size; l += hn::Lanes(DF())) {
-                const SphereBits bits = test_spheres(DirectLanes(batch, l), view, planes, most_slack);
-                outside |= std::uint64_t{bits.outside} << l;
-                inside |= std::uint64_t{bits.inside} << l;
-                valid |= std::uint64_t{bits.valid} << l;
-            }
+        const auto by_planes = [&](const DirectLanes& boxes)
+                                   HWY_ATTR { return test_planes(boxes, planes, view.plane_count, slack, in_.exact); };
+        const auto by_spheres = [&](const DirectLanes& boxes)
+                                    HWY_ATTR { return test_spheres(boxes, planes, view.plane_count, slack); };
+        std::size_t straddling = 0;
+        for (std::size_t w = 0; w < (in_.count + 63) / 64; ++w) {
+            const std::size_t first = 64 * w, size = std::min<std::size_t>(64, in_.count - first);
             const std::uint64_t present = ~std::uint64_t{0} >> (64 - size);
-            outside &= valid;
-            inside &= valid;
-            out_.visible[first / 64] = ~outside & present;
-            out_.inside[first / 64] = inside & present;
+            WordBits bits;
+            if (in_.count < kFew) {
+                for (std::size_t l = 0; l < size; l += kLanes) bits.add(by_planes(lanes_from(first + l)), l);
+            } else {
+                for (std::size_t l = 0; l < size; l += kLanes) bits.add(by_spheres(lanes_from(first + l)), l);
+                test_open(first, ~(bits.outside | bits.inside) & present, by_planes, bits);
+            }
+            out_.visible[w] = ~bits.outside & present;
+            out_.inside[w] = bits.inside & present;
+            const std::uint64_t needs_edge_test = bits.needs_edge_test & present, undecided = bits.undecided & present;
+            straddling += hwy::PopCount(~(bits.outside | bits.inside | needs_edge_test | undecided) & present);
             const auto base = static_cast<std::uint32_t>(first);
-            const auto list = [&](std::uint64_t word, std::uint32_t* to) {
-                for (; word; word &= word - 1)
-                    *to++ = base + static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(word));
-            };
-            const std::uint64_t open = ~(outside | inside) & valid & present, invalid = ~valid & present;
-            list(open, open_ + open_count);
-            open_count += hwy::PopCount(open);
-            list(invalid, out_.undecided + out_.undecided_count);
-            out_.undecided_count += hwy::PopCount(invalid);
+            append(needs_edge_test, base, resolve_, resolve_count_);
+            append(undecided, base, out_.undecided, out_.undecided_count);
         }
-        return open_count;
+        return straddling;
     }
+
+    // What is known of 64 boxes.
+    struct WordBits {
+        std::uint64_t outside = 0, inside = 0, needs_edge_test = 0, undecided = 0;
+
+        HWY_INLINE void add(const DirectBits& bits, std::size_t shift) {
+            outside |= std::uint64_t{bits.outside} << shift;
+            inside |= std::uint64_t{bits.inside} << shift;
+            needs_edge_test |= std::uint64_t{bits.needs_edge_test} << shift;
+            undecided |= std::uint64_t{bits.undecided & kAllLanes} << shift;
+        }
+        // Bit n goes to the place of the n-th bit of `open`.
+        HWY_INLINE void put(const WordBits& bits, std::uint64_t open) {
+            outside |= simd::deposit_bits(bits.outside, open);
+            inside |= simd::deposit_bits(bits.inside, open);
+            needs_edge_test |= simd::deposit_bits(bits.needs_edge_test, open);
+            undecided |= simd::deposit_bits(bits.undecided, open);
+        }
+    };
+
+    template <class Test>
+    HWY_INLINE void test_open(std::size_t first, std::uint64_t open, const Test& test, WordBits& bits) {
+        std::uint32_t which[64 + 16];
+        const std::size_t count = list_sparse_bits(&open, 1, which);
+        if (count == 0) return;
+        std::fill_n(which + count, kLanes, which[count - 1]);  // for lanes beyond the last
+        const DirectBoxes boxes{in_.boxes + sizeof(Obb) * first, origin_};
+        WordBits found;
+        for (std::size_t i = 0; i < count; i += kLanes) {
+            const Picked<DirectBoxes> picked{boxes, which + i};
+            found.add(test(lanes_of_picked(picked)), i);
+        }
+        bits.put(found, open);
+    }
+
+    static HWY_INLINE void append(std::uint64_t bits, std::uint32_t base, std::uint32_t* list, std::size_t& count) {
+        for (; bits; bits &= bits - 1)
+            list[count++] = base + static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+    }
+
+    // Boxes `first` on. Where there are fewer than lanes, the last ones are copied, and zeros follow.
+    HWY_INLINE DirectLanes lanes_from(std::size_t first) {
+        const unsigned char* bytes = in_.boxes + sizeof(Obb) * first;
+        if (HWY_UNLIKELY(first + kLanes > in_.count)) {
+            const std::size_t size = sizeof(Obb) * (in_.count - first);
+            std::memcpy(last_, bytes, size);
+            std::memset(last_ + size, 0, sizeof(last_) - size);
+            bytes = last_;
+        }
+        const DirectBoxes boxes{bytes, origin_};
+        return DirectLanes([&](std::size_t q, VF(&out)[4]) HWY_ATTR {
+            simd::gather_rows(
+                DF(), [&](std::size_t l) HWY_ATTR { return row_of(boxes[l], q); }, out);
+        });
+    }
+
+    static constexpr std::uint32_t kAllLanes = static_cast<std::uint32_t>((std::uint64_t{1} << kLanes) - 1);
 
     const DirectKernelInput& in_;
     ListKernelOutput& out_;
-    double origin_[4] = {};
+    alignas(64) unsigned char last_[sizeof(Obb) * kLanes];
+    double origin_[4] = {0.0, 0.0, 0.0, 1.0};  // the last is taken from a pair of floats: keeps that from underflow
     DirectBoxes boxes_;
-    std::uint32_t open_[kChunk + 16];
+    std::size_t resolve_count_ = 0;
+    std::uint32_t resolve_[kChunk + 16];
 };
 
 void run_direct(const DirectKernelInput& input, ListKernelOutput& output) {

@@ -56,13 +56,17 @@ class ChunkQuery {
         const std::size_t count = list_sparse_bits(open, words_, indices);
         OpenRecords<Record, ChunkQuery> records(*in_.view, *in_.chunk, in_.records, rows_.planes, in_.exact, *this);
         const OpenCounts counts = records.test(indices, count, needs_edge_test);
+        if (count > 0) bits_.finish(open, words_, out_.visible, out_.inside);
         out_.resolved_count = counts.resolved;
         out_.improper = counts.improper;
         out_.open = counts.straddling + counts.undecided;
     }
 
     HWY_INLINE void outside(std::uint32_t i) { out_.visible[i / 64] &= ~bit(i); }
-    HWY_INLINE void inside(std::uint32_t i) { out_.inside[i / 64] |= bit(i); }
+    HWY_INLINE void sixteen(std::size_t at, const std::uint32_t*, std::uint32_t outside_bits,
+                            std::uint32_t inside_bits) {
+        bits_.sixteen(at, outside_bits, inside_bits);
+    }
     HWY_INLINE void undecided(std::uint32_t i) { out_.undecided[out_.undecided_count++] = i; }
 
   private:
@@ -72,6 +76,7 @@ class ChunkQuery {
     ListKernelOutput& out_;
     std::size_t words_;
     RowPlanes rows_;
+    OpenBits bits_;
 };
 
 void run_boxes(const ListKernelInput<BoxRecord>& input, ListKernelOutput& output) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A list's records, gathered from wherever they lie and turned into lanes. Compiled once per instruction set (Highway).
 #include <crofton/cull/list_layout.hpp>
-#include <cstring>
+#include <crofton/simd/gather_rows-inl.hpp>
 
 #include "list/ball_tests-inl.hpp"
 #include "tree/block_tests-inl.hpp"
@@ -16,28 +16,37 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-inline constexpr std::size_t kBatch = 128;
-
-// Records copied next to each other, as rows of four numbers that lanes are loaded from interleaved.
+// Numbers 4 q to 4 q + 3 of a record.
 template <class Record>
-struct Batch {
-    static constexpr std::size_t kQuads = sizeof(Record) / 16;
-    alignas(64) float quads[kQuads][kBatch][4];
+HWY_INLINE simd::Row row_of(const Record& record, std::size_t q) {
+    return simd::load_row(reinterpret_cast<const unsigned char*>(&record) + 16 * q);
+}
 
-    HWY_INLINE void copy(std::size_t to, const Record& record) {
-        for (std::size_t q = 0; q < kQuads; ++q)
-            std::memcpy(quads[q][to], reinterpret_cast<const char*>(&record) + 16 * q, 16);
-    }
-    HWY_INLINE void load(std::size_t quad, std::size_t at, VF& a, VF& b, VF& c, VF& d) const {
-        hn::LoadInterleaved4(DF(), quads[quad][at], a, b, c, d);
+// Records as lanes are loaded from: records[which[l]] is lane l's.
+template <class Records>
+struct Picked {
+    const Records& records;
+    const std::uint32_t* which;  // one for each lane
+
+    HWY_INLINE void load(std::size_t q, VF& a, VF& b, VF& c, VF& d) const {
+        VF out[4];
+        simd::gather_rows(
+            DF(), [&](std::size_t l) HWY_ATTR { return row_of(records[which[l]], q); }, out);
+        a = out[0];
+        b = out[1];
+        c = out[2];
+        d = out[3];
     }
 };
 
-HWY_INLINE BoxLanes lanes_of(const Batch<BoxRecord>& batch, std::size_t at, std::size_t count) {
+template <class Record>
+using PickedRecords = Picked<const Record*>;
+
+HWY_INLINE BoxLanes lanes_of(const PickedRecords<BoxRecord>& picked, std::size_t count) {
     BoxLanes boxes;
     VF first, pairs[4];
-    batch.load(0, at, boxes.x, boxes.y, boxes.z, first);
-    batch.load(1, at, pairs[0], pairs[1], pairs[2], pairs[3]);
+    picked.load(0, boxes.x, boxes.y, boxes.z, first);
+    picked.load(1, pairs[0], pairs[1], pairs[2], pairs[3]);
     const VF radius = hn::BitCast(DF(), hn::ShiftLeft<16>(hn::BitCast(DU(), first)));
     boxes.unit = hn::Mul(radius, hn::Set(DF(), 0x1p-15f));
     // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
@@ -66,17 +75,17 @@ struct AabbLanes {
     HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(error, hn::Set(DF(), local.slack)); }
 };
 
-HWY_INLINE AabbLanes lanes_of(const Batch<AabbRecord>& batch, std::size_t at, std::size_t count) {
+HWY_INLINE AabbLanes lanes_of(const PickedRecords<AabbRecord>& picked, std::size_t count) {
     AabbLanes boxes;
-    batch.load(0, at, boxes.x, boxes.y, boxes.z, boxes.unit);
-    batch.load(1, at, boxes.half[0], boxes.half[1], boxes.half[2], boxes.error);
+    picked.load(0, boxes.x, boxes.y, boxes.z, boxes.unit);
+    picked.load(1, boxes.half[0], boxes.half[1], boxes.half[2], boxes.error);
     boxes.present = hn::FirstN(DF(), count);
     return boxes;
 }
 
-HWY_INLINE SphereLanes lanes_of(const Batch<SphereRecord>& batch, std::size_t at, std::size_t count) {
+HWY_INLINE SphereLanes lanes_of(const PickedRecords<SphereRecord>& picked, std::size_t count) {
     SphereLanes spheres;
-    batch.load(0, at, spheres.x, spheres.y, spheres.z, spheres.radius);
+    picked.load(0, spheres.x, spheres.y, spheres.z, spheres.radius);
     spheres.present = hn::FirstN(DF(), count);
     return spheres;
 }

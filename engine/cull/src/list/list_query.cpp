@@ -15,6 +15,13 @@ namespace crofton::cull {
 namespace {
 
 template <class Bound>
+bool set_list_view(const View& view, KernelView& result) {
+    const bool takes = set_planes(view, result);
+    if (std::is_same_v<Bound, Sphere>) set_lengths(result);
+    return takes;
+}
+
+template <class Bound>
 struct ListQuery {
     const BoundSet<Bound>& set;
     std::span<const Bound> bounds;
@@ -72,8 +79,8 @@ void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<con
     verdicts.visible.resize((set.size() + 63) / 64);
     verdicts.inside.resize((set.size() + 63) / 64);
     verdicts.by_chunk.resize(set.chunks().size());
-    const bool usable = is_usable(view.frustum), vectors = takes_vectors(view.frustum);
-    const KernelView kernel_view = kernel_view_of(view);
+    KernelView kernel_view;
+    const bool vectors = set_list_view<Bound>(view, kernel_view), usable = vectors || is_usable(view.frustum);
     const ListQuery<Bound> query{set, bounds, mode};
     const auto ask = [&](std::size_t begin, std::size_t end, unsigned) {
         ListKernelOutput output;
@@ -105,9 +112,8 @@ class ListViews {
     ListViews(const ListQuery<Bound>& query, std::span<const std::uint32_t> layers, std::span<const View> views)
         : query_(query), layers_(layers), views_(views) {
         for (std::uint32_t v = 0; v < views.size(); ++v) {
-            kernel_views_[v] = kernel_view_of(views[v]);
             usable_[v] = is_usable(views[v].frustum);
-            (takes_vectors(views[v].frustum) ? vectors_ : singly_) |= 1u << v;
+            (set_list_view<Bound>(views[v], kernel_views_[v]) ? vectors_ : singly_) |= 1u << v;
         }
     }
 

@@ -157,8 +157,10 @@ class ChunkViews {
         std::uint32_t* masks;
         std::uint32_t view, bit;
 
+        HWY_INLINE void sixteen(std::size_t, const std::uint32_t* which, std::uint32_t outside_bits, std::uint32_t) {
+            for_each_bit(outside_bits, [&](unsigned i) { outside(which[i]); });
+        }
         HWY_INLINE void outside(std::uint32_t i) { masks[i] &= ~bit; }
-        HWY_INLINE void inside(std::uint32_t) {}
         HWY_INLINE void undecided(std::uint32_t i) {
             if (!in.decide(in.context, i, view)) masks[i] &= ~bit;
         }
@@ -171,7 +173,7 @@ class ChunkViews {
         for (std::size_t i = 0; i < count; ++i) hwy::Prefetch(in_.records + indices[i]);
     }
 
-    void ask_records(const RowView& asked, const std::uint32_t* indices, std::size_t count, ListViewCost& cost) {
+    void ask_records(const RowView& asked, std::uint32_t* indices, std::size_t count, ListViewCost& cost) {
         std::uint32_t needs_edge_test[kChunk + 16];
         Sink sink{in_, masks_, asked.view, asked.bit};
         OpenRecords<Record, Sink> records(in_.views[asked.view], *in_.chunk, in_.records, asked.planes.planes,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a chunk's rows leave open, asked of the records. Compiled once per instruction set (Highway).
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/cull/list_layout.hpp>
+#include <crofton/simd/deposit_bits-inl.hpp>
 
 #include "list/list_lanes-inl.hpp"
 
@@ -33,13 +35,47 @@ HWY_INLINE void for_each_bit(std::uint32_t bits, const Visit& visit) {
     for (; bits; bits &= bits - 1) visit(static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)));
 }
 
+template <class Record>
+HWY_INLINE void prefetch_record(const Record* records, std::uint32_t i) {
+    hwy::Prefetch(records + i);
+}
+
+// Verdicts of a chunk's bounds as bits, some of them open. What comes in of these, in their order, is put in its place
+// by finish().
+class OpenBits {
+  public:
+    HWY_INLINE void sixteen(std::size_t at, std::uint32_t outside, std::uint32_t inside) {
+        const std::size_t w = at / 64;
+        if (at % 64 == 0) outside_[w] = inside_[w] = outside_[w + 1] = inside_[w + 1] = 0;
+        outside_[w] |= std::uint64_t{outside} << (at % 64);
+        inside_[w] |= std::uint64_t{inside} << (at % 64);
+    }
+
+    HWY_INLINE void finish(const std::uint64_t* open, std::size_t words, std::uint64_t* visible,
+                           std::uint64_t* inside) const {
+        std::size_t at = 0;
+        for (std::size_t w = 0; w < words; ++w) {
+            visible[w] &= ~simd::deposit_bits(simd::bits_from(outside_, at), open[w]);
+            inside[w] |= simd::deposit_bits(simd::bits_from(inside_, at), open[w]);
+            at += hwy::PopCount(open[w]);
+        }
+    }
+
+  private:
+    std::uint64_t outside_[kChunk / 64 + 1], inside_[kChunk / 64 + 1];
+};
+
 // How many of the records went which way.
 struct OpenCounts {
     std::size_t resolved = 0, straddling = 0, undecided = 0, improper = 0;
 };
 
-// One view's questions. Tells `sink` by outside(i), inside(i) and undecided(i) what the records know; the others are
-// certainly straddling.
+// The records ahead of those in work that are asked for.
+inline constexpr std::size_t kRecordsAhead = 32;
+
+// One view's questions. What the records know of up to sixteen bounds, consecutive ones of those asked about, goes to
+// sink.sixteen(place of the first, their indices, bits outside, bits inside); the second stage's word of single ones to
+// sink.outside(i) and sink.undecided(i). The others are certainly straddling.
 template <class Record, class Sink, class Records = const Record*>
 class OpenRecords {
   public:
@@ -50,61 +86,69 @@ class OpenRecords {
         for_each_bit(planes, [&](unsigned i) { local_[i] = local_plane(view.planes[i], at); });
     }
 
-    // `needs_edge_test` is for its own use and has room for all.
-    HWY_INLINE OpenCounts test(const std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
-        for_each_sixteen(indices, count, [&](const auto& lanes, const std::uint32_t* which) {
+    // Of each of `indices`; room for 16 more is needed there. `needs_edge_test` is for its own use and has room for all
+    // and 16 more.
+    HWY_INLINE OpenCounts test(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
+        for_each_sixteen(indices, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
+            const std::uint32_t* which = indices + at;
             const Sixteen test =
-                lanes([&](const auto& boxes) HWY_ATTR { return test_boxes(view_, boxes, planes_, local_, exact_); });
+                lanes([&](const auto& bounds) HWY_ATTR { return test_boxes(view_, bounds, planes_, local_, exact_); });
+            const std::uint32_t kept = test.inside | test.straddling | test.needs_edge_test | test.undecided;
+            sink_.sixteen(at, which, valid & ~kept, test.inside);
             for_each_bit(test.needs_edge_test, [&](unsigned i) { needs_edge_test[counts_.resolved++] = which[i]; });
-            apply(test, which);
+            count_rest(test, which);
         });
-        resolve_all(needs_edge_test, counts_.resolved);
+        return resolve(needs_edge_test, counts_.resolved);
+    }
+
+    // The second stage alone, of bounds that no plane certainly rejects and that are not certainly inside.
+    HWY_INLINE OpenCounts resolve(std::uint32_t* indices, std::size_t count) {
+        resolve_all(indices, count);
         return counts_;
     }
 
   private:
-    // Hands sixteen at a time to `visit`: their indices, and a function that applies a test to their lanes.
+    // Hands sixteen at a time to `visit`: the place of the first, a function that applies a test to their lanes, and a
+    // bit for each that there is.
     template <class Visit>
-    HWY_INLINE void for_each_sixteen(const std::uint32_t* indices, std::size_t count, const Visit& visit) {
-        Batch<Record> batch;
-        for (std::size_t begin = 0; begin < count; begin += kBatch) {
-            const std::size_t size = std::min(kBatch, count - begin);
-            for (std::size_t i = 0; i < size; ++i) batch.copy(i, records_[indices[begin + i]]);
-            for (std::size_t at = 0; at < size; at += 16) {
-                valid_ = size - at >= 16 ? 0xffffu : (1u << (size - at)) - 1;
-                visit(
-                    [&](const auto& test) HWY_ATTR {
-                        Sixteen result;
-                        for (std::size_t l = 0; l < 16 && at + l < size; l += hn::Lanes(DF()))
-                            result.add(test(lanes_of(batch, at + l, size - at - l)), l);
-                        return result;
-                    },
-                    indices + begin + at);
-            }
+    HWY_INLINE void for_each_sixteen(std::uint32_t* indices, std::size_t count, const Visit& visit) {
+        if (count == 0) return;
+        std::fill_n(indices + count, 16, indices[count - 1]);  // for lanes beyond the last
+        for (std::size_t at = 0; at < count; at += 16) {
+            for (std::size_t i = at + kRecordsAhead; i < std::min(count, at + kRecordsAhead + 16); ++i)
+                prefetch_record(records_, indices[i]);
+            const std::size_t size = std::min<std::size_t>(16, count - at);
+            visit(
+                at,
+                [&](const auto& test) HWY_ATTR {
+                    Sixteen result;
+                    for (std::size_t l = 0; l < size; l += hn::Lanes(DF()))
+                        result.add(test(lanes_of(Picked<Records>{records_, indices + at + l}, size - l)), l);
+                    return result;
+                },
+                static_cast<std::uint32_t>((std::uint64_t{1} << size) - 1));
         }
     }
 
-    HWY_INLINE void apply(const Sixteen& test, const std::uint32_t* which) {
-        const std::uint32_t kept = test.inside | test.straddling | test.needs_edge_test | test.undecided;
-        for_each_bit(valid_ & ~kept, [&](unsigned i) { sink_.outside(which[i]); });
-        for_each_bit(test.inside, [&](unsigned i) { sink_.inside(which[i]); });
+    HWY_INLINE void count_rest(const Sixteen& test, const std::uint32_t* which) {
         for_each_bit(test.undecided, [&](unsigned i) { sink_.undecided(which[i]); });
         counts_.straddling += hwy::PopCount(test.straddling);
         counts_.undecided += hwy::PopCount(test.undecided);
         counts_.improper += hwy::PopCount(test.improper);
     }
 
-    HWY_INLINE void resolve_all(const std::uint32_t* needs_edge_test, std::size_t count) {
-        for_each_sixteen(needs_edge_test, count, [&](const auto& lanes, const std::uint32_t* which) {
-            Sixteen test = lanes([&](const auto& bounds) HWY_ATTR {
+    HWY_INLINE void resolve_all(std::uint32_t* needs_edge_test, std::size_t count) {
+        for_each_sixteen(needs_edge_test, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
+            const Sixteen test = lanes([&](const auto& bounds) HWY_ATTR {
                 BoxTest result;
                 result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
                 result.needs_edge_test = bounds.present;
-                resolve(view_, bounds, planes_, local_, result);
+                HWY_NAMESPACE::resolve(view_, bounds, planes_, local_, result);
                 return result;
             });
-            test.needs_edge_test = 0;
-            apply(test, which);
+            const std::uint32_t* which = needs_edge_test + at;
+            for_each_bit(valid & ~(test.straddling | test.undecided), [&](unsigned i) { sink_.outside(which[i]); });
+            count_rest(test, which);
         });
     }
 
@@ -114,7 +158,6 @@ class OpenRecords {
     bool exact_;
     Sink& sink_;
     LocalPlane local_[KernelView::kMaxPlanes];
-    std::uint32_t valid_ = 0;
     OpenCounts counts_;
 };
 

@@ -81,13 +81,12 @@ HWY_INLINE BoxTest test_leaf(const LeafRows& rows, MF present, const LeafPlane& 
 }
 
 // The planes in the boxes' own coordinates. The conversions to floats and the sums in them: 2^-20 of |base| + reach.
-HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsigned count) {
+HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsigned count, MF wanted) {
     const DF d;
     BoxRows result(hn::Set(d, std::ldexp(1.0f, -boxes.edge_shift)));
-    result.count = count;
     for (unsigned i = 0; i < count; ++i) {
         const PlaneValues values(boxes, planes[i]);
-        BoxRows::Row& row = result.rows[i];
+        BoxRows::Row& row = result.rows[result.count];
         row.base = hn::ConvertTo(d, values.middle);
         row.reach = hn::Zero(d);
         for (unsigned k = 0; k < 3; ++k) {
@@ -96,6 +95,7 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
         }
         const VF size = hn::MulAdd(row.reach, result.unit, hn::Abs(row.base));
         row.slack = hn::MulAdd(size, hn::Set(d, 0x1p-20f), hn::Set(d, static_cast<float>(planes[i].at.slack)));
+        result.keep_next(wanted);
     }
     return result;
 }
@@ -103,7 +103,7 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
 // Not inlined, and given no vectors: what calls it keeps its own in registers.
 static HWY_NOINLINE void resolve_leaf(const boxtree::Leaf& leaf, std::size_t l, const LeafPlane* planes, unsigned count,
                                       BoxTest& test) {
-    resolve(box_rows(LeafRows(leaf, l), planes, count), test);
+    resolve(box_rows(LeafRows(leaf, l), planes, count, test.needs_edge_test), test);
 }
 
 // Of two planes or more. In the exact mode a box that crosses two is asked for a common point, unless its centre is

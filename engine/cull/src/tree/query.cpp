@@ -32,37 +32,6 @@ void grow(Vector<T>& buffer, std::size_t size) {
 
 }  // namespace
 
-KernelView kernel_view_of(const View& view) {
-    KernelView result;  // planes beyond the last are not read
-    for (int j = 0; j < 3; ++j) result.origin[j] = view.frustum.origin[j];
-    result.plane_count = view.frustum.plane_count;
-    result.layer_mask = view.layer_mask;
-    for (std::uint32_t i = 0; i < view.frustum.plane_count; ++i) {
-        const Plane& plane = view.frustum.planes[i];
-        for (int j = 0; j < 3; ++j) {
-            result.planes[i].normal[j] = plane.normal[j];
-            result.planes[i].normal_f[j] = static_cast<float>(plane.normal[j]);
-        }
-        result.planes[i].offset = plane.offset;
-        // To the nearest, without the C library's function: a view is set up anew for every query.
-        int n[3];
-        for (int j = 0; j < 3; ++j) {
-            const double scaled = plane.normal[j] * 0x1p14;
-            n[j] = std::fabs(scaled) < 0x1p16 ? static_cast<int>(scaled + std::copysign(0.5, scaled)) : 0;
-        }
-        result.pair_planes[i] = {boxtree::pair_of(n[0], n[1]), boxtree::pair_of(n[2], 0),
-                                 boxtree::pair_of(std::abs(n[0]), std::abs(n[1])), boxtree::pair_of(0, std::abs(n[2]))};
-        result.planes[i].length_f = static_cast<float>(glm::length(plane.normal));
-    }
-    return result;
-}
-
-bool takes_vectors(const Frustum& frustum) {
-    for (const Plane& plane : frustum.view())
-        if (!(std::fabs(plane.offset) <= 1e32)) return false;
-    return frustum.plane_count > 0 && is_usable(frustum) && has_unit_normals(frustum);
-}
-
 void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
     output.resolved_count = output.improper = 0;
     output.open = output.undecided_count = count;
@@ -97,8 +66,8 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
     grow(visible_.bits_, 2 * words);
     std::uint64_t *const seen = visible_.bits_.data(), *const marked = seen + words;
     const glm::dvec3 origin = glm::abs(view_.frustum.origin);
-    const bool vectors = takes_vectors(view_.frustum) && std::max({origin.x, origin.y, origin.z}) <= kFarthestOrigin;
-    const KernelView view = kernel_view_of(view_);
+    KernelView view;
+    const bool vectors = set_planes(view_, view) && std::max({origin.x, origin.y, origin.z}) <= kFarthestOrigin;
     ListKernelOutput output;
     for (std::size_t first = 0; first < boxes.size(); first += kChunk) {
         const std::size_t count = std::min(kChunk, boxes.size() - first), chunk_words = (count + 63) / 64;

@@ -10,11 +10,13 @@
 
 namespace crofton::cull {
 
-[[nodiscard]] KernelView kernel_view_of(const View& view);
+// A view's planes, without what only trees and balls need. Returns whether the kernels of lists can take them: without
+// planes nothing would tell invalid bounds from others; beyond 1e32 the offsets' error bounds would not.
+[[nodiscard]] bool set_planes(const View& view, KernelView& result);
+void set_lengths(KernelView& view);  // for balls
 
-// Whether the kernels can take this frustum. Without planes nothing would tell invalid bounds from others; beyond 1e32
-// the offsets' error bounds would not.
-[[nodiscard]] bool takes_vectors(const Frustum& frustum);
+// For a tree: its planes in small integers as well.
+[[nodiscard]] KernelView kernel_view_of(const View& view);
 
 // What a kernel would answer that decides nothing.
 void leave_all_undecided(std::size_t count, ListKernelOutput& output);
