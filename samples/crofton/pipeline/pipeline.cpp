@@ -121,20 +121,21 @@ struct Pipeline::State {
     // Without culling every bound is all of space, and that straddles.
     void list_all() {
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-            if (!scene.is_removed(i)) list(i, cull::Verdict::straddling);
+            if (!scene.is_removed(i)) visible_ids.push_back(i);
+        for (const scene::InstanceId i : visible_ids) verdicts[i] = cull::Verdict::straddling;
     }
 
-    void list(scene::InstanceId instance, cull::Verdict verdict) {
-        verdicts[instance] = verdict;
-        if (verdict != cull::Verdict::outside) visible_ids.push_back(instance);
-    }
-
-    // Spheres by planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
     void list(const Frustum& frustum, std::span<const std::uint32_t> ids, std::span<const cull::Verdict> found) {
-        const std::span<const Sphere> spheres = bounds.spheres();
-        for (std::size_t k = 0; k < ids.size(); ++k)
-            list(ids[k],
-                 spheres.empty() ? found[k] : cull::classify(frustum, spheres[ids[k]], cull::CullMode::conservative));
+        visible_ids.assign(ids.begin(), ids.end());
+        for (std::size_t k = 0; k < ids.size(); ++k) verdicts[ids[k]] = found[k];
+        if (!bounds.spheres().empty()) decide_by_spheres(frustum);
+    }
+
+    // By planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
+    void decide_by_spheres(const Frustum& frustum) {
+        for (const scene::InstanceId i : visible_ids)
+            verdicts[i] = cull::classify(frustum, bounds.spheres()[i], cull::CullMode::conservative);
+        std::erase_if(visible_ids, [&](scene::InstanceId i) { return verdicts[i] == cull::Verdict::outside; });
     }
 
     void list_visible(const Frustum& frustum) {
