@@ -99,7 +99,7 @@ class Session {
     Camera culling_camera_;
     pipeline::FrameStatistics frame_, other_frame_;
     std::vector<Cascade> cascades_;
-    cull::VisibleSet cascade_visible_;
+    VisibleObjects cascade_visible_;
     InstanceColoring instance_coloring_;
     Overlay overlay_;
     LineList lines_;
