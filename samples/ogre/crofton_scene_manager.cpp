@@ -5,9 +5,10 @@
 #include <OgreEntity.h>
 #include <OgreRenderQueue.h>
 #include <OgreRenderQueueSortingGrouping.h>
+#include <OgreRoot.h>
 
 #include <chrono>
-#include <crofton/scene/transform.hpp>
+#include <cstdint>
 #include <optional>
 
 namespace crofton::ogre {
@@ -105,31 +106,45 @@ Ogre::SceneNode* SceneManager::createSceneNodeImpl(const Ogre::String& name) {
 }
 
 void SceneManager::bounds_changed(SceneNode& node) {
-    if (node.getAttachedObjects().empty() && node.item_ == boxtree::kNone && !node.unbounded_) return;
-    const bool unbounded = is_unbounded(node);
-    const std::optional<Obb> box = unbounded ? std::nullopt : box_of(node);
-    if (!box || unbounded != node.unbounded_) forget(node);
-    if (unbounded && !node.unbounded_) {
-        node.unbounded_ = true;
-        unbounded_.push_back(&node);
-    }
+    if (node.getAttachedObjects().empty() && node.object_.is_null() && !node.unbounded_) return;
+    if (is_unbounded(node)) return make_unbounded(node);
+    const std::optional<Obb> box = box_of(node);
+    if (!box || node.unbounded_) forget(node);
     if (!box) return;
-    if (node.item_ != boxtree::kNone) {
-        index_.move(node.item_, *box);
+    world_changed_ = true;
+    if (!node.object_.is_null()) {
+        if (!world_.set_bound(node.object_, *box)) make_unbounded(node);
         return;
     }
-    node.item_ = index_.insert(*box);
-    if (nodes_.size() <= node.item_) nodes_.resize(node.item_ + 1);
-    nodes_[node.item_] = &node;
+    const auto added = world_.add({.bound = *box, .user = reinterpret_cast<std::uintptr_t>(&node)});
+    // What the World refuses, such as infinity, every camera sees.
+    if (!added) return make_unbounded(node);
+    node.object_ = *added;
+}
+
+void SceneManager::make_unbounded(SceneNode& node) {
+    if (node.unbounded_) return;
+    forget(node);
+    node.unbounded_ = true;
+    unbounded_.push_back(&node);
 }
 
 void SceneManager::forget(SceneNode& node) {
     if (node.unbounded_) std::erase(unbounded_, &node);
     node.unbounded_ = false;
-    if (node.item_ == boxtree::kNone) return;
-    index_.remove(node.item_);
-    nodes_[node.item_] = nullptr;
-    node.item_ = boxtree::kNone;
+    if (node.object_.is_null()) return;
+    static_cast<void>(world_.remove(node.object_));
+    node.object_ = {};
+    world_changed_ = true;
+}
+
+// Once a frame, whatever the number of cameras and shadow textures: a World counts updates to tell what moves.
+void SceneManager::update_world() {
+    const unsigned long frame = Ogre::Root::getSingleton().getNextFrameNumber();
+    if (!world_changed_ && frame == updated_frame_) return;
+    static_cast<void>(world_.update());  // can only run out of pairs, of which there are none
+    world_changed_ = false;
+    updated_frame_ = frame;
 }
 
 Frustum SceneManager::frustum_of(const Ogre::Camera& camera) {
@@ -179,12 +194,12 @@ void SceneManager::_findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObject
         find_times_ = {0.0, microseconds_since(start)};
         return;
     }
-    index_.update();
+    update_world();
     const auto cull_start = Clock::now();
-    const cull::VisibleSet& visible = index_.cull({.frustum = frustum_of(*camera)});
+    world_.view(cull::View{.frustum = frustum_of(*camera)}, visible_);
     const double cull_time = microseconds_since(cull_start);
-    visible_nodes_ = visible.size();
-    for (const cull::ItemId item : visible.ids()) queue_objects(*nodes_[item], camera, bounds, only_shadow_casters);
+    for (std::size_t i = 0; i < visible_.size(); ++i)
+        queue_objects(*reinterpret_cast<SceneNode*>(visible_[i].user), camera, bounds, only_shadow_casters);
     for (SceneNode* node : unbounded_) queue_objects(*node, camera, bounds, only_shadow_casters);
     find_times_ = {cull_time, microseconds_since(start)};
 }

@@ -4,9 +4,8 @@
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 
+#include <crofton/crofton.hpp>
 #include <vector>
-
-#include "../adapter/cull_index.hpp"
 
 namespace crofton::ogre {
 
@@ -25,8 +24,8 @@ class SceneNode final : public Ogre::SceneNode {
     void setInSceneGraph(bool in_graph) override;
 
     SceneManager& manager_;
-    cull::ItemId item_ = boxtree::kNone;
-    bool unbounded_ = false;  // in the manager's list of objects that every camera sees
+    ObjectHandle object_;     // the box around what is attached, in the manager's World
+    bool unbounded_ = false;  // in the manager's list of nodes that every camera sees
 };
 
 // Where the time of the last _findVisibleObjects went, in microseconds.
@@ -45,7 +44,7 @@ class SceneManager final : public Ogre::SceneManager {
     void use_ogre_culling(bool use) { use_ogre_culling_ = use; }
     [[nodiscard]] const FindTimes& find_times() const { return find_times_; }
     // Objects with a box that the last search of ours saw.
-    [[nodiscard]] std::size_t visible_nodes() const { return visible_nodes_; }
+    [[nodiscard]] std::size_t visible_nodes() const { return visible_.size(); }
 
     void _findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                              bool only_shadow_casters) override;
@@ -59,16 +58,19 @@ class SceneManager final : public Ogre::SceneManager {
     Ogre::SceneNode* createSceneNodeImpl(const Ogre::String& name) override;
     void bounds_changed(SceneNode& node);
     void forget(SceneNode& node);
+    void make_unbounded(SceneNode& node);
+    void update_world();
     void queue_object(Ogre::MovableObject& object, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                       bool only_shadow_casters);
     void queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                        bool only_shadow_casters);
 
-    adapter::CullIndex index_;
-    std::vector<SceneNode*> nodes_;      // by item
+    World world_{{.pairs = false}};
+    VisibleObjects visible_;
+    bool world_changed_ = true;  // since its last update
+    unsigned long updated_frame_ = 0;
     std::vector<SceneNode*> unbounded_;  // hold skies and the like
     bool use_ogre_culling_ = false;
-    std::size_t visible_nodes_ = 0;
     FindTimes find_times_;
 };
 

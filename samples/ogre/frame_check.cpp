@@ -100,14 +100,14 @@ const std::vector<Ogre::Vector3>& MeshTriangles::of(const Ogre::Mesh& mesh) {
     return entry->second;
 }
 
-FrameCheck check_pass(World& world, const QueueRecorder::Pass& ogre, const QueueRecorder::Pass& crofton,
+FrameCheck check_pass(City& city, const QueueRecorder::Pass& ogre, const QueueRecorder::Pass& crofton,
                       MeshTriangles& meshes) {
     FrameCheck check;
     check.ogre = ogre.queued.size();
     check.crofton = crofton.queued.size();
     for (const Ogre::Renderable* renderable : crofton.queued)
         if (!std::binary_search(ogre.queued.begin(), ogre.queued.end(), renderable)) ++check.not_in_ogre;
-    for (const Ogre::Entity* entity : world.entities()) {
+    for (const Ogre::Entity* entity : city.entities()) {
         const bool expected =
             (entity->getVisibilityFlags() & kShown) != 0 && (!crofton.shadows || entity->getCastShadows());
         if (!expected && is_queued(*entity, crofton)) ++check.not_in_ogre;

@@ -14,7 +14,7 @@ namespace crofton::ogre {
 namespace {
 
 struct Request {
-    WorldSize drawn;
+    CitySize drawn;
     unsigned frames = 12;
     unsigned timed_entities = 0;
     unsigned timed_frames = 40;
@@ -26,8 +26,8 @@ struct DrawnFrame {
     Ogre::RenderTarget::FrameStats statistics;
 };
 
-DrawnFrame draw(Headless& headless, World& world, QueueRecorder& recorder, bool ogre_culling) {
-    world.manager().use_ogre_culling(ogre_culling);
+DrawnFrame draw(Headless& headless, City& city, QueueRecorder& recorder, bool ogre_culling) {
+    city.manager().use_ogre_culling(ogre_culling);
     headless.root()._fireFrameStarted();
     headless.window().resetStatistics();
     headless.window().update(false);
@@ -37,23 +37,23 @@ DrawnFrame draw(Headless& headless, World& world, QueueRecorder& recorder, bool 
 
 // Draws every frame both ways and compares what was queued. Returns whether all was as promised.
 bool compare_frames(Headless& headless, const Request& request) {
-    World world(headless.root(), request.drawn);
+    City city(headless.root(), request.drawn);
     headless.window().removeAllViewports();
-    headless.window().addViewport(&world.camera())->setBackgroundColour(Ogre::ColourValue(0.5f, 0.6f, 0.7f));
-    QueueRecorder recorder(world.manager());
+    headless.window().addViewport(&city.camera())->setBackgroundColour(Ogre::ColourValue(0.5f, 0.6f, 0.7f));
+    QueueRecorder recorder(city.manager());
     MeshTriangles meshes;
     std::printf("%u entities, %u moving; a frame is drawn with OGRE's culling, then with Crofton's\n",
                 request.drawn.entities, request.drawn.moving);
     std::puts("frame  pass     queued: OGRE  Crofton  not in OGRE's  missing | batches      triangles        find, us");
     bool good = true;
     for (unsigned frame = 0; frame < request.frames; ++frame) {
-        world.set_frame(frame);
-        const DrawnFrame theirs = draw(headless, world, recorder, true), ours = draw(headless, world, recorder, false);
+        city.set_frame(frame);
+        const DrawnFrame theirs = draw(headless, city, recorder, true), ours = draw(headless, city, recorder, false);
         good = good && theirs.passes.size() == ours.passes.size();
         for (std::size_t i = 0; good && i < ours.passes.size(); ++i) {
             const auto& ogre = theirs.passes[i];
             const auto& crofton = ours.passes[i];
-            const FrameCheck check = check_pass(world, ogre, crofton, meshes);
+            const FrameCheck check = check_pass(city, ogre, crofton, meshes);
             good = good && ogre.camera == crofton.camera && check.not_in_ogre == 0 && check.missing == 0;
             std::printf("%5u  %-7s %13zu %8zu %14zu %8zu |", frame, crofton.shadows ? "shadow" : "picture", check.ogre,
                         check.crofton, check.not_in_ogre, check.missing);
@@ -70,27 +70,27 @@ bool compare_frames(Headless& headless, const Request& request) {
 }
 
 // _findVisibleObjects alone, on a large static scene: the smallest time of several frames from several places.
-void time_culling(World& world, double view_distance, unsigned frames) {
-    world.camera().setFarClipDistance(static_cast<float>(view_distance));
+void time_culling(City& city, double view_distance, unsigned frames) {
+    city.camera().setFarClipDistance(static_cast<float>(view_distance));
     FindTimes ogre_best{0, 0}, best{0, 0};
     std::size_t visible = 0;
     for (unsigned frame = 0; frame < 4; ++frame) {
-        world.set_frame(7 * frame);
-        world.manager()._updateSceneGraph(&world.camera());
+        city.set_frame(7 * frame);
+        city.manager()._updateSceneGraph(&city.camera());
         FindTimes least[2];
         for (bool ogre_culling : {true, false}) {
             FindTimes& time = least[ogre_culling];
             time = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-            world.manager().use_ogre_culling(ogre_culling);
+            city.manager().use_ogre_culling(ogre_culling);
             for (unsigned i = 0; i < frames; ++i) {
-                world.manager().getRenderQueue()->clear();
+                city.manager().getRenderQueue()->clear();
                 Ogre::VisibleObjectsBoundsInfo bounds;
-                world.manager()._findVisibleObjects(&world.camera(), &bounds, false);
-                time.cull = std::min(time.cull, world.manager().find_times().cull);
-                time.total = std::min(time.total, world.manager().find_times().total);
+                city.manager()._findVisibleObjects(&city.camera(), &bounds, false);
+                time.cull = std::min(time.cull, city.manager().find_times().cull);
+                time.total = std::min(time.total, city.manager().find_times().total);
             }
         }
-        visible += world.manager().visible_nodes();
+        visible += city.manager().visible_nodes();
         ogre_best.total += least[true].total / 4;
         best.cull += least[false].cull / 4;
         best.total += least[false].total / 4;
@@ -106,13 +106,13 @@ int run(const Request& request) {
     bool good = true;
     if (request.frames > 0) good = compare_frames(headless, request);
     if (request.timed_entities > 0) {
-        World world(headless.root(), {request.timed_entities, 0, false});
+        City city(headless.root(), {request.timed_entities, 0, false});
         std::printf(
             "%u static entities: _findVisibleObjects\nview distance  in view         OGRE      Crofton  faster, times  "
             "of it the cull\n",
             request.timed_entities);
         for (const double view_distance : {300.0, 600.0, 1200.0, 5000.0})
-            time_culling(world, view_distance, request.timed_frames);
+            time_culling(city, view_distance, request.timed_frames);
     }
     headless.root().removeSceneManagerFactory(&factory);
     if (!good) std::fputs("crofton_ogre: the visible sets are not what they must be\n", stderr);
