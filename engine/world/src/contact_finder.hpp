@@ -34,7 +34,7 @@ class ContactFinder {
 
     [[nodiscard]] std::span<const ObjectPair> pairs() const { return pairs_; }
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
-    [[nodiscard]] std::uint64_t box_pairs_tested() const { return broadphase_.statistics().bound_pairs; }
+    [[nodiscard]] const collide::BroadphaseStatistics& broadphase() const { return broadphase_.statistics(); }
 
   private:
     struct Worker {

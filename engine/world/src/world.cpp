@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <crofton/core/memory.hpp>
 #include <new>
 
@@ -31,6 +32,9 @@ std::size_t World::object_count() const {
 }
 const WorldStatistics& World::statistics() const {
     return state_->statistics;
+}
+const boxtree::BoxTree& World::tree() const {
+    return state_->index.tree();
 }
 std::span<const ObjectPair> World::pairs() const {
     return state_->finder.pairs();
@@ -114,15 +118,19 @@ Result<void> World::update(Executor& executor) {
     Result<void> found;
     const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
     s.pairs_changed = false;
+    const auto start = std::chrono::steady_clock::now();
     if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, s.scene, s.bodies, moved_only, executor);
     if (!changed) s.finder.stay();
+    s.statistics.contacts_us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     if (!found) s.pairs_changed = true;
     s.statistics.objects = s.table.count;
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();
     s.statistics.boxes_changed = changes.boxes;
     s.statistics.tree_built = changes.tree_built;
-    s.statistics.box_pairs_tested = changed ? s.finder.box_pairs_tested() : 0;
+    s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
+    if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
     s.statistics.contact_pairs_tested = changed ? s.finder.pairs().size() : 0;
     return found;
 }

@@ -29,8 +29,9 @@ struct FrameStatistics {
     std::optional<render::GpuCounters>
         gpu;  // absent without drawing; docs/notes/render.md: what each counts on lavapipe
     std::uint64_t colliding_pairs = 0;
-    // Pairs whose axis-aligned bounds meet, and what told their boxes apart: early outs, by group of axes. The first
-    // equals the sum of the next three and colliding_pairs.
+    // Pairs whose axis-aligned bounds meet, and what told their boxes apart: early outs, by group of axes. Of the last
+    // frame in which anything moved, those with one that moved; where many moved, all: the first then equals the sum of
+    // the next three and colliding_pairs.
     std::uint64_t pairs_tested = 0;
     std::uint64_t separated_by_face_a = 0, separated_by_face_b = 0, separated_by_edges = 0;
     std::uint64_t pairs_refined = 0;  // of all: decided in double or exactly, where float could not

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <crofton/boxtree/box_tree.hpp>
-#include <crofton/collide/convex_query.hpp>
 #include <crofton/cull/cull.hpp>
 #include <utility>
 
@@ -19,9 +17,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::array<std::pair<const char*, CullMode>, 3> kModes = {
     {{"none", CullMode::none}, {"flat", CullMode::flat}, {"tree", CullMode::tree}}};
 
-// Items' worth of rebuilding a frame: some ten microseconds, and the tree keeps its quality however long the traffic
-// flows.
-constexpr std::size_t kMaintenancePerFrame = 100;
+constexpr std::uint32_t kColliderLayer = 2;
 
 double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -45,10 +41,12 @@ struct Pipeline::State {
     PipelineOptions options;
     Executor& executor;
     Bounds bounds;
-    std::optional<boxtree::BoxTree> tree;
-    collide::Broadphase broadphase;
-    std::vector<Obb> mover_boxes, moved_boxes;
-    cull::VisibleSet visible;
+    World world;
+    std::vector<ObjectHandle> objects;    // by instance
+    std::vector<ObjectHandle> colliders;  // by instance where it collides by another box than it is seen by; else empty
+    WorldStatistics tests;                // of the last update in which anything moved: its pairs are still those
+    VisibleObjects visible;
+    cull::VisibleSet visible_in_list;  // CullMode::flat
     std::vector<cull::Verdict> verdicts;
     std::vector<scene::InstanceId> visible_ids;
     ObjectCounter counter;
@@ -60,76 +58,117 @@ struct Pipeline::State {
           options(the_options),
           executor(the_executor),
           bounds(the_scene, the_options.bounds),
+          world({.pairs = the_options.collide}),
           verdicts(the_scene.instance_count(), cull::Verdict::outside) {
         std::sort(movers.begin(), movers.end());
     }
 
-    Result<void> build_tree() {
-        auto built = boxtree::BoxTree::build(bounds.boxes(), scene.layer_masks(), {}, executor);
-        if (!built) return tl::unexpected(built.error());
-        tree.emplace(std::move(*built));
-        return {};
+    // Movers collide by their oriented boxes, whatever bound they are seen by: by an object of their own where the two
+    // differ.
+    [[nodiscard]] bool collides_apart() const {
+        return options.bounds == BoundsKind::sphere || options.bounds == BoundsKind::aabb;
+    }
+    [[nodiscard]] std::uint32_t collider_layer(scene::InstanceId instance) const {
+        return !collides_apart() && std::binary_search(movers.begin(), movers.end(), instance) ? kColliderLayer : 0;
+    }
+    [[nodiscard]] std::uint32_t layers_of(scene::InstanceId instance) const {
+        return (scene.layer_masks()[instance] != 0 ? kSeenLayer : 0) | collider_layer(instance);
     }
 
-    Result<void> follow_motion() {
+    // An object for each instance, with a bound alone: nodes and meshes are the scene's.
+    Result<void> add_objects() {
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
+            const bool removed = scene.is_removed(i);
+            const auto object = world.add({.bound = removed ? Obb{} : bounds.boxes()[i],
+                                           .user = i,
+                                           .layers = removed ? 0 : layers_of(i),
+                                           .collides_with = collider_layer(i)});
+            if (!object) return fail(object.error().code, i, object.error().message);
+            objects.push_back(*object);
+        }
+        if (!collides_apart()) return update_world();
+        colliders.resize(objects.size());
+        for (const scene::InstanceId mover : movers) {
+            if (scene.is_removed(mover)) continue;
+            const auto object = world.add({.bound = scene.world_boxes()[mover],
+                                           .user = mover,
+                                           .layers = kColliderLayer,
+                                           .collides_with = kColliderLayer});
+            if (!object) return fail(object.error().code, mover, object.error().message);
+            colliders[mover] = *object;
+        }
+        return update_world();
+    }
+
+    Result<void> update_world() {
+        auto updated = world.update(executor);
+        if (world.statistics().boxes_changed > 0) tests = world.statistics();
+        return updated;
+    }
+
+    Result<void> follow_scene() {
         bounds.update();
-        const auto moved = scene.moved_instances();
-        if (moved.empty()) return {};
-        moved_boxes.clear();
-        for (const scene::InstanceId i : moved) moved_boxes.push_back(bounds.boxes()[i]);
-        if (auto done = tree->move(moved, moved_boxes); !done) return done;
-        tree->refit();
-        tree->rebuild_step(kMaintenancePerFrame);
-        return {};
+        for (const scene::InstanceId i : scene.relayered_instances())
+            if (auto set = world.set_layers(objects[i], layers_of(i)); !set) return set;
+        for (const scene::InstanceId i : scene.moved_instances()) {
+            if (auto set = world.set_bound(objects[i], bounds.boxes()[i]); !set) return set;
+            if (colliders.empty() || colliders[i].is_null()) continue;
+            if (auto set = world.set_bound(colliders[i], scene.world_boxes()[i]); !set) return set;
+        }
+        return update_world();
     }
 
     // Without culling every bound is all of space, and that straddles.
     void list_all() {
-        visible_ids.clear();
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-            if (!scene.is_removed(i)) visible_ids.push_back(i);
-        for (const scene::InstanceId i : visible_ids) verdicts[i] = cull::Verdict::straddling;
+            if (!scene.is_removed(i)) list(i, cull::Verdict::straddling);
+    }
+
+    void list(scene::InstanceId instance, cull::Verdict verdict) {
+        verdicts[instance] = verdict;
+        if (verdict != cull::Verdict::outside) visible_ids.push_back(instance);
+    }
+
+    // Spheres by planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
+    void list(const Frustum& frustum, std::span<const std::uint32_t> ids, std::span<const cull::Verdict> found) {
+        const std::span<const Sphere> spheres = bounds.spheres();
+        for (std::size_t k = 0; k < ids.size(); ++k)
+            list(ids[k],
+                 spheres.empty() ? found[k] : cull::classify(frustum, spheres[ids[k]], cull::CullMode::conservative));
     }
 
     void list_visible(const Frustum& frustum) {
-        const cull::View view{frustum};
-        if (options.cull == CullMode::tree)
-            cull::find_visible(*tree, view, visible, {.mode = options.mode, .order = cull::ResultOrder::ascending},
-                               executor);
-        else
-            cull::find_visible(bounds.boxes(), scene.layer_masks(), view, visible,
-                               {.mode = options.mode, .order = cull::ResultOrder::ascending}, executor);
+        for (const scene::InstanceId i : visible_ids) verdicts[i] = cull::Verdict::outside;
         visible_ids.clear();
-        for (std::size_t k = 0; k < visible.size(); ++k) {
-            const scene::InstanceId instance = visible.ids()[k];
-            // Spheres by planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
-            const auto verdict = bounds.spheres().empty() ? visible.verdicts()[k]
-                                                          : cull::classify(frustum, bounds.spheres()[instance],
-                                                                           cull::CullMode::conservative);
-            verdicts[instance] = verdict;
-            if (verdict != cull::Verdict::outside) visible_ids.push_back(instance);
+        const cull::CullOptions how{.mode = options.mode};
+        switch (options.cull) {
+            case CullMode::none:
+                return list_all();
+            case CullMode::flat:
+                cull::find_visible(bounds.boxes(), scene.layer_masks(), {frustum}, visible_in_list, how, executor);
+                return list(frustum, visible_in_list.ids(), visible_in_list.verdicts());
+            case CullMode::tree:
+                world.view({frustum, kSeenLayer}, visible, how, executor);
+                return list(frustum, visible.ids(), visible.verdicts());
         }
     }
 
-    // Pairs of movers by their oriented boxes, whatever bound the views are culled by.
-    Result<void> find_pairs(FrameStatistics& frame) {
-        mover_boxes.clear();
-        for (const scene::InstanceId mover : movers) mover_boxes.push_back(scene.world_boxes()[mover]);
-        if (auto updated = broadphase.update(mover_boxes, {}, executor); !updated) return updated;
-        for (const IdPair& pair : broadphase.pairs())
-            frame.colliding_ids.emplace_back(movers[pair.first], movers[pair.second]);
+    [[nodiscard]] std::uint64_t nodes_tested() const {
+        return options.cull == CullMode::tree ? visible.statistics().nodes_tested : 0;
+    }
+
+    void count_pairs(FrameStatistics& frame) const {
+        for (const ObjectPair& pair : world.pairs())
+            frame.colliding_ids.emplace_back(static_cast<std::uint32_t>(pair.first.user),
+                                             static_cast<std::uint32_t>(pair.second.user));
+        for (const Contact& contact : world.contacts()) frame.contacts += contact.points.size();
         frame.colliding_pairs = frame.colliding_ids.size();
-        const collide::BatchStatistics& decided = broadphase.statistics().boxes;
-        frame.pairs_tested = broadphase.statistics().bound_pairs;
-        frame.separated_by_face_a = decided.separated_by_face_a;
-        frame.separated_by_face_b = decided.separated_by_face_b;
-        frame.separated_by_edges = decided.separated_by_edges;
-        frame.pairs_refined = decided.refined;
-        for (const IdPair& pair : broadphase.pairs()) {
-            const auto manifold = collide::contact_manifold(mover_boxes[pair.first], mover_boxes[pair.second]);
-            frame.contacts += static_cast<std::uint64_t>(manifold.count);
-        }
-        return {};
+        frame.pairs_tested = tests.box_pairs_tested;
+        frame.separated_by_face_a = tests.box_tests.separated_by_face_a;
+        frame.separated_by_face_b = tests.box_tests.separated_by_face_b;
+        frame.separated_by_edges = tests.box_tests.separated_by_edges;
+        frame.pairs_refined = tests.box_tests.refined;
+        frame.collide_us = world.statistics().contacts_us;
     }
 };
 
@@ -144,7 +183,7 @@ Result<Pipeline> Pipeline::create(const scene::Scene& scene, std::vector<scene::
         if (mover >= scene.instance_count())
             return fail(ErrorCode::out_of_range, mover, "pipeline: a mover is not an instance");
     auto state = std::make_unique<State>(scene, std::move(movers), options, executor);
-    if (auto built = state->build_tree(); !built) return tl::unexpected(built.error());
+    if (auto added = state->add_objects(); !added) return tl::unexpected(added.error());
     return Pipeline(std::move(state));
 }
 
@@ -155,27 +194,20 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
     FrameStatistics frame;
     frame.camera = camera;
     const auto start = Clock::now();
-    if (auto followed = s.follow_motion(); !followed) return tl::unexpected(followed.error());
+    if (auto followed = s.follow_scene(); !followed) return tl::unexpected(followed.error());
     frame.update_us = microseconds_since(start);
+    if (s.options.collide) s.count_pairs(frame);
+    frame.update_us -= frame.collide_us;
 
     const auto cull_start = Clock::now();
-    for (const scene::InstanceId i : s.visible_ids) s.verdicts[i] = cull::Verdict::outside;
-    if (s.options.cull == CullMode::none)
-        s.list_all();
-    else
-        s.list_visible(*frustum);
+    s.list_visible(*frustum);
     frame.cull_us = microseconds_since(cull_start);
-
-    const auto collide_start = Clock::now();
-    if (s.options.collide)
-        if (auto found = s.find_pairs(frame); !found) return tl::unexpected(found.error());
-    frame.collide_us = microseconds_since(collide_start);
 
     for (scene::InstanceId i = 0; i < s.scene.instance_count(); ++i) frame.instances += !s.scene.is_removed(i);
     frame.visible = s.visible_ids.size();
     for (const scene::InstanceId i : s.visible_ids) frame.inside += s.verdicts[i] == cull::Verdict::inside;
     frame.straddling = frame.visible - frame.inside;
-    frame.nodes_tested = s.options.cull == CullMode::none ? 0 : s.visible.statistics().nodes_tested;
+    frame.nodes_tested = s.nodes_tested();
     frame.visible_ids = s.visible_ids;
     if (s.options.count_triangles) {
         const ObjectCounts counts = s.counter.count(s.scene, *frustum, s.visible_ids, s.verdicts);
@@ -195,15 +227,23 @@ const Bounds& Pipeline::bounds() const {
 std::span<const scene::InstanceId> Pipeline::movers() const {
     return state_->movers;
 }
-
-const boxtree::BoxTree& Pipeline::tree() const {
-    return *state_->tree;
+const World& Pipeline::world() const {
+    return state_->world;
 }
 
+// Those that the tree does not hold, hidden at first, come last.
 std::vector<scene::InstanceId> Pipeline::spatial_order() const {
+    const State& s = *state_;
     std::vector<scene::InstanceId> order;
-    for (const boxtree::ItemId item : state_->tree->slot_items())
-        if (item != boxtree::kNone && !state_->scene.is_removed(item)) order.push_back(item);
+    std::vector<std::uint8_t> listed(s.objects.size(), 0);
+    const auto append = [&](scene::InstanceId instance) {
+        if (s.scene.is_removed(instance) || listed[instance] != 0) return;
+        listed[instance] = 1;
+        order.push_back(instance);
+    };
+    for (const boxtree::ItemId item : s.world.tree().slot_items())
+        if (item < s.objects.size()) append(item);
+    for (scene::InstanceId i = 0; i < s.objects.size(); ++i) append(i);
     return order;
 }
 

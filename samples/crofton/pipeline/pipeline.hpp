@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-// One frame of the project's main job: move, bound, cull, collide, count. Drawing is beside it, in draw_list.hpp.
+// One frame of the project's main job: a World follows the scene, is asked what a camera sees, and its answer is
+// counted. Drawing is beside it, in draw_list.hpp.
 #pragma once
-#include <crofton/boxtree/box_tree.hpp>
-#include <crofton/collide/broadphase.hpp>
-#include <crofton/core/error.hpp>
-#include <crofton/cull/classify.hpp>
+#include <crofton/crofton.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <memory>
@@ -29,12 +27,15 @@ struct PipelineOptions {
     bool collide = true;
 };
 
-// Holds what lasts from frame to frame: bounds, tree, pairs. The scene is the caller's; between its update() and run()
-// nothing may change it.
+// The layer of the objects that stand for instances; views ask for it.
+inline constexpr std::uint32_t kSeenLayer = 1;
+
+// Keeps a World of the instances' bounds. The scene is the caller's; between its update() and run() nothing may change
+// it.
 class Pipeline {
   public:
     // `movers`: the instances whose collisions are of interest. The scene has been updated.
-    // Errors: a bound that the tree refuses, named by its instance.
+    // Errors: a bound that the World refuses, named by its instance.
     [[nodiscard]] static Result<Pipeline> create(const scene::Scene& scene, std::vector<scene::InstanceId> movers,
                                                  const PipelineOptions& options, Executor& executor);
     ~Pipeline();
@@ -49,8 +50,9 @@ class Pipeline {
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const;
     [[nodiscard]] const Bounds& bounds() const;
     [[nodiscard]] std::span<const scene::InstanceId> movers() const;
-    [[nodiscard]] const boxtree::BoxTree& tree() const;  // over bounds().boxes(), items are instances
-    // Instances in the order in which the tree holds them: neighbours in space are neighbours here.
+    // Objects of kSeenLayer have their instance's number, as index and as user data, and its entry of bounds().boxes().
+    [[nodiscard]] const World& world() const;
+    // Instances in the order in which the World's tree holds them: neighbours in space are neighbours here.
     [[nodiscard]] std::vector<scene::InstanceId> spatial_order() const;
 
   private:

@@ -88,7 +88,7 @@ bool Session::cycle_setting(const std::string& key) {
     } else if (key == "Y") {
         next(s.method.triangulation, std::size(kTriangulationNames));
     } else if (key == "T") {
-        const int height = static_cast<int>(loaded_->pipeline().tree().height());
+        const int height = static_cast<int>(loaded_->pipeline().world().tree().height());
         s.tree_level = s.tree_level + 1 >= height ? -1 : s.tree_level + 1;
     } else if (key == "V") {
         s.cascades = s.cascades % 8 + 1;

@@ -74,7 +74,7 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
             for (std::size_t d = 0; d < kDepthNames.size(); ++d) count(kDepthNames[d], kDepthColors[d]);
             for (const scene::InstanceId i : frame.visible_ids)
                 tint_of_[i] = static_cast<std::uint8_t>(
-                    std::min<std::size_t>(depth_of(loaded.pipeline().tree(), i), kDepthNames.size()) - 1);
+                    std::min<std::size_t>(depth_of(loaded.pipeline().world().tree(), i), kDepthNames.size()) - 1);
             break;
     }
     for (const scene::InstanceId i : frame.visible_ids)

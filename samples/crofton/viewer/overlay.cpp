@@ -44,7 +44,7 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
     const scene::Scene& scene = loaded.scene();
     legend_.clear();
     draw_bounds(lines, settings, loaded, frame);
-    if (settings.tree_level >= 0) draw_tree_level(lines, loaded.pipeline().tree(), settings.tree_level);
+    if (settings.tree_level >= 0) draw_tree_level(lines, loaded.pipeline().world().tree(), settings.tree_level);
     contacts_ = separations_ = 0;
     if (settings.coloring == Coloring::collision && settings.collisions) {
         legend_.push_back({"boxes that meet, and their centres", kPair});

@@ -160,7 +160,7 @@ Result<void> Session::cull() {
     for (Cascade& cascade : cascades_) {
         const auto frustum = frustum_of(cascade.camera);
         if (!frustum) return tl::unexpected(frustum.error());
-        cull::find_visible(loaded_->pipeline().tree(), {*frustum}, cascade_visible_);
+        loaded_->pipeline().world().view({*frustum, pipeline::kSeenLayer}, cascade_visible_);
         cascade.visible = cascade_visible_.size();
     }
     instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_);

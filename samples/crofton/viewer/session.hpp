@@ -101,7 +101,7 @@ class Session {
     pipeline::FrameStatistics frame_, other_frame_;
     std::span<const Contact> contacts_;  // between triangles, until the scene next moves
     std::vector<Cascade> cascades_;
-    cull::VisibleSet cascade_visible_;
+    VisibleObjects cascade_visible_;
     InstanceColoring instance_coloring_;
     Overlay overlay_;
     LineList lines_;

@@ -68,7 +68,7 @@ void flags(Settings& s) {
 
 void sliders(const PanelInput& input) {
     Settings& s = input.settings;
-    const int height = static_cast<int>(input.loaded.pipeline().tree().height());
+    const int height = static_cast<int>(input.loaded.pipeline().world().tree().height());
     ImGui::SliderInt("tree level (T)", &s.tree_level, -1, height - 1, s.tree_level < 0 ? "off" : "%d");
     hint("T");
     ImGui::SliderInt("views (V)", &s.cascades, 1, 8);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The front door: objects in, what is seen and what touches out.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/obb_obb.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/shapes.hpp>
@@ -33,6 +35,8 @@ struct WorldStatistics {
     std::uint32_t boxes_changed = 0;                   // in this update
     bool tree_built = false;                           // all at once: much has come to rest
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
+    collide::BatchStatistics box_tests;  // how the pairs of boxes were told apart
+    double contacts_us = 0.0;            // microseconds of this update that pairs and contacts took
     std::uint32_t nodes_updated = 0;
     std::uint32_t out_of_range =
         0;  // objects that the product of transforms has put beyond it: hidden until they return
@@ -90,6 +94,8 @@ class World {
     // Once a frame. Error: more than max_pairs pairs; then there are none, and all else is as it should be.
     Result<void> update(Executor& executor = serial_executor());
     [[nodiscard]] const WorldStatistics& statistics() const;
+    // For overlays and measurements: the tree of what rests. Items are the objects' indices.
+    [[nodiscard]] const boxtree::BoxTree& tree() const;
 
     // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
     // Errors of the first: as validate(Camera).
