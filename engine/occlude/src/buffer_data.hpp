@@ -12,8 +12,7 @@ namespace crofton::occlude {
 
 inline constexpr std::uint32_t kTile = 8;  // pixels a side
 inline constexpr std::uint32_t kTilePixels = kTile * kTile;
-// Where nothing is covered: less than any nearness.
-inline constexpr float kUncovered = -3e38f;
+inline constexpr float kUncovered = OcclusionBuffer::kUncovered;
 
 // Level 0 has a number for each tile, the least of its pixels; level l one for each 2^l × 2^l tiles. Each row of a
 // level is `tile_columns` long, and level l begins with row 2 R − (2 R >> l), R = padded_rows.

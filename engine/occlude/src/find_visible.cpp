@@ -67,13 +67,21 @@ class VisibleQuery {
     // Of an item that moves and is a candidate: its index in the list.
     [[nodiscard]] std::uint32_t place_of(ItemId item) const { return visible_.places_[item]; }
 
-    // box_of(item) is its box; ids are below `items`.
-    template <class BoxOf>
-    void finish(std::size_t items, const BoxOf& box_of) {
+    // box_of(item) and layers_of(item) are the item's; ids are below `items`.
+    template <class BoxOf, class LayersOf>
+    void finish(std::size_t items, const BoxOf& box_of, const LayersOf& layers_of) {
         sort(items);
         Vector<Obb>& boxes = visible_.boxes_;
         boxes.clear();
-        for (const ItemId item : visible_.candidates_) boxes.push_back(box_of(item));
+        std::size_t kept = 0;
+        for (const ItemId item : visible_.candidates_) {
+            const Obb& box = box_of(item);
+            const std::uint32_t common = layers_of(item) & options_.layer_mask;
+            if (options_.limits && !cull::is_worth_drawing(*options_.limits, box, item, common)) continue;
+            boxes.push_back(box);
+            visible_.candidates_[kept++] = item;
+        }
+        visible_.candidates_.resize(kept);
         cull::CullOptions how;
         how.mode = options_.mode;
         cull::find_visible(boxes, {}, {buffer_.view().frustum}, visible_.visible_, how);
@@ -142,7 +150,9 @@ void find_visible(const boxtree::BoxTree& tree, const OcclusionBuffer& buffer, V
                   const VisibleOptions& options) {
     VisibleQuery query(buffer, visible, options);
     query.add(tree);
-    query.finish(tree.boxes().size(), [&](ItemId item) { return tree.boxes()[item]; });
+    query.finish(
+        tree.boxes().size(), [&](ItemId item) -> const Obb& { return tree.boxes()[item]; },
+        [&](ItemId item) { return tree.layer_masks()[item]; });
 }
 
 void find_visible(const boxtree::BoxTree& resting, const cull::MovingBoxes& moving, const OcclusionBuffer& buffer,
@@ -150,16 +160,21 @@ void find_visible(const boxtree::BoxTree& resting, const cull::MovingBoxes& movi
     VisibleQuery query(buffer, visible, options);
     query.add(resting);
     query.add(resting, moving);
-    query.finish(resting.boxes().size(), [&](ItemId item) {
-        return resting.is_detached(item) ? moving.boxes()[query.place_of(item)] : resting.boxes()[item];
-    });
+    query.finish(
+        resting.boxes().size(),
+        [&](ItemId item) -> const Obb& {
+            return resting.is_detached(item) ? moving.boxes()[query.place_of(item)] : resting.boxes()[item];
+        },
+        [&](ItemId item) { return resting.layer_masks()[item]; });
 }
 
 void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const OcclusionBuffer& buffer,
                   VisibleSet& visible, const VisibleOptions& options) {
     VisibleQuery query(buffer, visible, options);
     query.add(boxes, layer_masks);
-    query.finish(boxes.size(), [&](ItemId item) { return boxes[item]; });
+    query.finish(
+        boxes.size(), [&](ItemId item) -> const Obb& { return boxes[item]; },
+        [&](ItemId item) { return layer_masks.empty() ? ~std::uint32_t{0} : layer_masks[item]; });
 }
 
 void find_visible(const cull::BoxSet& set, std::span<const Obb> bounds, const OcclusionBuffer& buffer,

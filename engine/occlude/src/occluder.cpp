@@ -39,69 +39,111 @@ OccluderSet::~OccluderSet() = default;
 OccluderSet::OccluderSet(OccluderSet&&) noexcept = default;
 OccluderSet& OccluderSet::operator=(OccluderSet&&) noexcept = default;
 
-namespace {
-
-Result<ShapeId> append(Vector<Shape>& shapes, Result<Shape> shape) {
+Result<ShapeId> OccluderSet::Data::add(Result<Shape> shape) {
     if (!shape) return tl::unexpected(std::move(shape.error()));
+    if (!free_shapes.empty()) {
+        const ShapeId id = free_shapes.back();
+        free_shapes.pop_back();
+        shapes[id] = std::move(*shape);
+        shape_uses[id] = 0;
+        return id;
+    }
     shapes.push_back(std::move(*shape));
+    shape_uses.push_back(0);
     return static_cast<ShapeId>(shapes.size() - 1);
 }
 
-Result<OccluderId> append(Vector<Occluder>& occluders, Result<Occluder> occluder) {
+Result<OccluderId> OccluderSet::Data::add(Result<Occluder> occluder) {
     if (!occluder) return tl::unexpected(std::move(occluder.error()));
+    if (occluder->shape != kNone) ++shape_uses[occluder->shape];
+    if (!free_occluders.empty()) {
+        const OccluderId id = free_occluders.back();
+        free_occluders.pop_back();
+        occluders[id] = *occluder;
+        return id;
+    }
     occluders.push_back(*occluder);
     return static_cast<OccluderId>(occluders.size() - 1);
 }
 
-Result<void> replace(Vector<Occluder>& occluders, OccluderId id, Result<Occluder> occluder) {
+Result<void> OccluderSet::Data::replace(OccluderId id, Result<Occluder> occluder) {
     if (!occluder) return tl::unexpected(std::move(occluder.error()));
     occluder->enabled = occluders[id].enabled;
     occluders[id] = *occluder;
     return {};
 }
 
-Result<void> check(const Vector<Occluder>& occluders, OccluderId id) {
-    if (id >= occluders.size())
+Result<void> OccluderSet::Data::check(OccluderId id) const {
+    if (id >= occluders.size() || occluders[id].removed)
         return fail(ErrorCode::out_of_range, id, "occluder: " + std::to_string(id) + " is not in the set");
     return {};
 }
 
-}  // namespace
+Result<void> OccluderSet::Data::check_shape(ShapeId id) const {
+    if (id >= shapes.size() || shape_uses[id] == kNone)
+        return fail(ErrorCode::out_of_range, id, "occluder: there is no shape " + std::to_string(id));
+    return {};
+}
+
+// What the next one gets, for the errors.
+std::uint64_t OccluderSet::Data::next_id() const {
+    return free_occluders.empty() ? occluders.size() : free_occluders.back();
+}
 
 Result<ShapeId> OccluderSet::add_convex(std::span<const glm::vec3> points) {
-    return append(data_->shapes, convex_shape(points));
+    return data_->add(convex_shape(points));
 }
 Result<ShapeId> OccluderSet::add_mesh(const TriangleMesh& mesh) {
-    return append(data_->shapes, closed_shape(mesh));
+    return data_->add(closed_shape(mesh));
 }
 Result<ShapeId> OccluderSet::add_surface(const TriangleMesh& surface, Sides sides) {
-    return append(data_->shapes, surface_shape(surface, sides));
+    return data_->add(surface_shape(surface, sides));
 }
 
 Result<OccluderId> OccluderSet::place(const Obb& box) {
-    return append(data_->occluders, occluder_of(box, data_->occluders.size()));
+    return data_->add(occluder_of(box, data_->next_id()));
 }
 Result<OccluderId> OccluderSet::place(ShapeId shape, const scene::Transform& transform) {
-    if (shape >= data_->shapes.size())
-        return fail(ErrorCode::out_of_range, shape, "occluder: there is no shape " + std::to_string(shape));
-    return append(data_->occluders, occluder_of(shape, transform, data_->occluders.size()));
+    if (auto known = data_->check_shape(shape); !known) return tl::unexpected(known.error());
+    return data_->add(occluder_of(shape, transform, data_->next_id()));
 }
 
 Result<void> OccluderSet::move(OccluderId occluder, const Obb& box) {
-    if (auto valid = check(data_->occluders, occluder); !valid) return valid;
+    if (auto valid = data_->check(occluder); !valid) return valid;
     if (data_->occluders[occluder].shape != kNone)
         return fail(ErrorCode::invalid_argument, occluder, "occluder: it has a shape; give a transform");
-    return replace(data_->occluders, occluder, occluder_of(box, occluder));
+    return data_->replace(occluder, occluder_of(box, occluder));
 }
 Result<void> OccluderSet::move(OccluderId occluder, const scene::Transform& transform) {
-    if (auto valid = check(data_->occluders, occluder); !valid) return valid;
+    if (auto valid = data_->check(occluder); !valid) return valid;
     const ShapeId shape = data_->occluders[occluder].shape;
     if (shape == kNone) return fail(ErrorCode::invalid_argument, occluder, "occluder: it is a box; give a box");
-    return replace(data_->occluders, occluder, occluder_of(shape, transform, occluder));
+    return data_->replace(occluder, occluder_of(shape, transform, occluder));
 }
 Result<void> OccluderSet::set_enabled(OccluderId occluder, bool enabled) {
-    if (auto valid = check(data_->occluders, occluder); !valid) return valid;
+    if (auto valid = data_->check(occluder); !valid) return valid;
     data_->occluders[occluder].enabled = enabled;
+    return {};
+}
+
+Result<void> OccluderSet::remove(OccluderId occluder) {
+    if (auto valid = data_->check(occluder); !valid) return valid;
+    Occluder& removed = data_->occluders[occluder];
+    if (removed.shape != kNone) --data_->shape_uses[removed.shape];
+    removed = {};
+    removed.removed = true;
+    removed.enabled = false;
+    data_->free_occluders.push_back(occluder);
+    return {};
+}
+
+Result<void> OccluderSet::remove_shape(ShapeId shape) {
+    if (auto known = data_->check_shape(shape); !known) return known;
+    if (data_->shape_uses[shape] != 0)
+        return fail(ErrorCode::invalid_argument, shape, "occluder: occluders have this shape; remove them first");
+    data_->shapes[shape] = {};
+    data_->shape_uses[shape] = kNone;
+    data_->free_shapes.push_back(shape);
     return {};
 }
 
@@ -114,6 +156,9 @@ std::size_t OccluderSet::shape_count() const {
 void OccluderSet::clear() {
     data_->occluders.clear();
     data_->shapes.clear();
+    data_->shape_uses.clear();
+    data_->free_shapes.clear();
+    data_->free_occluders.clear();
 }
 
 }  // namespace crofton::occlude

@@ -23,14 +23,15 @@ DrawBody draw_body_of(const PreparedBodies& bodies, std::uint32_t index) {
     return {&body, bodies.sides.data() + body.first_side, bodies.planes.data() + body.first_plane};
 }
 
-void prepare_range(const PixelMap& map, const OccluderSet& set, std::size_t begin, std::size_t end,
-                   PreparedBodies& out) {
+// Of the chosen ones; none: of all.
+void prepare_range(const PixelMap& map, const OccluderSet& set, const OccluderId* chosen, std::size_t begin,
+                   std::size_t end, PreparedBodies& out) {
     out.clear();
     const auto shapes = OccluderStorage::shapes(set);
     const auto occluders = OccluderStorage::occluders(set);
     for (std::size_t i = begin; i < end; ++i) {
-        const Occluder& occluder = occluders[i];
-        const auto id = static_cast<OccluderId>(i);
+        const auto id = chosen ? chosen[i] : static_cast<OccluderId>(i);
+        const Occluder& occluder = occluders[id];
         if (!occluder.enabled) continue;
         if (occluder.shape == kNone)
             prepare_box(map, occluder.box, id, out);
@@ -138,14 +139,27 @@ Result<OcclusionBuffer> OcclusionBuffer::create(const BufferSize& size) {
 }
 
 void OcclusionBuffer::draw(const OccluderSet& occluders, const OcclusionView& view, Executor& executor) {
+    draw(occluders, nullptr, occluders.size(), view, executor);
+}
+
+void OcclusionBuffer::draw(const OccluderSet& occluders, std::span<const OccluderId> chosen, const OcclusionView& view,
+                           Executor& executor) {
+    for ([[maybe_unused]] const OccluderId id : chosen)
+        CROFTON_ASSERT(id < occluders.size(), "the occluder is in the set");
+    static constexpr OccluderId kNothing = 0;
+    draw(occluders, chosen.empty() ? &kNothing : chosen.data(), chosen.size(), view, executor);
+}
+
+void OcclusionBuffer::draw(const OccluderSet& occluders, const OccluderId* chosen, std::size_t count_all,
+                           const OcclusionView& view, Executor& executor) {
     Data& data = *data_;
     data.view = view;
     data.map = pixel_map_of(view, data.size.width, data.size.height);
-    const std::size_t count_all = occluders.size(), chunks = (count_all + kPrepareGrain - 1) / kPrepareGrain;
+    const std::size_t chunks = (count_all + kPrepareGrain - 1) / kPrepareGrain;
     if (data.chunks.size() < chunks) data.chunks.resize(chunks);
     data.chunk_count = chunks;
     executor.parallel_for(count_all, kPrepareGrain, [&](std::size_t begin, std::size_t end, unsigned) {
-        prepare_range(data.map, occluders, begin, end, data.chunks[begin / kPrepareGrain]);
+        prepare_range(data.map, occluders, chosen, begin, end, data.chunks[begin / kPrepareGrain]);
     });
     sort_front_to_back(data, chunks);
     const std::size_t parts =
@@ -191,6 +205,18 @@ float OcclusionBuffer::nearness(std::uint32_t x, std::uint32_t y) const {
     CROFTON_ASSERT(x < data_->size.width && y < data_->size.height, "the pixel is in the picture");
     const std::size_t tile = std::size_t{y / kTile} * data_->tile_columns + x / kTile;
     return data_->pixels[tile * kTilePixels + y % kTile * kTile + x % kTile];
+}
+void OcclusionBuffer::read(std::span<float> pixels) const {
+    const BufferSize size = data_->size;
+    CROFTON_ASSERT(pixels.size() >= std::size_t{size.width} * size.height, "a number for each pixel");
+    for (std::uint32_t y = 0; y < size.height; ++y)
+        for (std::uint32_t x = 0; x < size.width; ++x) pixels[std::size_t{y} * size.width + x] = nearness(x, y);
+}
+std::uint64_t OcclusionBuffer::count_covered() const {
+    std::uint64_t covered = 0;
+    for (std::uint32_t y = 0; y < data_->size.height; ++y)
+        for (std::uint32_t x = 0; x < data_->size.width; ++x) covered += nearness(x, y) > kUncovered;
+    return covered;
 }
 
 }  // namespace crofton::occlude

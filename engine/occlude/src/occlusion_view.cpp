@@ -23,19 +23,28 @@ Row row_of(const glm::dmat4& m, int r) {
 
 constexpr std::size_t kNearPlane = 4;  // of a camera's frustum
 
-// Half of the least w at the corners of the view's near face: every point that the view sees lies beyond.
-double least_w_of(const OcclusionView& view) {
+// A corner of the view's near face, relative to the view's origin.
+glm::dvec3 near_corner(const OcclusionView& view, unsigned i) {
     const auto& p = view.frustum.planes;
+    const Plane &a = p[i & 1u], &b = p[2 + (i >> 1)], &c = p[kNearPlane];
+    const glm::dvec3 bc = glm::cross(b.normal, c.normal), ca = glm::cross(c.normal, a.normal),
+                     ab = glm::cross(a.normal, b.normal);
+    return -(a.offset * bc + b.offset * ca + c.offset * ab) / glm::dot(a.normal, bc) +
+           (view.frustum.origin - view.origin);
+}
+
+// Half of the least w at the corners: every point that the view sees lies beyond.
+double least_w_of(const OcclusionView& view) {
     double least = std::numeric_limits<double>::infinity();
-    for (unsigned i = 0; i < 4; ++i) {
-        const Plane &a = p[i & 1u], &b = p[2 + (i >> 1)], &c = p[kNearPlane];
-        const glm::dvec3 bc = glm::cross(b.normal, c.normal), ca = glm::cross(c.normal, a.normal),
-                         ab = glm::cross(a.normal, b.normal);
-        const glm::dvec3 corner = -(a.offset * bc + b.offset * ca + c.offset * ab) / glm::dot(a.normal, bc) +
-                                  (view.frustum.origin - view.origin);
-        least = std::min(least, glm::dot(direction_of(view.rows[2]), corner) + view.rows[2][3]);
-    }
+    for (unsigned i = 0; i < 4; ++i)
+        least = std::min(least, glm::dot(direction_of(view.rows[2]), near_corner(view, i)) + view.rows[2][3]);
     return 0.5 * least;
+}
+
+double near_reach_of(const OcclusionView& view) {
+    double reach = 0.0;
+    for (unsigned i = 0; i < 4; ++i) reach = std::max(reach, glm::length(near_corner(view, i)));
+    return reach * (1.0 + 1e-9);
 }
 
 }  // namespace
@@ -63,6 +72,7 @@ Result<OcclusionView> occlusion_view_of(const Camera& camera) {
         view.rows[3] = row_of(-forward, 0.0);
         view.least_w = 0.5;
     }
+    view.near_reach = near_reach_of(view);
     return view;
 }
 
@@ -103,6 +113,10 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
     view.least_w = least_w_of(view);
     if (!(view.least_w > 0.0) || !std::isfinite(view.least_w))
         return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the near plane reaches the eye");
+    view.near_reach = near_reach_of(view);
+    // The eye comes from quotients of products of three entries; 2^-36 leaves room for a matrix of poor condition.
+    const glm::dvec3 relative = view.origin - origin;
+    view.eye_error = view.perspective ? 0x1p-36 * glm::length(relative) + 0x1p-50 * glm::length(origin) : 0.0;
     return view;
 }
 

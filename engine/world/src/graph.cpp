@@ -48,6 +48,11 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
     State& s = *state_;
     const auto mesh = s.scene.add_mesh(to_mesh(description));
     if (!mesh) return tl::unexpected(mesh.error());
+    if (description.occluders)
+        if (auto found = s.set_found_occluders(*mesh, {}); !found) {
+            (void)s.scene.remove_mesh(*mesh);
+            return tl::unexpected(found.error());
+        }
     s.bodies.set_mesh(*mesh, description.triangles);
     s.meshes.add(*mesh);
     return MeshHandle{*mesh, s.meshes.generations[*mesh]};
@@ -55,9 +60,17 @@ Result<MeshHandle> World::add_mesh(const MeshDescription& description) {
 
 Result<void> World::replace_mesh(MeshHandle mesh, const MeshDescription& description) {
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
-    auto replaced = state_->scene.replace_mesh(mesh.index, to_mesh(description));
-    if (replaced) state_->bodies.set_mesh(mesh.index, description.triangles);
-    return replaced;
+    TriangleMesh replacement = to_mesh(description);
+    occlude::FoundOccluders found;
+    if (description.occluders) {
+        auto looked_for = occlude::find_occluders(replacement);
+        if (!looked_for) return tl::unexpected(looked_for.error());
+        found = std::move(*looked_for);
+    }
+    auto replaced = state_->scene.replace_mesh(mesh.index, std::move(replacement));
+    if (!replaced) return replaced;
+    state_->bodies.set_mesh(mesh.index, description.triangles);
+    return state_->occluders.set(mesh.index, found.occluders);
 }
 
 Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
@@ -66,14 +79,18 @@ Result<void> World::set_vertices(MeshHandle mesh, PointsView positions) {
     s.vertices.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) s.vertices[i] = positions[i];
     auto set = s.scene.set_vertices(mesh.index, s.vertices);
-    if (set) s.bodies.note_deformed(mesh.index);
+    if (!set) return set;
+    s.bodies.note_deformed(mesh.index);
+    s.occluders.clear(mesh.index);
     return set;
 }
 
 Result<void> World::remove(MeshHandle mesh) {
     if (auto known = state_->check(mesh, mesh.index); !known) return known;
     auto removed = state_->scene.remove_mesh(mesh.index);
-    if (removed) state_->meshes.remove(mesh.index);
+    if (!removed) return removed;
+    state_->meshes.remove(mesh.index);
+    state_->occluders.clear(mesh.index);
     return removed;
 }
 

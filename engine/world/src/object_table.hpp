@@ -11,6 +11,8 @@ struct Object {
     BoundKind kind = BoundKind::none;  // none: a mesh
     bool alive = false;
     bool shown = true;
+    bool occludes = true;  // if its mesh has occluders
+    bool only_occludes = false;
     std::uint32_t staged = kNoIndex;  // its entry among the changes that wait for update()
     std::uint32_t layers = ~0u;       // as they will be after the next update
     std::uint32_t collides_with = ~0u;

@@ -73,12 +73,16 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
     world::Object object;
     object.layers = description.layers;
     object.collides_with = description.collides_with;
+    object.occludes = description.occludes;
+    object.only_occludes = description.only_occludes;
     const bool has_mesh = !description.mesh.is_null();
     if (has_mesh && description.bound.kind != BoundKind::none)
         return fail(ErrorCode::invalid_argument, kNoItem, "world: an object has a mesh or a bound, not both");
     if (!has_mesh && (description.transform || !description.node.is_null()))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "world: a bound is given in the world's coordinates, without node and transform");
+    if (!has_mesh && description.only_occludes)
+        return fail(ErrorCode::invalid_argument, kNoItem, "world: what only occludes needs a mesh with occluders");
     const auto item = s.index.add(description.layers);
     if (!item) return tl::unexpected(item.error());
     if (auto valid = has_mesh ? s.hang(object, description) : validate(description.bound, kNoItem); !valid) {

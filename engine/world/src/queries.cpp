@@ -70,11 +70,13 @@ Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cu
 void World::view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options,
                  Executor& executor) const {
     visible.names_ = &state_->table.names;
+    visible.hides_ = false;
     cull::find_visible(state_->index.tree(), state_->index.moving(), view, visible.set_, options, executor);
 }
 
 void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::CullMode mode) const {
     visible.names_ = &state_->table.names;
+    visible.hides_ = false;
     cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);
 }
 

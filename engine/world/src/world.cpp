@@ -68,6 +68,7 @@ void World::State::apply_changes() {
     for (const std::uint32_t object : removed) {
         index.remove(object);
         bodies.forget(object);
+        occluders.note(object);
     }
     pairs_changed |= !removed.empty();
     removed.clear();
@@ -77,7 +78,7 @@ void World::State::apply_changes() {
         if (!object.alive) continue;
         if (object.instance != kNoIndex) {
             object.mesh = scene.mesh_of(object.instance);
-            index.set_shown(change.object, object.shown && scene.layer_masks()[object.instance] != 0);
+            show(change.object);
             pairs_changed = true;
             continue;
         }
@@ -92,6 +93,13 @@ void World::State::apply_changes() {
     staged.clear();
 }
 
+// An object with a mesh, after what decides it has changed.
+void World::State::show(std::uint32_t id) {
+    const world::Object& object = table.objects[id];
+    index.set_shown(id, object.shown && !object.only_occludes && scene.layer_masks()[object.instance] != 0);
+    occluders.note(id);
+}
+
 // What the scene's nodes have moved.
 void World::State::apply_scene(Executor& executor) {
     const scene::UpdateStatistics updated = scene.update(executor);
@@ -101,11 +109,13 @@ void World::State::apply_scene(Executor& executor) {
     apply_changes();
     for (const scene::InstanceId instance : scene.relayered_instances()) {
         const std::uint32_t object = object_of_instance[instance], layers = scene.layer_masks()[instance];
-        index.set_shown(object, table.objects[object].shown && layers != 0);
+        show(object);
         if (layers != 0) index.set_layers(object, layers);
     }
-    for (const scene::InstanceId instance : scene.moved_instances())
+    for (const scene::InstanceId instance : scene.moved_instances()) {
         index.set_box(object_of_instance[instance], scene.world_boxes()[instance]);
+        occluders.note(object_of_instance[instance]);
+    }
     pairs_changed |= bodies.update(scene, executor);
 }
 
@@ -115,6 +125,7 @@ Result<void> World::update(Executor& executor) {
     s.apply_scene(executor);
     const auto changes = s.index.update(
         {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
+    s.update_occluders();
     Result<void> found;
     const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
     s.pairs_changed = false;

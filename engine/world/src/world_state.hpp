@@ -6,6 +6,7 @@
 
 #include "contact_finder.hpp"
 #include "object_table.hpp"
+#include "occluders.hpp"
 #include "spatial_index.hpp"
 
 namespace crofton {
@@ -49,6 +50,8 @@ struct World::State {
     world::SpatialIndex index;
     world::Bodies bodies;
     world::ContactFinder finder;
+    world::Occluders occluders;
+    Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
     Generations nodes, meshes;
     Vector<std::uint32_t> object_of_instance;
@@ -71,6 +74,12 @@ struct World::State {
     void mark_removed(std::uint32_t object);
     void apply_changes();
     void apply_scene(Executor& executor);
+    void show(std::uint32_t object);
+    void update_occluders();
+    [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
+    [[nodiscard]] Result<void> find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
+                                            const cull::CullOptions& how, Executor& executor,
+                                            world::OccludedView& result) const;
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;

@@ -21,29 +21,30 @@ bool is_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-Result<ChooseView> view_of(const OccluderCandidates& candidates, const Camera& camera, const ChooseBudget& budget) {
-    const auto frustum = frustum_of(camera);
-    if (!frustum) return tl::unexpected(frustum.error());
+ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionView& given,
+                          const ChooseBudget& budget) {
     ChooseView view;
-    const glm::dvec3 eye = camera.position - candidates.origin(), forward = glm::normalize(camera.forward);
-    for (int k = 0; k < 3; ++k) {
-        view.eye[static_cast<std::size_t>(k)] = static_cast<float>(eye[k]);
-        view.forward[static_cast<std::size_t>(k)] = static_cast<float>(forward[k]);
-    }
-    view.plane_count = std::min<std::size_t>(frustum->plane_count, view.planes.size());
+    const auto row = [&](std::size_t r) { return glm::dvec3(given.rows[r][0], given.rows[r][1], given.rows[r][2]); };
+    const glm::dvec3 eye = given.origin - candidates.origin(), forward = -row(3);
+    const Frustum& frustum = given.frustum;
+    view.plane_count = std::min<std::size_t>(frustum.plane_count, view.planes.size());
     for (std::size_t p = 0; p < view.plane_count; ++p) {
-        const Plane& plane = frustum->planes[p];
+        const Plane& plane = frustum.planes[p];
         for (int k = 0; k < 3; ++k) view.planes[p][static_cast<std::size_t>(k)] = static_cast<float>(plane.normal[k]);
-        view.planes[p][3] = static_cast<float>(plane.offset);
+        view.planes[p][3] = static_cast<float>(plane.offset + glm::dot(plane.normal, given.origin - frustum.origin));
     }
-    view.perspective = camera.projection == Projection::perspective;
-    const double whole = view.perspective ? 4.0 * std::numbers::pi : camera.height * camera.height * camera.aspect;
+    view.perspective = given.perspective;
+    // The window is 2 units wide and high.
+    const double whole = given.perspective ? 4.0 * std::numbers::pi : 4.0 / glm::length(glm::cross(row(0), row(1)));
     view.scale = static_cast<float>(1.0 / whole);
     view.least = std::max(budget.least_cover, 1e-30f);
     view.bounded = !budget.objects.is_empty();
     for (int k = 0; k < 3; ++k) {
-        view.low[static_cast<std::size_t>(k)] = static_cast<float>(budget.objects.min[k] - candidates.origin()[k]);
-        view.high[static_cast<std::size_t>(k)] = static_cast<float>(budget.objects.max[k] - candidates.origin()[k]);
+        const auto i = static_cast<std::size_t>(k);
+        view.eye[i] = static_cast<float>(eye[k]);
+        view.forward[i] = static_cast<float>(forward[k]);
+        view.low[i] = static_cast<float>(budget.objects.min[k] - candidates.origin()[k]);
+        view.high[i] = static_cast<float>(budget.objects.max[k] - candidates.origin()[k]);
     }
     return view;
 }
@@ -57,12 +58,6 @@ std::uint64_t key_of(float worth, std::uint32_t id) {
 // Nearest to `p` of the box.
 glm::dvec3 nearest_in(const Aabb& box, const glm::dvec3& p) {
     return glm::clamp(p, box.min, box.max);
-}
-
-// From the eye to a corner of the near plane.
-double reach_of_near_plane(const Camera& camera) {
-    const double half = std::tan(0.5 * camera.fov_y);
-    return camera.near_distance * std::sqrt(1.0 + half * half * (1.0 + camera.aspect * camera.aspect));
 }
 
 EyeLimits limits_of(const FoundOccluder& found, const scene::Transform& transform) {
@@ -125,20 +120,26 @@ OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transfor
     }
     result.radius = std::sqrt(square);
     result.edges = found.edges;
-    glm::dvec3 normals(0.0);
+    glm::dvec3 normals(0.0), shadows(0.0);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const glm::dvec3 a = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i]]),
                          b = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
                          c = transform.linear * glm::dvec3(mesh.positions[mesh.indices[i + 2]]);
         const glm::dvec3 normal = 0.5 * glm::cross(b - a, c - a);
         normals += normal;
+        shadows += 0.5 * glm::abs(normal);
         area += glm::length(normal);
     }
     // A reflection turns the winding round, and what is drawn with it.
     if (glm::determinant(transform.linear) < 0.0) normals = -normals;
-    if (found.kind == OccluderKind::patch) {
+    const bool is_flat = glm::length(normals) >= 0.9 * area;
+    if (found.kind == OccluderKind::patch && is_flat) {
         result.areas[0] = glm::vec3(normals);
         result.front_only = found.sides == Sides::front;
+        return result;
+    }
+    if (found.kind == OccluderKind::patch) {
+        for (int k = 0; k < 3; ++k) result.areas[static_cast<std::size_t>(k)][k] = static_cast<float>(shadows[k]);
         return result;
     }
     if (found.kind != OccluderKind::convex) {
@@ -157,25 +158,34 @@ OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transfor
 }
 
 bool may_use(const EyeLimits& limits, const Camera& camera) {
+    const auto view = occlusion_view_of(camera);
+    return view && may_use(limits, *view);
+}
+
+bool may_use(const EyeLimits& limits, const OcclusionView& view) {
     const Aabb& box = limits.left_out_within;
-    const glm::dvec3& eye = camera.position;
-    if (camera.projection == Projection::perspective) {
-        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > (1.0 + 1e-9) * reach_of_near_plane(camera)))
-            return false;
+    const glm::dvec3& eye = view.origin;
+    if (view.perspective) {
+        const double reach = (1.0 + 1e-9) * (view.near_reach + view.eye_error);
+        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > reach)) return false;
         for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
             const Plane& plane = limits.planes[i];
-            const double slack = 0x1p-48 * glm::dot(glm::abs(plane.normal), glm::abs(eye));
+            const double slack =
+                0x1p-48 * glm::dot(glm::abs(plane.normal), glm::abs(eye)) + view.eye_error * glm::length(plane.normal);
             if (!(glm::dot(plane.normal, eye) + plane.offset >= slack)) return false;
         }
         return true;
     }
-    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const Plane& near_plane = view.frustum.planes[4];
     if (!box.is_empty()) {
-        const glm::dvec3 nearest(forward.x > 0.0 ? box.min.x : box.max.x, forward.y > 0.0 ? box.min.y : box.max.y,
-                                 forward.z > 0.0 ? box.min.z : box.max.z);
-        const double slack = 0x1p-48 * glm::dot(glm::abs(forward), glm::abs(nearest) + glm::abs(eye));
-        if (!(glm::dot(forward, nearest - eye) >= camera.near_distance + slack)) return false;
+        const glm::dvec3 &normal = near_plane.normal, &origin = view.frustum.origin;
+        const glm::dvec3 nearest(normal.x > 0.0 ? box.min.x : box.max.x, normal.y > 0.0 ? box.min.y : box.max.y,
+                                 normal.z > 0.0 ? box.min.z : box.max.z);
+        const double slack =
+            0x1p-48 * (glm::dot(glm::abs(normal), glm::abs(nearest) + glm::abs(origin)) + std::abs(near_plane.offset));
+        if (!(glm::dot(normal, nearest - origin) + near_plane.offset >= slack)) return false;
     }
+    const glm::dvec3 forward(-view.rows[3][0], -view.rows[3][1], -view.rows[3][2]);
     for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
         const glm::dvec3& normal = limits.planes[i].normal;
         if (!(glm::dot(forward, normal) <= -0x1p-40 * glm::length(normal))) return false;
@@ -201,6 +211,7 @@ void OccluderCandidates::write(std::uint32_t id, const OccluderCandidate& candid
         for (int k = 0; k < 3; ++k) columns_[4 + 3 * a + static_cast<std::size_t>(k)][id] = candidate.areas[a][k];
     columns_[13][id] = candidate.front_only ? 1.0f : 0.0f;
     edges_[id] = candidate.edges;
+    layers_[id] = candidate.layers;
     limits_[id] = candidate.limits;
 }
 
@@ -210,6 +221,7 @@ Result<std::uint32_t> OccluderCandidates::add(const OccluderCandidate& candidate
     if (id == 0) origin_ = candidate.center;
     for (Vector<float>& column : columns_) column.resize(id + 1 + kPadding, 0.0f);
     edges_.push_back(0);
+    layers_.push_back(0);
     limits_.emplace_back();
     write(id, candidate);
     return id;
@@ -225,26 +237,36 @@ Result<void> OccluderCandidates::set(std::uint32_t id, const OccluderCandidate& 
 void OccluderCandidates::reserve(std::size_t count) {
     for (Vector<float>& column : columns_) column.reserve(count + kPadding);
     edges_.reserve(count);
+    layers_.reserve(count);
     limits_.reserve(count);
 }
 
 void OccluderCandidates::clear() {
     for (Vector<float>& column : columns_) column.clear();
     edges_.clear();
+    layers_.clear();
     limits_.clear();
 }
 
 Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera, const ChooseBudget& budget,
                               OccluderChoice& choice) {
     choice.ids.clear();
-    const auto view = view_of(candidates, camera, budget);
+    const auto view = occlusion_view_of(camera);
     if (!view) return tl::unexpected(view.error());
+    choose_occluders(candidates, *view, budget, choice);
+    return {};
+}
+
+void choose_occluders(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
+                      OccluderChoice& choice) {
+    choice.ids.clear();
+    const ChooseView choose_view = choose_view_of(candidates, view, budget);
     choice.values.resize(candidates.size() + kPadding);
     choice.seen.resize(candidates.size() + kPadding);
     std::array<const float*, OccluderCandidates::kColumns> columns{};
     for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = candidates.column(k);
     const std::size_t seen =
-        measure_cover(columns.data(), candidates.size(), *view, choice.seen.data(), choice.values.data());
+        measure_cover(columns.data(), candidates.size(), choose_view, choice.seen.data(), choice.values.data());
     choice.order.clear();
     for (std::size_t i = 0; i < seen; ++i) choice.order.push_back(key_of(choice.values[i], choice.seen[i]));
     // Sorted as far as needed: those that may not be used are few, and the next ones take their places.
@@ -257,12 +279,12 @@ Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera
         std::sort(first, sorted);
         for (auto key = first; key != sorted && choice.ids.size() < budget.max_occluders; ++key) {
             const auto id = static_cast<std::uint32_t>(*key);
-            if (candidates.edges(id) > budget.max_edges - edges || !may_use(candidates.limits(id), camera)) continue;
+            if (candidates.edges(id) > budget.max_edges - edges) continue;
+            if (!(candidates.layers(id) & budget.layer_mask) || !may_use(candidates.limits(id), view)) continue;
             edges += candidates.edges(id);
             choice.ids.push_back(id);
         }
     }
-    return {};
 }
 
 }  // namespace crofton::occlude

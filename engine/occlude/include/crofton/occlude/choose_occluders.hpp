@@ -8,6 +8,7 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occlusion_view.hpp>
 #include <crofton/scene/transform.hpp>
 #include <cstdint>
 #include <limits>
@@ -26,6 +27,7 @@ struct EyeLimits {
 // farther away than any point of its near plane. For a parallel view: what it lies in is wholly beyond the near plane,
 // and no open side faces the view. Conservative where rounding leaves a doubt. Requires a valid camera.
 [[nodiscard]] bool may_use(const EyeLimits& limits, const Camera& camera);
+[[nodiscard]] bool may_use(const EyeLimits& limits, const OcclusionView& view);
 
 // How large an occluder looks from where, and where it must not be used. World coordinates.
 struct OccluderCandidate {
@@ -36,12 +38,14 @@ struct OccluderCandidate {
     std::array<glm::vec3, 3> areas{};
     bool front_only = false;  // hides only where dot(d, areas[0]) < 0
     std::uint32_t edges = 12;
+    std::uint32_t layers = ~0u;  // of what it is part of: only views that draw that may use it
     EyeLimits limits;
 };
 
 [[nodiscard]] OccluderCandidate candidate_of(const Obb& box);
-// An occluder of a mesh that stands under `transform`. A convex body counts as a cube of its surface area, and of a
-// patch the mean normal counts.
+// An occluder of a mesh that stands under `transform`. A convex body counts as a cube of its surface area. Of a patch
+// the mean normal counts; where that is less than nine tenths, as of a closed mesh, a box of its mean shadows along the
+// axes.
 [[nodiscard]] OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transform& transform);
 
 // Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add().
@@ -60,6 +64,7 @@ class OccluderCandidates {
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     [[nodiscard]] const float* column(std::size_t k) const { return columns_[k].data(); }
     [[nodiscard]] std::uint32_t edges(std::uint32_t id) const { return edges_[id]; }
+    [[nodiscard]] std::uint32_t layers(std::uint32_t id) const { return layers_[id]; }
     [[nodiscard]] const EyeLimits& limits(std::uint32_t id) const { return limits_[id]; }
 
   private:
@@ -68,7 +73,7 @@ class OccluderCandidates {
 
     glm::dvec3 origin_{0.0};  // the first candidate's center
     std::array<Vector<float>, kColumns> columns_;
-    Vector<std::uint32_t> edges_;
+    Vector<std::uint32_t> edges_, layers_;
     Vector<EyeLimits> limits_;
 };
 
@@ -82,6 +87,7 @@ struct ChooseBudget {
     // eye through its center runs on in these bounds. So the ground, with nothing below, is worth nothing, and of two
     // walls that look alike the nearer one is worth more. Empty: all that covers alike is worth the same.
     Aabb objects = {};
+    std::uint32_t layer_mask = ~0u;  // only candidates that share a layer with it
 };
 
 // Keeps its memory from frame to frame.
@@ -100,5 +106,7 @@ struct OccluderChoice {
 // have been as large. Errors: as validate(Camera).
 [[nodiscard]] Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera,
                                             const ChooseBudget& budget, OccluderChoice& choice);
+void choose_occluders(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
+                      OccluderChoice& choice);
 
 }  // namespace crofton::occlude

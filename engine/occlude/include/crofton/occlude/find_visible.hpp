@@ -31,6 +31,7 @@ class VisibleSet {
     [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return visible_.verdicts(); }
     [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t inside_count() const { return visible_.inside_count(); }
     [[nodiscard]] const VisibleStatistics& statistics() const { return statistics_; }
 
   private:
@@ -47,6 +48,7 @@ class VisibleSet {
 struct VisibleOptions {
     std::uint32_t layer_mask = ~std::uint32_t{0};
     cull::CullMode mode = cull::CullMode::exact;
+    const cull::DrawLimits* limits = nullptr;  // what is too small or too far is left out
 };
 
 // The items that cull::find_visible() finds in the buffer's view, less those that the buffer hides: an item is

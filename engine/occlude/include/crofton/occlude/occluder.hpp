@@ -55,9 +55,14 @@ class OccluderSet {
     // An occluder that is off hides nothing. All are on at first.
     [[nodiscard]] Result<void> set_enabled(OccluderId occluder, bool enabled);
 
-    [[nodiscard]] std::size_t size() const;  // ids are below it
-    [[nodiscard]] std::size_t shape_count() const;
-    void clear();  // occluders and shapes; keeps the memory
+    // Ids of what is removed are given out again, latest first. Errors: not in the set (out_of_range); a shape that
+    // occluders have (invalid_argument).
+    [[nodiscard]] Result<void> remove(OccluderId occluder);
+    [[nodiscard]] Result<void> remove_shape(ShapeId shape);
+
+    [[nodiscard]] std::size_t size() const;         // ids are below it, removed ones included
+    [[nodiscard]] std::size_t shape_count() const;  // likewise
+    void clear();                                   // occluders and shapes; keeps the memory
 
   private:
     friend struct OccluderStorage;

@@ -18,7 +18,6 @@ struct BufferSize {
 struct DrawStatistics {
     std::uint64_t pieces_drawn = 0;     // boxes, convex shapes, connected pieces of meshes, if the view meets them
     std::uint64_t triangles_drawn = 0;  // of meshes, surfaces, and bodies that cross the near plane
-    std::uint64_t pixels_covered = 0;
 };
 
 // A pixel is covered where occluders cover the whole closed square; its depth is then not nearer than the farthest
@@ -35,6 +34,10 @@ class OcclusionBuffer {
     // Replaces what was drawn before. Same bits for any executor and instruction set; allocates nothing once it has
     // drawn as much.
     void draw(const OccluderSet& occluders, const OcclusionView& view, Executor& executor = serial_executor());
+    // Of all these alone, as far as they are on: many views may draw from one set at once. Requires ids of the set,
+    // each once.
+    void draw(const OccluderSet& occluders, std::span<const OccluderId> chosen, const OcclusionView& view,
+              Executor& executor = serial_executor());
 
     // True only if no point of the box is seen: each ray of the view that meets the box meets an occluder before it
     // does. False where the box is outside the view, comes before the near plane, or is not valid.
@@ -49,15 +52,21 @@ class OcclusionBuffer {
     [[nodiscard]] BufferSize size() const;
     [[nodiscard]] const OcclusionView& view() const;
     [[nodiscard]] const DrawStatistics& statistics() const;
-    // z / w of the view in column x and row y, counted from the left and from the bottom; below any that is seen where
-    // the pixel is not covered.
+    // z / w of the view in column x and row y, counted from the left and from the bottom; kUncovered, which is less
+    // than any that is seen, where the pixel is not covered.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
+    static constexpr float kUncovered = -3e38f;
+    // All of them, row by row from the bottom. Requires width · height numbers.
+    void read(std::span<float> nearness) const;
+    [[nodiscard]] std::uint64_t count_covered() const;  // pixels; looks at all
 
     struct Data;
     [[nodiscard]] const Data& data() const { return *data_; }  // for the module's own kernels
 
   private:
     OcclusionBuffer();
+    void draw(const OccluderSet& occluders, const OccluderId* chosen, std::size_t count, const OcclusionView& view,
+              Executor& executor);
     std::unique_ptr<Data> data_;
 };
 

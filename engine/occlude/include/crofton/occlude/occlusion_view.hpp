@@ -17,7 +17,9 @@ struct OcclusionView {
     glm::dvec3 origin{0.0};
     std::array<std::array<double, 4>, 4> rows{};
     bool perspective = true;
-    double least_w = 0.0;  // w of all that the view sees is above it
+    double least_w = 0.0;     // w of all that the view sees is above it
+    double near_reach = 0.0;  // no point of the near face is farther from the eye; perspective only
+    double eye_error = 0.0;   // the eye is within this of `origin`
 };
 
 // Errors: as frustum_of(Camera).

@@ -5,8 +5,10 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/occlude/find_visible.hpp>
 #include <crofton/world/inputs.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace crofton {
@@ -17,6 +19,12 @@ struct ObjectNames {
     Vector<std::uint32_t> generations;
     Vector<std::uint64_t> users;
 };
+
+struct OccludedView;  // a view's depth buffer, and what was found with it
+struct OccludedViewDeleter {
+    void operator()(OccludedView* view) const;
+};
+using OccludedViewOwner = std::unique_ptr<OccludedView, OccludedViewDeleter>;
 }  // namespace world
 
 struct ObjectRef {
@@ -24,42 +32,82 @@ struct ObjectRef {
     std::uint64_t user = 0;
 };
 
+// An occluder: the object that has it, and its place among those of the object's mesh (World::occluders_of).
+struct OccluderRef {
+    ObjectHandle object;
+    std::uint64_t user = 0;
+    std::uint32_t place = 0;
+};
+
+struct OcclusionStatistics {
+    std::uint32_t occluders_drawn = 0;  // chosen for the view
+    occlude::DrawStatistics drawn;
+    occlude::VisibleStatistics asked;
+};
+
 // What one view sees, in memory that is kept from frame to frame. Objects are looked up when asked for: ask before the
 // next change of the World, and while it lives. ids() and counts stay.
 class VisibleObjects {
   public:
-    [[nodiscard]] std::size_t size() const { return set_.size(); }
-    [[nodiscard]] std::span<const std::uint32_t> ids() const { return set_.ids(); }  // the objects' indices
-    [[nodiscard]] ObjectRef operator[](std::size_t i) const {
-        const std::uint32_t id = ids()[i];
-        return {{id, names_->generations[id]}, names_->users[id]};
-    }
+    [[nodiscard]] std::size_t size() const { return ids().size(); }
+    [[nodiscard]] std::span<const std::uint32_t> ids() const { return hides_ ? seen().ids() : set_.ids(); }  // indices
+    [[nodiscard]] ObjectRef operator[](std::size_t i) const { return ref(ids()[i]); }
     // In CullOptions' tree order the first so many are inside the view, the others straddle its boundary; in ascending
     // order verdicts() says it of each.
-    [[nodiscard]] std::size_t inside_count() const { return set_.inside_count(); }
-    [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return set_.verdicts(); }
+    [[nodiscard]] std::size_t inside_count() const { return hides_ ? seen().inside_count() : set_.inside_count(); }
+    [[nodiscard]] std::span<const cull::Verdict> verdicts() const {
+        return hides_ ? seen().verdicts() : set_.verdicts();
+    }
+    // Of the frustum's query: with occlusion that of OcclusionOptions::list_occluded, if it was asked for.
     [[nodiscard]] const cull::Statistics& statistics() const { return set_.statistics(); }
+    [[nodiscard]] ObjectRef ref(std::uint32_t id) const { return {{id, names_->generations[id]}, names_->users[id]}; }
+
+    // Of the last view with occlusion; without, or before it: nothing.
+    [[nodiscard]] bool has_occlusion() const { return hides_; }
+    // Indices, ascending: in the view's frustum, and hidden. Empty unless OcclusionOptions::list_occluded.
+    [[nodiscard]] std::span<const std::uint32_t> occluded_ids() const;
+    // With list_occluded; an index that is in neither list is outside, or not worth drawing.
+    [[nodiscard]] occlude::Verdict verdict_of(std::uint32_t index) const;
+    [[nodiscard]] OcclusionStatistics occlusion_statistics() const;
+    // The depth buffer as it was drawn, or nullptr.
+    [[nodiscard]] const occlude::OcclusionBuffer* occlusion_buffer() const;
 
   private:
     friend class World;
+    [[nodiscard]] const occlude::VisibleSet& seen() const;
     cull::VisibleSet set_;
+    world::OccludedViewOwner occluded_;
+    bool hides_ = false;
     const world::ObjectNames* names_ = nullptr;
 };
 
 // What up to 32 views see, each object once.
 class VisibleInViews {
   public:
-    [[nodiscard]] std::size_t size() const { return set_.size(); }
-    [[nodiscard]] std::span<const std::uint32_t> ids() const { return set_.ids(); }
+    [[nodiscard]] std::size_t size() const { return ids().size(); }
+    // With occlusion ascending.
+    [[nodiscard]] std::span<const std::uint32_t> ids() const {
+        return hides_ ? std::span<const std::uint32_t>(ids_) : set_.ids();
+    }
     [[nodiscard]] ObjectRef operator[](std::size_t i) const {
         const std::uint32_t id = ids()[i];
         return {{id, names_->generations[id]}, names_->users[id]};
     }
-    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return set_.view_mask(i); }  // bit v: view v sees it
+    // Bit v: view v sees it.
+    [[nodiscard]] std::uint32_t view_mask(std::size_t i) const { return hides_ ? masks_[ids_[i]] : set_.view_mask(i); }
+
+    // Of the last views with occlusion; without, or before them: none.
+    [[nodiscard]] std::size_t occlusion_view_count() const { return hides_ ? view_count_ : 0; }
+    [[nodiscard]] OcclusionStatistics occlusion_statistics(std::size_t view) const;
+    [[nodiscard]] const occlude::OcclusionBuffer& occlusion_buffer(std::size_t view) const;
 
   private:
     friend class World;
     cull::ManyVisible set_;
+    Vector<world::OccludedViewOwner> occluded_;  // at least view_count_
+    Vector<std::uint32_t> ids_, masks_;          // masks by object
+    std::size_t view_count_ = 0;
+    bool hides_ = false;
     const world::ObjectNames* names_ = nullptr;
 };
 

@@ -6,6 +6,8 @@
 #include <crofton/core/requirements.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
+#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occlusion_buffer.hpp>
 #include <crofton/scene/transform.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -117,6 +119,9 @@ struct MeshDescription {
     IndicesView indices = {};
     // Rays and contacts ask the triangles. False spares memory and time: the mesh's box stands for it.
     bool triangles = true;
+    // True: World::find_occluders, with its defaults, at once. What is found hides other objects; ask it of opaque
+    // meshes alone. A second or more for 100,000 triangles.
+    bool occluders = false;
 };
 
 struct NodeDescription {
@@ -149,6 +154,26 @@ struct ObjectDescription {
     std::uint32_t layers = ~0u;  // views and queries ask for layers
     std::uint32_t collides_with =
         ~0u;  // two objects may be a pair where each one's layers meet what the other's has here
+    // Of an object with a mesh. False: it hides nothing, as where it is drawn transparent.
+    bool occludes = true;
+    // Of an object with a mesh: it is in no answer, and hides what its mesh's occluders hide. So an engine that draws
+    // bounds gives occluders of its own, which must lie within what it draws in the same layers.
+    bool only_occludes = false;
+};
+
+// How a view hides objects behind others.
+struct OcclusionOptions {
+    bool enabled = true;
+    occlude::BufferSize size = {480, 270};  // pixels of the depth buffer; more find more and cost more
+    std::uint32_t max_occluders = 256;      // drawn: those that are worth most to the view
+    float least_cover = 2e-5f;              // of the sphere of directions: smaller ones are left out
+    bool list_occluded = false;             // also list what is hidden, which costs a query without occlusion
+};
+
+// A view: a camera, or an engine's own matrix by occlude::occlusion_view_of; and the layers that it draws.
+struct OccludingView {
+    occlude::OcclusionView view;
+    std::uint32_t layer_mask = ~0u;
 };
 
 }  // namespace crofton

@@ -76,6 +76,16 @@ class World {
     Result<void> set_vertices(MeshHandle mesh, PointsView positions);  // as many as before: a mesh that deforms
     Result<void> remove(MeshHandle mesh);                              // error: objects use it
 
+    // What objects of a mesh hide other objects with, in views that ask for occlusion: found in its triangles, which
+    // takes time; or given, in the mesh's frame. Given ones must lie within what is drawn of the mesh, and be opaque: a
+    // box (kind and box alone are enough), the convex hull of surface.positions, or as a patch any triangles. Store
+    // what was found, and give it the next time. Replacing a mesh or its vertices forgets its occluders. Errors name
+    // the occluder: as occlude::find_occluders and occlude::OccluderSet.
+    Result<void> find_occluders(MeshHandle mesh, const occlude::FindOptions& options = {});
+    Result<void> set_occluders(MeshHandle mesh, std::span<const occlude::FoundOccluder> occluders);
+    [[nodiscard]] std::span<const occlude::FoundOccluder> occluders_of(MeshHandle mesh) const;  // none: empty
+    Result<void> set_occludes(ObjectHandle object, bool occludes);  // as ObjectDescription; of an object with a mesh
+
     Result<NodeHandle> add_node(const NodeDescription& description = {});
     Result<void> remove(NodeHandle node);  // with all nodes and objects below it
     Result<void> set_transform(NodeHandle node, const scene::Transform& transform);
@@ -105,6 +115,22 @@ class World {
               Executor& executor = serial_executor()) const;
     void view(std::span<const cull::View> views, VisibleInViews& visible,
               cull::CullMode mode = cull::CullMode::exact) const;
+
+    // The same, and what other objects hide is left out: never what is seen (docs/occlude.md). Ascending, whatever
+    // options.order says. An object hides with its mesh's occluders where the view draws it: shown, in a layer of the
+    // view, within options.limits. Any number of calls at once, each with its own `visible`; the same bits for any
+    // executor; nothing is allocated once `visible` has seen as much. Errors: a camera that is not valid; a buffer's
+    // size out of its range. Not more than cull::kMaxViews views.
+    Result<void> view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
+                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    Result<void> view(const OccludingView& view, const OcclusionOptions& occlusion, VisibleObjects& visible,
+                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    Result<void> view(std::span<const OccludingView> views, const OcclusionOptions& occlusion, VisibleInViews& visible,
+                      const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
+    // Of a view with occlusion, before the next update: which occluders hide an object, none where it is not hidden;
+    // and which were drawn, those worth most first. The first draws all of them again, and allocates.
+    Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
+    void drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
 
     // Triangles of meshes, balls and boxes, whichever an object has. Objects removed since the last update are in none
     // of the answers.

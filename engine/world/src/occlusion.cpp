@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// Views that leave out what is hidden; which occluders there are, and which hide an object.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <crofton/core/diagnostics.hpp>
+#include <crofton/cull/draw_limits.hpp>
+#include <optional>
+
+#include "occluded_view.hpp"
+#include "world_state.hpp"
+
+namespace crofton {
+
+Result<void> World::State::set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how) {
+    const auto found = occlude::find_occluders(scene.mesh(mesh), how);
+    if (!found) return tl::unexpected(found.error());
+    return occluders.set(mesh, found->occluders);
+}
+
+Result<void> World::find_occluders(MeshHandle mesh, const occlude::FindOptions& options) {
+    if (auto known = state_->check(mesh, mesh.index); !known) return known;
+    return state_->set_found_occluders(mesh.index, options);
+}
+
+Result<void> World::set_occluders(MeshHandle mesh, std::span<const occlude::FoundOccluder> occluders) {
+    if (auto known = state_->check(mesh, mesh.index); !known) return known;
+    return state_->occluders.set(mesh.index, occluders);
+}
+
+std::span<const occlude::FoundOccluder> World::occluders_of(MeshHandle mesh) const {
+    if (!contains(mesh)) return {};
+    return state_->occluders.occluders_of(mesh.index);
+}
+
+Result<void> World::set_occludes(ObjectHandle object, bool occludes) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    world::Object& changed = state_->table.objects[object.index];
+    if (changed.instance == kNoIndex)
+        return fail(ErrorCode::invalid_argument, object.index,
+                    "world: the object is a bound and hides nothing: add an object with a mesh that only occludes");
+    changed.occludes = occludes;
+    state_->stage(object.index);
+    return {};
+}
+
+void World::State::update_occluders() {
+    if (!occluders.any()) return;
+    occluders.update(table, scene);
+    // Roughly: the bounds only tell how much lies behind an occluder.
+    object_bounds = {};
+    const boxtree::BoxTree& tree = index.tree();
+    if (tree.item_count() > 0)
+        for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) object_bounds.include(tree.child_bounds(0, lane));
+    for (const Obb& box : index.moving().boxes()) {
+        const glm::dvec3 reach(double{box.half_extents.x} + double{box.half_extents.y} + double{box.half_extents.z});
+        object_bounds.include({box.center - reach, box.center + reach});
+    }
+}
+
+Result<void> World::State::find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
+                                        const cull::CullOptions& how, Executor& executor,
+                                        world::OccludedView& result) const {
+    if (auto sized = result.resize(occlusion.size); !sized) return sized;
+    Vector<std::uint32_t>& ids = result.choice.ids;
+    occlude::choose_occluders(occluders.candidates(), view.view,
+                              {.max_occluders = occlusion.max_occluders,
+                               .least_cover = occlusion.least_cover,
+                               .objects = object_bounds,
+                               .layer_mask = view.layer_mask},
+                              result.choice);
+    // What the view does not draw hides nothing.
+    if (how.limits)
+        ids.erase(std::remove_if(ids.begin(), ids.end(),
+                                 [&](std::uint32_t id) {
+                                     const std::uint32_t object = occluders.object_of(id);
+                                     const std::uint32_t common = occluders.candidates().layers(id) & view.layer_mask;
+                                     return !cull::is_worth_drawing(*how.limits, index.box(object), object, common);
+                                 }),
+                  ids.end());
+    result.buffer->draw(occluders.set(), ids, view.view, executor);
+    occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
+                          {.layer_mask = view.layer_mask, .mode = how.mode, .limits = how.limits});
+    return {};
+}
+
+Result<void> World::view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
+                         const cull::CullOptions& options, Executor& executor) const {
+    if (!occlusion.enabled) return view(camera, visible, options, executor);
+    const auto occlusion_view = occlude::occlusion_view_of(camera);
+    if (!occlusion_view) return tl::unexpected(occlusion_view.error());
+    return view(OccludingView{*occlusion_view}, occlusion, visible, options, executor);
+}
+
+Result<void> World::view(const OccludingView& view, const OcclusionOptions& occlusion, VisibleObjects& visible,
+                         const cull::CullOptions& options, Executor& executor) const {
+    const cull::View plain{view.view.frustum, view.layer_mask};
+    if (!occlusion.enabled) {
+        this->view(plain, visible, options, executor);
+        return {};
+    }
+    if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
+    if (auto found = state_->find_visible(view, occlusion, options, executor, *visible.occluded_); !found) return found;
+    visible.names_ = &state_->table.names;
+    visible.hides_ = true;
+    visible.occluded_->occluded.clear();
+    if (!occlusion.list_occluded) return {};
+    cull::CullOptions ascending = options;
+    ascending.order = cull::ResultOrder::ascending;
+    cull::find_visible(state_->index.tree(), state_->index.moving(), plain, visible.set_, ascending, executor);
+    visible.occluded_->list_occluded(visible.set_.ids());
+    return {};
+}
+
+Result<void> World::view(std::span<const OccludingView> views, const OcclusionOptions& occlusion,
+                         VisibleInViews& visible, const cull::CullOptions& options, Executor& executor) const {
+    CROFTON_ASSERT(views.size() <= cull::kMaxViews, "no more than 32 views");
+    if (!occlusion.enabled) {
+        std::array<cull::View, cull::kMaxViews> plain;
+        for (std::size_t v = 0; v < views.size(); ++v) plain[v] = {views[v].view.frustum, views[v].layer_mask};
+        view(std::span(plain).first(views.size()), visible, options.mode);
+        return {};
+    }
+    while (visible.occluded_.size() < views.size()) visible.occluded_.push_back(world::make_occluded_view());
+    for (std::size_t v = 0; v < views.size(); ++v)
+        if (auto sized = visible.occluded_[v]->resize(occlusion.size); !sized) return sized;
+    executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t v = begin; v < end; ++v)
+            (void)state_->find_visible(views[v], occlusion, options, serial_executor(), *visible.occluded_[v]);
+    });
+    visible.names_ = &state_->table.names;
+    visible.hides_ = true;
+    visible.view_count_ = views.size();
+    for (const std::uint32_t id : visible.ids_) visible.masks_[id] = 0;
+    visible.ids_.clear();
+    if (visible.masks_.size() < state_->index.size()) visible.masks_.resize(state_->index.size(), 0);
+    for (std::size_t v = 0; v < views.size(); ++v)
+        for (const std::uint32_t id : visible.occluded_[v]->visible.ids()) {
+            if (visible.masks_[id] == 0) visible.ids_.push_back(id);
+            visible.masks_[id] |= 1u << v;
+        }
+    std::sort(visible.ids_.begin(), visible.ids_.end());
+    return {};
+}
+
+Result<void> World::hidden_by(ObjectHandle object, const VisibleObjects& visible,
+                              Vector<OccluderRef>& occluders) const {
+    occluders.clear();
+    if (auto known = state_->check(object, object.index); !known) return known;
+    if (!visible.hides_ || !state_->index.has_box(object.index)) return {};
+    Vector<occlude::OccluderId> ids;
+    visible.occluded_->buffer->hidden_by(state_->index.box(object.index), ids);
+    for (const occlude::OccluderId id : ids) {
+        const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
+        occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});
+    }
+    return {};
+}
+
+void World::drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const {
+    occluders.clear();
+    if (!visible.hides_) return;
+    for (const occlude::OccluderId id : visible.occluded_->choice.ids) {
+        const ObjectRef ref = state_->table.ref(state_->occluders.object_of(id));
+        occluders.push_back({ref.object, ref.user, state_->occluders.place_of(id)});
+    }
+}
+
+}  // namespace crofton
