@@ -32,6 +32,7 @@ class Option {
     Option& one_of(const std::vector<std::string>& words);
     Option& writable_file();  // refuses a folder, and a place where nothing can be written; "-" is stdout
     Option& excludes(const Option& other);
+    Option& needs(const Option& other);
 
     [[nodiscard]] bool given() const;  // once parsed: was it typed?
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <crofton/core/executor.hpp>
-#include <crofton/render/device.hpp>
-#include <crofton/render/rasterizer.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -13,6 +11,7 @@
 #include "assets/flat_scene.hpp"
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
+#include "frames_drawing.hpp"
 #include "frames_output.hpp"
 #include "html_report.hpp"
 #include "interrupt.hpp"
@@ -39,6 +38,9 @@ struct FramesOptions {
     std::uint64_t seed = 1;
     unsigned threads = 1;
     bool draw = false, no_draw = false, verify = false;
+    bool occlude = false;
+    std::string occlusion_size = "480x270";
+    std::uint32_t occluders = 256;
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
     ReadOptions read;
@@ -49,22 +51,6 @@ constexpr std::uint32_t kReportPictures = 6;
 
 double microseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-// Absent where there is no Vulkan driver and none was demanded.
-struct Drawing {
-    render::Device device;
-    render::Rasterizer rasterizer;
-    render::Image image;
-};
-
-Result<std::unique_ptr<Drawing>> make_drawing(const pipeline::DrawList& list, const ImageSize& size) {
-    auto device = render::Device::create();
-    if (!device) return tl::unexpected(device.error());
-    auto rasterizer = render::Rasterizer::create(*device, {.width = size.width, .height = size.height});
-    if (!rasterizer) return tl::unexpected(rasterizer.error());
-    if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
-    return std::make_unique<Drawing>(Drawing{std::move(*device), std::move(*rasterizer), {}});
 }
 
 class FramesRun {
@@ -90,12 +76,8 @@ class FramesRun {
                                 "frame " + std::to_string(index) + ": " + frame.error().message);
                 if (auto saved = save_picture(index); !saved) return tl::unexpected(saved.error());
                 if (verification)
-                    pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, *frame,
-                                           drawing_ && drawing_->device.counts_exactly(), *verification);
-                if (!options_.output.ids) {
-                    frame->visible_ids.clear();
-                    frame->colliding_ids.clear();
-                }
+                    if (auto done = verify(*frame, *verification); !done) return tl::unexpected(done.error());
+                if (!options_.output.ids) forget_ids(*frame);
                 stream.add(*frame);
                 frames.push_back(std::move(*frame));
                 bar.set(index + 1);
@@ -154,6 +136,12 @@ class FramesRun {
         if (!path) return tl::unexpected(path.error());
         path_ = std::move(*path);
         pipeline_options_ = {*bounds, *mode, true};
+        if (options_.occlude) {
+            const auto buffer = image_size_from(options_.occlusion_size, "--occlusion-size", 8, 4096);
+            if (!buffer) return tl::unexpected(buffer.error());
+            pipeline_options_.occlusion =
+                OcclusionOptions{.size = {buffer->width, buffer->height}, .max_occluders = options_.occluders};
+        }
         auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
         if (!frames) return tl::unexpected(frames.error());
         pipeline_.emplace(std::move(*frames));
@@ -166,7 +154,9 @@ class FramesRun {
         list_.emplace(source_->scene, pipeline_->spatial_order(), is_mover,
                       pipeline::DrawList::Looks{source_->unlit, source_->one_sided});
         if (options_.no_draw) return {};
-        auto drawing = make_drawing(*list_, size);
+        // Half of the light is haze at three times the size of the place; none where the light is baked in.
+        const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
+        auto drawing = FramesDrawing::create(*list_, size, haze, options_.occlude);
         if (drawing) {
             drawing_ = std::move(*drawing);
             return {};
@@ -186,27 +176,38 @@ class FramesRun {
         if (!frame) return frame;
         frame->index = index;
         frame->update_us += scene_us;
-        const auto draw_start = Clock::now();
-        list_->select(frame->visible_ids, frame->camera);
-        if (drawing_)
-            if (auto drawn = draw(*frame); !drawn) return tl::unexpected(drawn.error());
-        if (drawing_) frame->draw_us = microseconds_since(draw_start);
-        frame->triangles_clipped = list_->predict_clipped();
+        if (drawing_) {
+            if (auto drawn = drawing_->draw(*frame); !drawn) return tl::unexpected(drawn.error());
+        } else {
+            predict(*frame);
+        }
         return frame;
     }
 
-    Result<void> draw(FrameStatistics& frame) {
-        render::Frame picture;
-        picture.camera = frame.camera;
-        picture.transforms = list_->transforms();
-        picture.ranges = list_->ranges();
-        // Half of the light is haze at three times the size of the place; none where the light is baked in.
-        const double haze = source_->unlit.empty() ? 3.0 * glm::length(focus_.half_extents()) : 0.0;
-        picture.environment.haze_distance = static_cast<float>(haze);
-        const auto counters = drawing_->rasterizer.draw(picture);
-        if (!counters) return tl::unexpected(counters.error());
-        frame.gpu = *counters;
+    void predict(FrameStatistics& frame) {
+        list_->select(frame.visible_ids, frame.camera);
+        frame.triangles_clipped = list_->predict_clipped();
+        if (!frame.occlusion) return;
+        list_->select(frame.occlusion->visible_ids, frame.camera);
+        frame.occlusion->triangles_clipped = list_->predict_clipped();
+    }
+
+    Result<void> verify(FrameStatistics& frame, pipeline::Verification& verification) {
+        const bool exactly = drawing_ && drawing_->device().counts_exactly();
+        pipeline::verify_frame(source_->scene, *pipeline_, pipeline_options_, frame, exactly, verification);
+        if (!frame.occlusion || !drawing_) return {};
+        const auto owners = drawing_->find_owners(frame);
+        if (!owners) return tl::unexpected(owners.error());
+        const auto changed = drawing_->count_changed_pixels();
+        if (!changed) return tl::unexpected(changed.error());
+        pipeline::verify_occlusion(source_->scene, *owners, *changed, exactly, frame, verification);
         return {};
+    }
+
+    static void forget_ids(FrameStatistics& frame) {
+        frame.visible_ids.clear();
+        frame.colliding_ids.clear();
+        if (frame.occlusion) frame.occlusion->visible_ids.clear();
     }
 
     Result<void> save_picture(std::uint32_t index) {
@@ -214,27 +215,31 @@ class FramesRun {
         const std::uint32_t step = std::max<std::uint32_t>(1, count / kReportPictures);
         const bool report = !options_.report.empty() && index % step == 0 && report_pictures_.size() < kReportPictures;
         if (!drawing_ || (options_.output.png.empty() && !report)) return {};
-        if (auto read = drawing_->rasterizer.read_pixels(drawing_->image); !read) return read;
-        if (report) report_pictures_.push_back({index, drawing_->image});
+        const auto picture = drawing_->picture();
+        if (!picture) return tl::unexpected(picture.error());
+        if (report) report_pictures_.push_back({index, **picture});
         if (index == 0 && !options_.output.png.empty())
             if (auto removed = remove_old_pictures(options_.output.png); !removed) return removed;
-        return options_.output.png.empty() ? Result<void>{}
-                                           : write_picture(options_.output.png, index, drawing_->image);
+        return options_.output.png.empty() ? Result<void>{} : write_picture(options_.output.png, index, **picture);
     }
 
     Result<void> write_report(const SceneFacts& facts, std::span<const FrameStatistics> frames,
                               const std::optional<pipeline::Verification>& verification) {
         if (options_.report.empty()) return {};
         ReportContents contents{facts, {}, frames, verification, std::move(report_pictures_)};
-        contents.settings = {{"scene", options_.scene},
-                             {"map", options_.map},
-                             {"camera", options_.camera},
-                             {"frames", std::to_string(frames.size())},
-                             {"seed", std::to_string(options_.seed)},
-                             {"size", options_.size},
-                             {"bounds", options_.bounds},
-                             {"cull", options_.cull},
-                             {"device", drawing_ ? drawing_->device.name() : "none: not drawn"}};
+        contents.settings = {
+            {"scene", options_.scene},
+            {"map", options_.map},
+            {"camera", options_.camera},
+            {"frames", std::to_string(frames.size())},
+            {"seed", std::to_string(options_.seed)},
+            {"size", options_.size},
+            {"bounds", options_.bounds},
+            {"cull", options_.cull},
+            {"occlusion", options_.occlude ? std::to_string(options_.occluders) + " occluders at most, " +
+                                                 options_.occlusion_size + " pixels"
+                                           : ""},
+            {"device", drawing_ ? drawing_->device().name() : "none: not drawn"}};
         return write_file(options_.report, html_report(contents));
     }
 
@@ -248,7 +253,7 @@ class FramesRun {
     pipeline::CameraPath path_;
     std::optional<pipeline::Pipeline> pipeline_;
     std::optional<pipeline::DrawList> list_;
-    std::unique_ptr<Drawing> drawing_;
+    std::unique_ptr<FramesDrawing> drawing_;
     std::vector<ReportPicture> report_pictures_;
 };
 
@@ -258,11 +263,16 @@ constexpr const char* kExamples =
     "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
     "clipping leaves (clipped); pairs of instances whose boxes meet; microseconds to update, cull, collide\n"
     "(hits) and draw.\n\n"
+    "With --occlude: two columns each, of what is in the view and of what nothing hides as well. Instances;\n"
+    "triangles submitted; milliseconds to find what to draw and to draw it, and what occlusion takes of that.\n"
+    "Occluders are found in the scene's meshes. --verify then also draws who owns which pixel: nothing that\n"
+    "does may be hidden, and both pictures must be the same.\n\n"
     "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written,\n"
     "130 interrupted: what was done by then is written.\n\n"
     "Examples:\n"
     "  crofton frames                                     the built-in town, 120 frames around it\n"
     "  crofton frames town --camera street --verify       every frame checked by brute force\n"
+    "  crofton frames town --camera street --occlude      with and without what is hidden, side by side\n"
     "  crofton frames town --instances 100000 --no-draw   a larger town, culled and collided only\n"
     "  crofton frames level.wad --map MAP01 --png out     a DOOM level, a picture per frame in out/\n"
     "  crofton frames city.glb --bounds aabb --csv -      another bound, one line per frame to stdout\n"
@@ -285,6 +295,16 @@ void add_frames_command(CommandLine& line) {
     command.option("--bounds", options->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
         .show_default();
     command.option("--cull", options->cull, "none, flat or tree").show_default();
+    const Option occlude = command.flag("--occlude", options->occlude,
+                                        "Draw each frame also without what other objects hide, and show both");
+    command.option("--occluders", options->occluders, "How many occluders to draw, at most")
+        .whole_between(0, 1000000)
+        .show_default()
+        .needs(occlude);
+    command
+        .option("--occlusion-size", options->occlusion_size, "Pixels of the occlusion buffer, WIDTHxHEIGHT, 8 to 4096")
+        .show_default()
+        .needs(occlude);
     command.option("--map", options->map, "Which level of a .wad; the first where absent");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)

@@ -19,7 +19,9 @@ struct FramesOutput {
 struct ImageSize {
     std::uint32_t width = 0, height = 0;
 };
-[[nodiscard]] Result<ImageSize> image_size_from(const std::string& text);  // "1280x720"
+// "1280x720"; each within the limits. The error names the option.
+[[nodiscard]] Result<ImageSize> image_size_from(const std::string& text, const char* option = "--size",
+                                                std::uint32_t least = 1, std::uint32_t most = 16384);
 
 struct SceneFacts {
     std::string name;
@@ -45,6 +47,7 @@ class FramesStream {
   private:
     bool table_, csv_;
     std::size_t step_, added_ = 0;  // so many frames to a row of the table
+    SceneFacts scene_;
 };
 
 // JSON and CSV into files where wanted; JSON, or the means below the table, to stdout.

@@ -48,6 +48,32 @@ constexpr std::array kColumns = {
     CROFTON_COLUMN(draw_us),
 };
 
+#define CROFTON_OCCLUSION_COLUMN(field)                                                                          \
+    Column {                                                                                                     \
+        "occlusion_" #field,                                                                                     \
+            [](const FrameStatistics& f) { return f.occlusion ? static_cast<double>(f.occlusion->field) : 0.0; } \
+    }
+#define CROFTON_OCCLUSION_GPU_COLUMN(field)                                                              \
+    Column {                                                                                             \
+        "occlusion_gpu_" #field, [](const FrameStatistics& f) {                                          \
+            return f.occlusion && f.occlusion->gpu ? static_cast<double>(f.occlusion->gpu->field) : 0.0; \
+        }                                                                                                \
+    }
+
+constexpr std::array kOcclusionColumns = {
+    CROFTON_OCCLUSION_COLUMN(visible),
+    CROFTON_OCCLUSION_COLUMN(occluders),
+    CROFTON_OCCLUSION_COLUMN(triangles_submitted),
+    CROFTON_OCCLUSION_COLUMN(triangles_passed),
+    CROFTON_OCCLUSION_COLUMN(triangles_clipped),
+    CROFTON_OCCLUSION_GPU_COLUMN(clipping_primitives),
+    CROFTON_OCCLUSION_GPU_COLUMN(samples_passed),
+    CROFTON_OCCLUSION_COLUMN(occlude_us),
+    CROFTON_OCCLUSION_COLUMN(draw_us),
+};
+
+#undef CROFTON_OCCLUSION_COLUMN
+#undef CROFTON_OCCLUSION_GPU_COLUMN
 #undef CROFTON_COLUMN
 #undef CROFTON_GPU_COLUMN
 
@@ -56,7 +82,40 @@ bool drawn(std::span<const FrameStatistics> frames) {
 }
 
 bool needs_gpu(const Column& column) {
-    return std::string_view(column.name).substr(0, 4) == "gpu_";
+    return std::string_view(column.name).find("gpu_") != std::string_view::npos;
+}
+
+// What these frames have values for.
+std::vector<Column> columns_of(std::span<const FrameStatistics> frames) {
+    std::vector<Column> columns(kColumns.begin(), kColumns.end());
+    if (std::any_of(frames.begin(), frames.end(), [](const FrameStatistics& f) { return f.occlusion.has_value(); }))
+        columns.insert(columns.end(), kOcclusionColumns.begin(), kOcclusionColumns.end());
+    if (!drawn(frames)) std::erase_if(columns, needs_gpu);
+    return columns;
+}
+
+Json gpu_json(const std::optional<render::GpuCounters>& gpu) {
+    if (!gpu) return nullptr;
+    return {{"input_assembly_primitives", gpu->input_assembly_primitives},
+            {"clipping_invocations", gpu->clipping_invocations},
+            {"clipping_primitives", gpu->clipping_primitives},
+            {"samples_passed", gpu->samples_passed}};
+}
+
+Json occlusion_json(const std::optional<OccludedFrame>& f, bool with_ids) {
+    if (!f) return nullptr;
+    Json entry = {{"visible", f->visible},
+                  {"occluders", f->occluders},
+                  {"triangles_submitted", f->triangles_submitted},
+                  {"triangles_passed", f->triangles_passed},
+                  {"triangles_clipped", f->triangles_clipped},
+                  {"gpu", gpu_json(f->gpu)},
+                  {"owners", nullptr},
+                  {"occlude_us", f->occlude_us},
+                  {"draw_us", f->draw_us}};
+    if (f->owners) entry["owners"] = {{"instances", f->owners->instances}, {"triangles", f->owners->triangles}};
+    if (with_ids) entry["visible_ids"] = f->visible_ids;
+    return entry;
 }
 
 std::string number(double value) {
@@ -71,14 +130,11 @@ std::string number(double value) {
 std::span<const StatisticsColumn> statistics_columns() {
     return kColumns;
 }
+std::span<const StatisticsColumn> occlusion_columns() {
+    return kOcclusionColumns;
+}
 
 Json to_json(const FrameStatistics& f, bool with_ids) {
-    Json gpu = nullptr;
-    if (f.gpu)
-        gpu = {{"input_assembly_primitives", f.gpu->input_assembly_primitives},
-               {"clipping_invocations", f.gpu->clipping_invocations},
-               {"clipping_primitives", f.gpu->clipping_primitives},
-               {"samples_passed", f.gpu->samples_passed}};
     Json entry = {{"index", f.index},
                   {"camera", to_json(f.camera)},
                   {"instances", f.instances},
@@ -90,7 +146,7 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"triangles_submitted", f.triangles_submitted},
                   {"triangles_passed", f.triangles_passed},
                   {"triangles_clipped", f.triangles_clipped},
-                  {"gpu", std::move(gpu)},
+                  {"gpu", gpu_json(f.gpu)},
                   {"colliding_pairs", f.colliding_pairs},
                   {"pairs_tested", f.pairs_tested},
                   {"separated_by_face_a", f.separated_by_face_a},
@@ -101,7 +157,8 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
                   {"update_us", f.update_us},
                   {"cull_us", f.cull_us},
                   {"collide_us", f.collide_us},
-                  {"draw_us", f.draw_us}};
+                  {"draw_us", f.draw_us},
+                  {"occlusion", occlusion_json(f.occlusion, with_ids)}};
     if (with_ids) {
         entry["visible_ids"] = f.visible_ids;
         entry["colliding_ids"] = f.colliding_ids;
@@ -112,13 +169,16 @@ Json to_json(const FrameStatistics& f, bool with_ids) {
 Json summary_json(std::span<const FrameStatistics> frames, const std::optional<Verification>& verification) {
     Json summary = {{"frames", frames.size()}};
     const double count = static_cast<double>(std::max<std::size_t>(1, frames.size()));
-    for (const Column& column : kColumns) {
-        if (needs_gpu(column) && !drawn(frames)) continue;
+    for (const Column& column : columns_of(frames)) {
         double sum = 0.0;
         for (const FrameStatistics& frame : frames) sum += column.value(frame);
         summary["mean_" + std::string(column.name)] = sum / count;
     }
     summary["drawn"] = drawn(frames);
+    if (const auto owners = mean_owners(frames)) {
+        summary["mean_owners"] = owners->instances;
+        summary["mean_owner_triangles"] = owners->triangles;
+    }
     summary["verified"] = verification.has_value();
     summary["mismatches"] = verification ? verification->mismatches() : 0;
     if (verification) {
@@ -126,22 +186,35 @@ Json summary_json(std::span<const FrameStatistics> frames, const std::optional<V
         summary["wrong_verdicts"] = verification->wrong_verdicts;
         summary["wrong_pairs"] = verification->wrong_pairs;
         summary["wrong_counts"] = verification->wrong_counts;
+        summary["hidden_but_seen"] = verification->hidden_but_seen;
+        summary["changed_pictures"] = verification->changed_pictures;
         summary["unclear"] = verification->unclear;
         summary["mismatch_messages"] = verification->messages;
     }
     return summary;
 }
 
+std::optional<MeanOwners> mean_owners(std::span<const FrameStatistics> frames) {
+    MeanOwners sum;
+    std::size_t count = 0;
+    for (const FrameStatistics& f : frames) {
+        if (!f.occlusion || !f.occlusion->owners) continue;
+        sum.instances += static_cast<double>(f.occlusion->owners->instances);
+        sum.triangles += static_cast<double>(f.occlusion->owners->triangles);
+        ++count;
+    }
+    if (count == 0) return std::nullopt;
+    return MeanOwners{sum.instances / static_cast<double>(count), sum.triangles / static_cast<double>(count)};
+}
+
 std::string to_csv(std::span<const FrameStatistics> frames) {
-    const bool with_gpu = drawn(frames);
+    const std::vector<Column> columns = columns_of(frames);
     std::string text = "index";
-    for (const Column& column : kColumns)
-        if (with_gpu || !needs_gpu(column)) text += "," + std::string(column.name);
+    for (const Column& column : columns) text += "," + std::string(column.name);
     text += "\n";
     for (const FrameStatistics& frame : frames) {
         text += std::to_string(frame.index);
-        for (const Column& column : kColumns)
-            if (with_gpu || !needs_gpu(column)) text += "," + number(column.value(frame));
+        for (const Column& column : columns) text += "," + number(column.value(frame));
         text += "\n";
     }
     return text;

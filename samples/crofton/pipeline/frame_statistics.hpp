@@ -14,6 +14,24 @@
 
 namespace crofton::pipeline {
 
+// What owns a pixel in the picture of all that is visible.
+struct PixelOwners {
+    std::uint64_t instances = 0, triangles = 0;
+};
+
+// The same frame once more, without what other objects hide.
+struct OccludedFrame {
+    std::uint64_t visible = 0;    // and not hidden
+    std::uint64_t occluders = 0;  // drawn into the occlusion buffer
+    std::uint64_t triangles_submitted = 0, triangles_passed = 0, triangles_clipped = 0;
+    std::optional<render::GpuCounters> gpu;
+    std::optional<PixelOwners> owners;  // where --verify has drawn them
+    // Choosing and drawing the occluders, and asking; in place of cull_us. draw_us: as the frame's.
+    double occlude_us = 0.0, draw_us = 0.0;
+    std::vector<std::uint32_t> visible_ids;
+};
+
+// All but `occlusion` is without occlusion.
 struct FrameStatistics {
     std::uint32_t index = 0;
     Camera camera;
@@ -39,6 +57,7 @@ struct FrameStatistics {
     double update_us = 0.0, cull_us = 0.0, collide_us = 0.0, draw_us = 0.0;
     std::vector<std::uint32_t> visible_ids;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> colliding_ids;
+    std::optional<OccludedFrame> occlusion;
 };
 
 // What --verify found: mismatches by kind, with a line on each of the first few.
@@ -48,11 +67,13 @@ struct Verification {
     std::uint64_t wrong_verdicts = 0;
     std::uint64_t wrong_pairs = 0;
     std::uint64_t wrong_counts = 0;
-    std::uint64_t unclear = 0;  // answers that double arithmetic cannot check
+    std::uint64_t hidden_but_seen = 0;   // instances that own a pixel and were culled as hidden
+    std::uint64_t changed_pictures = 0;  // pictures that occlusion changes
+    std::uint64_t unclear = 0;           // answers that double arithmetic cannot check
     std::vector<std::string> messages;
 
     [[nodiscard]] std::uint64_t mismatches() const {
-        return culled_but_visible + wrong_verdicts + wrong_pairs + wrong_counts;
+        return culled_but_visible + wrong_verdicts + wrong_pairs + wrong_counts + hidden_but_seen + changed_pictures;
     }
 };
 
@@ -63,6 +84,14 @@ struct StatisticsColumn {
     double (*value)(const FrameStatistics&);
 };
 [[nodiscard]] std::span<const StatisticsColumn> statistics_columns();
+// Those of FrameStatistics::occlusion; their names begin with "occlusion_", those of the GPU with "occlusion_gpu_".
+[[nodiscard]] std::span<const StatisticsColumn> occlusion_columns();
+
+// Over the frames that have owners; nothing where none has.
+struct MeanOwners {
+    double instances = 0.0, triangles = 0.0;
+};
+[[nodiscard]] std::optional<MeanOwners> mean_owners(std::span<const FrameStatistics> frames);
 
 [[nodiscard]] Json to_json(const FrameStatistics& frame, bool with_ids);
 [[nodiscard]] Json summary_json(std::span<const FrameStatistics> frames,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "object_counts.hpp"
+#include "scene_occluders.hpp"
 
 namespace crofton::pipeline {
 namespace {
@@ -45,7 +46,8 @@ struct Pipeline::State {
     std::vector<ObjectHandle> objects;    // by instance
     std::vector<ObjectHandle> colliders;  // by instance where it collides by another box than it is seen by; else empty
     WorldStatistics tests;                // of the last update in which anything moved: its pairs are still those
-    VisibleObjects visible;
+    std::vector<ObjectHandle> occluding;  // by node; null: hides nothing
+    VisibleObjects visible, not_hidden;
     cull::VisibleSet visible_in_list;  // CullMode::flat
     std::vector<cull::Verdict> verdicts;
     std::vector<scene::InstanceId> visible_ids;
@@ -86,7 +88,11 @@ struct Pipeline::State {
             if (!object) return fail(object.error().code, i, object.error().message);
             objects.push_back(*object);
         }
-        if (!collides_apart()) return update_world();
+        return {};
+    }
+
+    Result<void> add_colliders() {
+        if (!collides_apart()) return {};
         colliders.resize(objects.size());
         for (const scene::InstanceId mover : movers) {
             if (scene.is_removed(mover)) continue;
@@ -97,7 +103,39 @@ struct Pipeline::State {
             if (!object) return fail(object.error().code, mover, object.error().message);
             colliders[mover] = *object;
         }
-        return update_world();
+        return {};
+    }
+
+    // Objects that hide others and are in no answer: instances are seen by their bounds, nodes hide as a whole.
+    Result<void> add_occluders() {
+        if (!options.occlusion) return {};
+        const SceneOccluders occluders = find_scene_occluders(scene, executor);
+        std::vector<MeshHandle> meshes(occluders.kinds.size());
+        occluding.resize(scene.node_count());
+        for (const SceneOccluders::Object& object : occluders.objects) {
+            const SceneOccluders::Kind& kind = occluders.kinds[object.kind];
+            MeshHandle& mesh = meshes[object.kind];
+            if (mesh.is_null()) {
+                const auto added = world.add_mesh(
+                    {.positions = kind.mesh.positions, .indices = kind.mesh.indices, .triangles = false});
+                if (!added) return tl::unexpected(added.error());
+                mesh = *added;
+                if (auto set = world.set_occluders(mesh, kind.found.occluders); !set) return set;
+            }
+            const auto added = world.add({.mesh = mesh,
+                                          .transform = scene.world(object.node),
+                                          .user = object.node,
+                                          .layers = kSeenLayer,
+                                          .collides_with = 0,
+                                          .only_occludes = true});
+            if (!added) return tl::unexpected(added.error());
+            occluding[object.node] = *added;
+        }
+        return {};
+    }
+
+    [[nodiscard]] ObjectHandle occluder_of(scene::InstanceId instance) const {
+        return occluding.empty() ? ObjectHandle{} : occluding[scene.node_of(instance)];
     }
 
     Result<void> update_world() {
@@ -108,12 +146,19 @@ struct Pipeline::State {
 
     Result<void> follow_scene() {
         bounds.update();
-        for (const scene::InstanceId i : scene.relayered_instances())
+        for (const scene::InstanceId i : scene.relayered_instances()) {
             if (auto set = world.set_layers(objects[i], layers_of(i)); !set) return set;
+            // What is no longer drawn as a whole hides nothing more.
+            const ObjectHandle occluder = occluder_of(i);
+            if (scene.layer_masks()[i] != 0 || occluder.is_null()) continue;
+            if (auto set = world.set_hidden(occluder, true); !set) return set;
+        }
         for (const scene::InstanceId i : scene.moved_instances()) {
             if (auto set = world.set_bound(objects[i], bounds.boxes()[i]); !set) return set;
-            if (colliders.empty() || colliders[i].is_null()) continue;
-            if (auto set = world.set_bound(colliders[i], scene.world_boxes()[i]); !set) return set;
+            if (!colliders.empty() && !colliders[i].is_null())
+                if (auto set = world.set_bound(colliders[i], scene.world_boxes()[i]); !set) return set;
+            if (const ObjectHandle occluder = occluder_of(i); !occluder.is_null())
+                if (auto set = world.set_transform(occluder, scene.world(scene.node_of(i))); !set) return set;
         }
         return update_world();
     }
@@ -121,20 +166,21 @@ struct Pipeline::State {
     // Without culling every bound is all of space, and that straddles.
     void list_all() {
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
-            if (!scene.is_removed(i)) list(i, cull::Verdict::straddling);
+            if (!scene.is_removed(i)) visible_ids.push_back(i);
+        for (const scene::InstanceId i : visible_ids) verdicts[i] = cull::Verdict::straddling;
     }
 
-    void list(scene::InstanceId instance, cull::Verdict verdict) {
-        verdicts[instance] = verdict;
-        if (verdict != cull::Verdict::outside) visible_ids.push_back(instance);
-    }
-
-    // Spheres by planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
     void list(const Frustum& frustum, std::span<const std::uint32_t> ids, std::span<const cull::Verdict> found) {
-        const std::span<const Sphere> spheres = bounds.spheres();
-        for (std::size_t k = 0; k < ids.size(); ++k)
-            list(ids[k],
-                 spheres.empty() ? found[k] : cull::classify(frustum, spheres[ids[k]], cull::CullMode::conservative));
+        visible_ids.assign(ids.begin(), ids.end());
+        for (std::size_t k = 0; k < ids.size(); ++k) verdicts[ids[k]] = found[k];
+        if (!bounds.spheres().empty()) decide_by_spheres(frustum);
+    }
+
+    // By planes alone: near the frustum's edges one outside may pass, which is one reason for boxes.
+    void decide_by_spheres(const Frustum& frustum) {
+        for (const scene::InstanceId i : visible_ids)
+            verdicts[i] = cull::classify(frustum, bounds.spheres()[i], cull::CullMode::conservative);
+        std::erase_if(visible_ids, [&](scene::InstanceId i) { return verdicts[i] == cull::Verdict::outside; });
     }
 
     void list_visible(const Frustum& frustum) {
@@ -151,6 +197,26 @@ struct Pipeline::State {
                 world.view({frustum, kSeenLayer}, visible, how, executor);
                 return list(frustum, visible.ids(), visible.verdicts());
         }
+    }
+
+    Result<void> find_not_hidden(const Camera& camera, const Frustum& frustum, OccludedFrame& frame) {
+        const auto start = Clock::now();
+        const auto view = occlude::occlusion_view_of(camera);
+        if (!view) return tl::unexpected(view.error());
+        if (auto seen =
+                world.view({*view, kSeenLayer}, *options.occlusion, not_hidden, {.mode = options.mode}, executor);
+            !seen)
+            return seen;
+        frame.occlude_us = microseconds_since(start);
+        frame.occluders = not_hidden.occlusion_statistics().occluders_drawn;
+        for (const std::uint32_t id : not_hidden.ids())
+            if (verdicts[id] != cull::Verdict::outside) frame.visible_ids.push_back(id);
+        frame.visible = frame.visible_ids.size();
+        if (!options.count_triangles) return {};
+        const ObjectCounts counts = counter.count(scene, frustum, frame.visible_ids, verdicts);
+        frame.triangles_submitted = counts.triangles_submitted;
+        frame.triangles_passed = counts.triangles_passed;
+        return {};
     }
 
     [[nodiscard]] std::uint64_t nodes_tested() const {
@@ -183,7 +249,8 @@ Result<Pipeline> Pipeline::create(const scene::Scene& scene, std::vector<scene::
         if (mover >= scene.instance_count())
             return fail(ErrorCode::out_of_range, mover, "pipeline: a mover is not an instance");
     auto state = std::make_unique<State>(scene, std::move(movers), options, executor);
-    if (auto added = state->add_objects(); !added) return tl::unexpected(added.error());
+    for (const auto step : {&State::add_objects, &State::add_colliders, &State::add_occluders, &State::update_world})
+        if (auto done = (*state.*step)(); !done) return tl::unexpected(done.error());
     return Pipeline(std::move(state));
 }
 
@@ -215,6 +282,9 @@ Result<FrameStatistics> Pipeline::run(const Camera& camera) {
         frame.triangles_passed = counts.triangles_passed;
         frame.improper = counts.improper;
     }
+    if (s.options.occlusion)
+        if (auto found = s.find_not_hidden(camera, *frustum, frame.occlusion.emplace()); !found)
+            return tl::unexpected(found.error());
     return frame;
 }
 
@@ -229,6 +299,9 @@ std::span<const scene::InstanceId> Pipeline::movers() const {
 }
 const World& Pipeline::world() const {
     return state_->world;
+}
+const VisibleObjects& Pipeline::not_hidden() const {
+    return state_->not_hidden;
 }
 
 // Those that the tree does not hold, hidden at first, come last.

@@ -6,6 +6,7 @@
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct PipelineOptions {
     bool count_triangles = true;  // triangles_passed and improper, which cost more than the culling itself
     cull::CullMode mode = cull::CullMode::exact;
     bool collide = true;
+    // Also asks what is not hidden, with occluders found in the scene's meshes: FrameStatistics::occlusion.
+    std::optional<OcclusionOptions> occlusion = {};
 };
 
 // The layer of the objects that stand for instances; views ask for it.
@@ -52,6 +55,9 @@ class Pipeline {
     [[nodiscard]] std::span<const scene::InstanceId> movers() const;
     // Objects of kSeenLayer have their instance's number, as index and as user data, and its entry of bounds().boxes().
     [[nodiscard]] const World& world() const;
+    // The answer with occlusion of the last run(), where PipelineOptions ask for it: what hides what, the depth buffer.
+    // Objects without a bound of their own hide others; their user data are nodes.
+    [[nodiscard]] const VisibleObjects& not_hidden() const;
     // Instances in the order in which the World's tree holds them: neighbours in space are neighbours here.
     [[nodiscard]] std::vector<scene::InstanceId> spatial_order() const;
 

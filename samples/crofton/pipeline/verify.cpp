@@ -11,15 +11,43 @@ namespace {
 
 constexpr std::size_t kMaxMessages = 50;
 
-class FrameVerifier {
+// Compares with a frame's numbers and notes what is wrong with it.
+class FrameReport {
+  public:
+    FrameReport(const FrameStatistics& frame, Verification& verification)
+        : frame_(frame), verification_(verification) {}
+
+    void check_gpu(const std::string& name, const std::optional<render::GpuCounters>& gpu, std::uint64_t submitted,
+                   std::uint64_t clipped, bool exactly) {
+        if (!gpu) return;
+        expect(name + ".input_assembly_primitives", submitted, gpu->input_assembly_primitives);
+        if (!exactly) return;
+        expect(name + ".clipping_invocations", submitted, gpu->clipping_invocations);
+        expect(name + ".clipping_primitives", clipped, gpu->clipping_primitives);
+    }
+
+    void expect(const std::string& what, std::uint64_t expected, std::uint64_t got) {
+        if (expected != got)
+            report(verification_.wrong_counts,
+                   what + " is " + std::to_string(got) + ", expected " + std::to_string(expected));
+    }
+
+    void report(std::uint64_t& counter, const std::string& message) {
+        ++counter;
+        if (verification_.messages.size() < kMaxMessages)
+            verification_.messages.push_back("frame " + std::to_string(frame_.index) + ": " + message);
+    }
+
+  protected:
+    const FrameStatistics& frame_;
+    Verification& verification_;
+};
+
+class FrameVerifier : FrameReport {
   public:
     FrameVerifier(const scene::Scene& scene, const Pipeline& pipeline, const FrameStatistics& frame,
                   Verification& verification)
-        : scene_(scene),
-          pipeline_(pipeline),
-          frame_(frame),
-          verification_(verification),
-          frustum_(*frustum_of(frame.camera)) {
+        : FrameReport(frame, verification), scene_(scene), pipeline_(pipeline), frustum_(*frustum_of(frame.camera)) {
         const double depth = std::isfinite(frame.camera.far_distance)
                                  ? 0.5 * (frame.camera.near_distance + frame.camera.far_distance)
                                  : 2.0 * frame.camera.near_distance + 1.0;
@@ -69,11 +97,7 @@ class FrameVerifier {
             if (frame_.triangles_passed < passed_ || frame_.triangles_passed > passed_ + unclear_passed_)
                 expect("triangles_passed", passed_, frame_.triangles_passed);
         }
-        if (!frame_.gpu) return;
-        expect("gpu.input_assembly_primitives", frame_.triangles_submitted, frame_.gpu->input_assembly_primitives);
-        if (!gpu_counts_exactly) return;
-        expect("gpu.clipping_invocations", frame_.triangles_submitted, frame_.gpu->clipping_invocations);
-        expect("gpu.clipping_primitives", frame_.triangles_clipped, frame_.gpu->clipping_primitives);
+        check_gpu("gpu", frame_.gpu, frame_.triangles_submitted, frame_.triangles_clipped, gpu_counts_exactly);
     }
 
   private:
@@ -115,22 +139,8 @@ class FrameVerifier {
                        (contained ? " is not inside but was called so" : " is inside but was called straddling"));
     }
 
-    void expect(const char* what, std::uint64_t expected, std::uint64_t got) {
-        if (expected != got)
-            report(verification_.wrong_counts,
-                   std::string(what) + " is " + std::to_string(got) + ", expected " + std::to_string(expected));
-    }
-
-    void report(std::uint64_t& counter, const std::string& message) {
-        ++counter;
-        if (verification_.messages.size() < kMaxMessages)
-            verification_.messages.push_back("frame " + std::to_string(frame_.index) + ": " + message);
-    }
-
     const scene::Scene& scene_;
     const Pipeline& pipeline_;
-    const FrameStatistics& frame_;
-    Verification& verification_;
     Frustum frustum_;
     glm::dvec3 interior_{0.0};
     std::uint64_t submitted_ = 0, passed_ = 0, unclear_passed_ = 0;
@@ -145,6 +155,31 @@ void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const Pip
     verifier.check_pairs();
     verifier.check_counts(options.count_triangles, gpu_counts_exactly);
     ++verification.frames;
+}
+
+void verify_occlusion(const scene::Scene& scene, std::span<const scene::InstanceId> owners,
+                      std::uint64_t changed_pixels, bool gpu_counts_exactly, FrameStatistics& frame,
+                      Verification& verification) {
+    OccludedFrame& result = *frame.occlusion;
+    FrameReport report(frame, verification);
+    const auto triangles_of = [&](std::span<const scene::InstanceId> instances) {
+        std::uint64_t sum = 0;
+        for (const scene::InstanceId i : instances) sum += scene.mesh(scene.mesh_of(i)).triangle_count();
+        return sum;
+    };
+    for (const scene::InstanceId owner : owners)
+        if (!std::binary_search(result.visible_ids.begin(), result.visible_ids.end(), owner))
+            report.report(verification.hidden_but_seen,
+                          "instance " + std::to_string(owner) + " owns a pixel but was culled as hidden");
+    if (changed_pixels > 0)
+        report.report(verification.changed_pictures, std::to_string(changed_pixels) + " pixels differ with occlusion");
+    if (!std::includes(frame.visible_ids.begin(), frame.visible_ids.end(), result.visible_ids.begin(),
+                       result.visible_ids.end()))
+        report.report(verification.wrong_verdicts, "with occlusion more is visible than without");
+    report.expect("occlusion.triangles_submitted", triangles_of(result.visible_ids), result.triangles_submitted);
+    report.check_gpu("occlusion.gpu", result.gpu, result.triangles_submitted, result.triangles_clipped,
+                     gpu_counts_exactly);
+    result.owners = PixelOwners{owners.size(), triangles_of(owners)};
 }
 
 }  // namespace crofton::pipeline

@@ -16,4 +16,10 @@ namespace crofton::pipeline {
 void verify_frame(const scene::Scene& scene, const Pipeline& pipeline, const PipelineOptions& options,
                   const FrameStatistics& frame, bool gpu_counts_exactly, Verification& verification);
 
+// Adds what is wrong with `frame.occlusion`: an instance of `owners`, which own a pixel in the picture of all that is
+// visible, that counts as hidden; pixels that occlusion changes; counts. Sets frame.occlusion->owners.
+void verify_occlusion(const scene::Scene& scene, std::span<const scene::InstanceId> owners,
+                      std::uint64_t changed_pixels, bool gpu_counts_exactly, FrameStatistics& frame,
+                      Verification& verification);
+
 }  // namespace crofton::pipeline

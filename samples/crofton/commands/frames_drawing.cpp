@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "frames_drawing.hpp"
+
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+namespace crofton::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The rasterizer's pictures: what is shown; with occlusion also all that is visible, and the owners of its pixels.
+constexpr std::uint32_t kShown = 0, kAll = 1, kOwners = 2;
+
+}  // namespace
+
+Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList& list, const ImageSize& size,
+                                                             double haze, bool occlusion) {
+    auto device = render::Device::create();
+    if (!device) return tl::unexpected(device.error());
+    std::unique_ptr<FramesDrawing> drawing(new FramesDrawing(list, std::move(*device), haze));
+    auto rasterizer = render::Rasterizer::create(drawing->device_, {.width = size.width, .height = size.height});
+    if (!rasterizer) return tl::unexpected(rasterizer.error());
+    if (auto set = rasterizer->set_geometry(list.vertices(), list.indices()); !set) return tl::unexpected(set.error());
+    if (occlusion)
+        for (const std::uint32_t picture : {kAll, kOwners})
+            if (auto made = rasterizer->resize(size.width, size.height, picture); !made)
+                return tl::unexpected(made.error());
+    drawing->rasterizer_.emplace(std::move(*rasterizer));
+    return drawing;
+}
+
+Result<FramesDrawing::Drawn> FramesDrawing::draw(std::span<const scene::InstanceId> visible, const Camera& camera,
+                                                 std::uint32_t picture) {
+    const auto start = Clock::now();
+    list_.select(visible, camera);
+    render::Frame frame;
+    frame.camera = camera;
+    frame.transforms = list_.transforms();
+    frame.ranges = list_.ranges();
+    frame.environment.haze_distance = static_cast<float>(haze_);
+    const auto counters = rasterizer_->draw(frame, picture);
+    if (!counters) return tl::unexpected(counters.error());
+    Drawn drawn{*counters, 0, std::chrono::duration<double, std::micro>(Clock::now() - start).count()};
+    drawn.clipped = list_.predict_clipped();
+    return drawn;
+}
+
+Result<void> FramesDrawing::draw_all(pipeline::FrameStatistics& frame) {
+    const auto drawn = draw(frame.visible_ids, frame.camera, frame.occlusion ? kAll : kShown);
+    if (!drawn) return tl::unexpected(drawn.error());
+    frame.gpu = drawn->gpu;
+    frame.triangles_clipped = drawn->clipped;
+    frame.draw_us = drawn->microseconds;
+    return {};
+}
+
+Result<void> FramesDrawing::draw_not_hidden(pipeline::FrameStatistics& frame) {
+    pipeline::OccludedFrame& result = *frame.occlusion;
+    const auto drawn = draw(result.visible_ids, frame.camera, kShown);
+    if (!drawn) return tl::unexpected(drawn.error());
+    result.gpu = drawn->gpu;
+    result.triangles_clipped = drawn->clipped;
+    result.draw_us = drawn->microseconds;
+    return {};
+}
+
+// Either comes first in turn: the second finds warm caches.
+Result<void> FramesDrawing::draw(pipeline::FrameStatistics& frame) {
+    if (!frame.occlusion) return draw_all(frame);
+    const bool all_first = frame.index % 2 == 0;
+    if (auto drawn = all_first ? draw_all(frame) : draw_not_hidden(frame); !drawn) return drawn;
+    return all_first ? draw_not_hidden(frame) : draw_all(frame);
+}
+
+Result<const render::Image*> FramesDrawing::picture() {
+    if (auto read = rasterizer_->read_pixels(image_, kShown); !read) return tl::unexpected(read.error());
+    return &image_;
+}
+
+Result<std::span<const scene::InstanceId>> FramesDrawing::find_owners(const pipeline::FrameStatistics& frame) {
+    list_.select(frame.visible_ids, frame.camera);
+    if (auto drawn = owner_picture_.draw(*rasterizer_, kOwners, list_, frame.camera); !drawn)
+        return tl::unexpected(drawn.error());
+    return owner_picture_.owners();
+}
+
+Result<std::uint64_t> FramesDrawing::count_changed_pixels() {
+    if (auto read = rasterizer_->read_pixels(image_, kShown); !read) return tl::unexpected(read.error());
+    if (auto read = rasterizer_->read_pixels(other_image_, kAll); !read) return tl::unexpected(read.error());
+    std::uint64_t changed = 0;
+    for (std::size_t p = 0; p < image_.rgba.size(); p += 4)
+        changed += std::memcmp(&image_.rgba[p], &other_image_.rgba[p], 4) != 0;
+    return changed;
+}
+
+}  // namespace crofton::cli

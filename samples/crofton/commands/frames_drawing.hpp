@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What `crofton frames` draws: each frame, the same without what is hidden, and who is seen in each pixel.
+#pragma once
+#include <crofton/core/error.hpp>
+#include <crofton/render/device.hpp>
+#include <crofton/render/rasterizer.hpp>
+#include <memory>
+
+#include "frames_output.hpp"
+#include "pipeline/draw_list.hpp"
+#include "pipeline/frame_statistics.hpp"
+#include "pipeline/owner_picture.hpp"
+
+namespace crofton::cli {
+
+class FramesDrawing {
+  public:
+    // The list must outlive it. `haze`: RenderEnvironment's distance. `occlusion`: frames are drawn both ways. Errors:
+    // unavailable where there is no Vulkan driver; Vulkan's.
+    [[nodiscard]] static Result<std::unique_ptr<FramesDrawing>> create(pipeline::DrawList& list, const ImageSize& size,
+                                                                       double haze, bool occlusion);
+
+    // Fills gpu, triangles_clipped and draw_us of the frame, and of its occlusion where it has one.
+    [[nodiscard]] Result<void> draw(pipeline::FrameStatistics& frame);
+    // The picture of the last frame, without what is hidden.
+    [[nodiscard]] Result<const render::Image*> picture();
+
+    // Of the last frame, which has occlusion: who owns a pixel of all that is visible, ascending; and how many pixels
+    // differ between the two pictures.
+    [[nodiscard]] Result<std::span<const scene::InstanceId>> find_owners(const pipeline::FrameStatistics& frame);
+    [[nodiscard]] Result<std::uint64_t> count_changed_pixels();
+
+    [[nodiscard]] const render::Device& device() const { return device_; }
+
+  private:
+    FramesDrawing(pipeline::DrawList& list, render::Device device, double haze)
+        : list_(list), device_(std::move(device)), haze_(haze) {}
+    struct Drawn {
+        render::GpuCounters gpu;
+        std::uint64_t clipped = 0;
+        double microseconds = 0.0;
+    };
+    [[nodiscard]] Result<Drawn> draw(std::span<const scene::InstanceId> visible, const Camera& camera,
+                                     std::uint32_t picture);
+    [[nodiscard]] Result<void> draw_all(pipeline::FrameStatistics& frame);
+    [[nodiscard]] Result<void> draw_not_hidden(pipeline::FrameStatistics& frame);
+
+    pipeline::DrawList& list_;
+    render::Device device_;
+    std::optional<render::Rasterizer> rasterizer_;
+    double haze_;
+    render::Image image_, other_image_;
+    pipeline::OwnerPicture owner_picture_;
+};
+
+}  // namespace crofton::cli

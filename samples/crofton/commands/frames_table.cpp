@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "frames_table.hpp"
+
+#include <array>
+#include <cstdio>
+
+namespace crofton::cli {
+namespace {
+
+using pipeline::FrameStatistics;
+using Whole = unsigned long long;
+
+template <class... Args>
+std::string format(const char* pattern, Args... args) {
+    std::array<char, 512> text;
+    std::snprintf(text.data(), text.size(), pattern, args...);
+    return text.data();
+}
+
+double ratio(double a, double b) {
+    return b > 0.0 ? a / b : 0.0;
+}
+
+std::string row_with_occlusion(const FrameStatistics& f) {
+    const pipeline::OccludedFrame& o = *f.occlusion;
+    const double all = static_cast<double>(f.triangles_submitted), rest = static_cast<double>(o.triangles_submitted);
+    return format("%6u   %7llu %7llu   %9llu %9llu %6.1f   %9llu %9llu   %8.2f %8.2f %6.1f %10.2f\n", f.index,
+                  Whole{f.visible}, Whole{o.visible}, Whole{f.triangles_submitted}, Whole{o.triangles_submitted},
+                  ratio(all, rest), Whole{f.triangles_passed}, Whole{o.triangles_passed}, frame_ms(f),
+                  frame_ms_with_occlusion(f), ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
+}
+
+std::string mean_row(const char* what, const char* pattern, double without, double with) {
+    return format("  %-34s", what) + format(pattern, without) + format(pattern, with) +
+           format(" %8.2f\n", ratio(without, with));
+}
+
+std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
+    const auto mean = [&](auto value) { return mean_of(frames, value); };
+    const auto rest = [&](auto value) {
+        return mean_of(frames, [&](const FrameStatistics& f) { return value(*f.occlusion); });
+    };
+    const double submitted = rest([](const auto& f) { return f.triangles_submitted; });
+    std::string text = format("\nmean of %zu frames                      without      with    ratio\n", frames.size());
+    text += mean_row("instances drawn", " %9.1f", mean([](const auto& f) { return f.visible; }),
+                     rest([](const auto& f) { return f.visible; }));
+    text +=
+        mean_row("triangles submitted", " %9.0f", mean([](const auto& f) { return f.triangles_submitted; }), submitted);
+    text +=
+        mean_row("triangles that meet the frustum", " %9.0f", mean([](const auto& f) { return f.triangles_passed; }),
+                 rest([](const auto& f) { return f.triangles_passed; }));
+    text +=
+        mean_row("milliseconds to find what to draw", " %9.3f", mean([](const auto& f) { return 1e-3 * f.cull_us; }),
+                 rest([](const auto& f) { return 1e-3 * f.occlude_us; }));
+    if (frames.front().gpu)
+        text += mean_row("milliseconds to draw it", " %9.2f", mean([](const auto& f) { return 1e-3 * f.draw_us; }),
+                         rest([](const auto& f) { return 1e-3 * f.draw_us; }));
+    text += mean_row("milliseconds of the frame", " %9.2f", mean(frame_ms), mean(frame_ms_with_occlusion));
+    if (const auto owners = pipeline::mean_owners(frames))
+        text += format("seen, that own a pixel: %.1f instances of %.0f triangles; %.2f times as many are submitted\n",
+                       owners->instances, owners->triangles, ratio(submitted, owners->triangles));
+    return text;
+}
+
+std::string means_of_culling(const SceneFacts& scene, std::span<const FrameStatistics> frames) {
+    const auto mean = [&](auto value) { return mean_of(frames, value); };
+    return format("\nmean of %zu frames: %.1f of %llu instances visible, %.1f straddling (%.1f improperly)\n",
+                  frames.size(), mean([](const auto& f) { return f.visible; }), Whole{scene.instances},
+                  mean([](const auto& f) { return f.straddling; }), mean([](const auto& f) { return f.improper; })) +
+           format("triangles: %.0f submitted, %.0f meet the frustum; colliding pairs: %.2f\n",
+                  mean([](const auto& f) { return f.triangles_submitted; }),
+                  mean([](const auto& f) { return f.triangles_passed; }),
+                  mean([](const auto& f) { return f.colliding_pairs; }));
+}
+
+}  // namespace
+
+double frame_ms(const FrameStatistics& f) {
+    return 1e-3 * (f.update_us + f.collide_us + f.cull_us + f.draw_us);
+}
+
+double frame_ms_with_occlusion(const FrameStatistics& f) {
+    return 1e-3 * (f.update_us + f.collide_us + f.occlusion->occlude_us + f.occlusion->draw_us);
+}
+
+std::string table_header(const SceneFacts& scene, bool occlusion) {
+    const std::string title = format("%s: %llu nodes, %llu instances, %llu triangles\n\n", scene.name.c_str(),
+                                     Whole{scene.nodes}, Whole{scene.instances}, Whole{scene.triangles});
+    if (!occlusion)
+        return title +
+               " frame   visible straddle   improper     nodes  submitted     passed    clipped  pairs update us  cull "
+               "us  hits us   draw us\n";
+    return title +
+           "         instances drawn        triangles submitted    that meet the frustum     milliseconds of the "
+           "frame\n"
+           " frame   without    with     without      with  ratio     without      with    without     with  ratio  "
+           "occlusion\n";
+}
+
+std::string table_row(const FrameStatistics& f) {
+    if (f.occlusion) return row_with_occlusion(f);
+    return format("%6u %9llu %8llu %10llu %9llu %10llu %10llu %10llu %6llu %9.0f %8.0f %8.0f %9.0f\n", f.index,
+                  Whole{f.visible}, Whole{f.straddling}, Whole{f.improper}, Whole{f.nodes_tested},
+                  Whole{f.triangles_submitted}, Whole{f.triangles_passed},
+                  Whole{f.gpu ? f.gpu->clipping_primitives : f.triangles_clipped}, Whole{f.colliding_pairs},
+                  f.update_us, f.cull_us, f.collide_us, f.draw_us);
+}
+
+std::string table_means(const SceneFacts& scene, std::span<const FrameStatistics> frames,
+                        const std::optional<pipeline::Verification>& verification) {
+    const auto mean = [&](auto value) { return mean_of(frames, value); };
+    std::string text = frames.front().occlusion ? means_with_occlusion(frames) : means_of_culling(scene, frames);
+    text += format(
+        "collisions: %.1f pairs of boxes tested; early outs: %.1f by faces of the first, %.1f of the second, %.1f by "
+        "edges; %.1f refined, %.1f contact points\n",
+        mean([](const auto& f) { return f.pairs_tested; }), mean([](const auto& f) { return f.separated_by_face_a; }),
+        mean([](const auto& f) { return f.separated_by_face_b; }),
+        mean([](const auto& f) { return f.separated_by_edges; }), mean([](const auto& f) { return f.pairs_refined; }),
+        mean([](const auto& f) { return f.contacts; }));
+    text += format("microseconds: update %.0f, cull %.0f, collide %.0f, draw %.0f\n",
+                   mean([](const auto& f) { return f.update_us; }), mean([](const auto& f) { return f.cull_us; }),
+                   mean([](const auto& f) { return f.collide_us; }), mean([](const auto& f) { return f.draw_us; }));
+    if (!frames.front().gpu) text += "nothing was drawn: counts are the CPU's alone\n";
+    if (!verification) return text;
+    text +=
+        format("verified by brute force: %llu mismatches in %llu frames (%llu answers too close for double to check)\n",
+               Whole{verification->mismatches()}, Whole{verification->frames}, Whole{verification->unclear});
+    if (frames.front().occlusion && frames.front().gpu)
+        text += format("verified by drawing: %llu instances hidden that own a pixel, %llu pictures changed\n",
+                       Whole{verification->hidden_but_seen}, Whole{verification->changed_pictures});
+    return text;
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The table that `crofton frames` shows: a row a frame, and means below. With occlusion, two columns of each number.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+
+#include "frames_output.hpp"
+#include "pipeline/frame_statistics.hpp"
+
+namespace crofton::cli {
+
+[[nodiscard]] std::string table_header(const SceneFacts& scene, bool occlusion);
+[[nodiscard]] std::string table_row(const pipeline::FrameStatistics& frame);
+// Of at least one frame.
+[[nodiscard]] std::string table_means(const SceneFacts& scene, std::span<const pipeline::FrameStatistics> frames,
+                                      const std::optional<pipeline::Verification>& verification);
+
+// Of a whole frame, in milliseconds: updating, finding what to draw, colliding, drawing.
+[[nodiscard]] double frame_ms(const pipeline::FrameStatistics& frame);
+[[nodiscard]] double frame_ms_with_occlusion(const pipeline::FrameStatistics& frame);
+
+template <class Value>
+[[nodiscard]] double mean_of(std::span<const pipeline::FrameStatistics> frames, Value value) {
+    double sum = 0.0;
+    for (const pipeline::FrameStatistics& frame : frames) sum += static_cast<double>(value(frame));
+    return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
+}
+
+}  // namespace crofton::cli

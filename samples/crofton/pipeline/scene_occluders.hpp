@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// What hides other objects in a scene that does not say so itself.
+#pragma once
+#include <crofton/core/executor.hpp>
+#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/scene/scene.hpp>
+#include <cstdint>
+#include <vector>
+
+namespace crofton::pipeline {
+
+// Instances on one node are one object, as houses of several parts are: occluders are found in its meshes together.
+struct SceneOccluders {
+    struct Kind {
+        TriangleMesh mesh;  // all parts, in the node's frame
+        occlude::FoundOccluders found;
+    };
+    struct Object {
+        scene::NodeId node = scene::kNone;
+        std::uint32_t kind = 0;
+    };
+    std::vector<Kind> kinds;
+    std::vector<Object> objects;  // by node, ascending; those that have occluders
+};
+
+// Looks at each set of meshes once, however many nodes have it. Faces count from their front alone, which is right
+// however they are drawn. Meshes in which no occluder is found hide nothing.
+[[nodiscard]] SceneOccluders find_scene_occluders(const scene::Scene& scene, Executor& executor);
+
+}  // namespace crofton::pipeline
