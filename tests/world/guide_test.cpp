@@ -79,12 +79,25 @@ TEST_SUITE("world/guide") {
         CHECK(world.contains(trigger));
         CHECK(!world.contains(enemies[3].object));
 
+        const crofton::Obb block = {{0.0, 0.0, 0.0}, glm::mat3(1.0f), {4.0f, 4.0f, 1.0f}};
+        std::vector<glm::dvec3> corners;
+        for (const glm::dvec3& corner : crofton::corners(block)) corners.push_back(corner);
+        const std::vector<std::uint32_t> faces = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                                  2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+        const auto house = world.add_mesh({.positions = corners, .indices = faces, .occluders = true});
+        if (!house) return fail_loading(house.error().message);
+        world.add({.mesh = *house, .transform = crofton::scene::Transform{glm::dmat3(1.0), {0.0, 0.0, -10.0}}});
+        world.update(jobs);
+        world.view(camera, crofton::OcclusionOptions{}, visible);  // without what the house hides
+
+        CHECK(visible.size() == 1);
+
         // A left-handed engine with y up, depth from 0 to 1 and its own matrices:
         const glm::dmat4 view = glm::lookAtLH(glm::dvec3(0.0), glm::dvec3(0.0, 0.0, -1.0), glm::dvec3(0.0, 1.0, 0.0));
         const glm::dmat4 to_clip = glm::perspectiveLH_ZO(1.0, 16.0 / 9.0, 0.1, 1000.0) * view;
         const auto frustum = crofton::frustum_of(to_clip, crofton::DepthRange::zero_to_one);
         if (frustum) world.view(crofton::cull::View{.frustum = *frustum, .layer_mask = 1}, visible);
 
-        CHECK(visible.size() == 8);  // the trigger is in layer 2 alone
+        CHECK(visible.size() == 9);  // the trigger is in layer 2 alone
     }
 }

@@ -27,6 +27,16 @@ template <class Struct>
     return CROFTON_OK;
 }
 
+// Item i of an array of such structs, each as far from the next as the first one says its size is.
+template <class Struct>
+[[nodiscard]] crofton_status read_growing_at(const Struct* first, std::size_t i, const char* function, Struct& copy) {
+    CROFTON_CHECK(check_growing(first, function));
+    const auto* item = reinterpret_cast<const Struct*>(reinterpret_cast<const unsigned char*>(first) + i * first->size);
+    CROFTON_CHECK(read_growing(item, function, copy));
+    return copy.size == first->size ? CROFTON_OK
+                                    : report(CROFTON_WRONG_SIZE, function, "structs of an array differ in `size`", i);
+}
+
 // Writes as much of `source` as the caller's struct, which has been checked, has room for. Its size stays.
 template <class Struct>
 void write_growing(Struct source, Struct* result) {

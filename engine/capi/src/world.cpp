@@ -148,6 +148,8 @@ crofton_status to_object_description(const crofton_object_description* argument,
     description.user = given.user;
     description.layers = ~given.hidden_layers;
     description.collides_with = ~given.ignored_layers;
+    description.occludes = given.transparent == 0;
+    description.only_occludes = given.only_occludes != 0;
     return CROFTON_OK;
 }
 

@@ -2,29 +2,12 @@
 #include <crofton/capi/world_queries.h>
 
 #include <algorithm>
-#include <array>
 
 #include "queries.hpp"
-#include "world.hpp"
+#include "visible.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-// Results look their objects up in the world: `serial` says in which.
-struct crofton_visible_objects {
-    static constexpr std::uint32_t kKind = 0x43724f09;
-    Header header;
-    VisibleObjects visible{};
-    std::uint64_t serial = 0;
-    cull::View view{};  // here, so that a query need not clear planes that it does not use
-};
-struct crofton_visible_in_views {
-    static constexpr std::uint32_t kKind = 0x43724f0b;
-    Header header;
-    VisibleInViews visible{};
-    std::uint64_t serial = 0;
-    std::array<cull::View, cull::kMaxViews> views{};
-};
 
 namespace {
 

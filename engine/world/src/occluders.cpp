@@ -45,10 +45,13 @@ std::optional<std::array<glm::vec3, 8>> inner_corners(const Obb& box) {
     return result;
 }
 
-// A box may come without its surface, and all without their number of edges.
-Result<void> complete(FoundOccluder& occluder, std::uint64_t place) {
-    if (occluder.edges == 0)
-        occluder.edges = std::max(12u, static_cast<std::uint32_t>(occluder.surface.triangle_count()) + 2);
+// A box may come without its surface, a convex hull without triangles, and all without their number of edges.
+Result<void> complete_surface(FoundOccluder& occluder, std::uint64_t place) {
+    if (occluder.kind == OccluderKind::convex && occluder.surface.indices.empty()) {
+        auto hull = convex_hull(occluder.surface.positions);
+        if (!hull) return tl::unexpected(hull.error());
+        occluder.surface.indices = std::move(hull->triangles);
+    }
     const bool is_box = occluder.kind == OccluderKind::box || occluder.kind == OccluderKind::walled;
     if (!is_box || !occluder.surface.positions.empty()) return {};
     if (auto valid = validate(occluder.box, place); !valid) return valid;
@@ -62,6 +65,13 @@ Result<void> complete(FoundOccluder& occluder, std::uint64_t place) {
         for (const std::uint32_t i : {f[0], f[1], f[2], f[0], f[2], f[3]}) occluder.surface.indices.push_back(i);
     if (occluder.piece_bounds.is_empty()) occluder.piece_bounds = aabb_of(occluder.box);
     return {};
+}
+
+Result<void> complete(FoundOccluder& occluder, std::uint64_t place) {
+    auto done = complete_surface(occluder, place);
+    if (done && occluder.edges == 0)
+        occluder.edges = static_cast<std::uint32_t>(occluder.surface.triangle_count()) * 3 / 2;
+    return done;
 }
 
 Result<ShapeId> add_shape(occlude::OccluderSet& set, const FoundOccluder& occluder) {

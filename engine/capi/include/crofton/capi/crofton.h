@@ -23,5 +23,6 @@
 #include <crofton/capi/scene.h>
 #include <crofton/capi/triangulate.h>
 #include <crofton/capi/world.h>
+#include <crofton/capi/world_occlusion.h>
 #include <crofton/capi/world_queries.h>
 #endif

@@ -90,6 +90,8 @@ typedef struct crofton_object_description {
     crofton_node node;
     uint32_t hidden_layers;  /* layers that the object is not in; 0: it is in all */
     uint32_t ignored_layers; /* layers that the object does not collide with; 0: it does with all */
+    uint32_t transparent;    /* 1: of an object with a mesh; it hides nothing (world_occlusion.h) */
+    uint32_t only_occludes;  /* 1: of an object with a mesh; it is in no answer, and hides what its occluders hide */
 } crofton_object_description;
 
 /* `options` or NULL: all defaults. */

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What views of a World have found, as the functions of several headers see it.
+#pragma once
+#include <crofton/capi/world_queries.h>
+
+#include <array>
+
+#include "world.hpp"
+
+// Results look their objects up in the world: `serial` says in which.
+struct crofton_visible_objects {
+    static constexpr std::uint32_t kKind = 0x43724f09;
+    crofton::capi::Header header;
+    crofton::VisibleObjects visible{};
+    std::uint64_t serial = 0;
+    crofton::cull::View view{};  // here, so that a query need not clear planes that it does not use
+};
+struct crofton_visible_in_views {
+    static constexpr std::uint32_t kKind = 0x43724f0b;
+    crofton::capi::Header header;
+    crofton::VisibleInViews visible{};
+    std::uint64_t serial = 0;
+    std::array<crofton::cull::View, crofton::cull::kMaxViews> views{};
+};
