@@ -5,9 +5,11 @@
 #include <OgreEntity.h>
 #include <OgreRenderQueue.h>
 #include <OgreRenderQueueSortingGrouping.h>
+#include <OgreRoot.h>
 
 #include <chrono>
-#include <crofton/scene/transform.hpp>
+#include <cstdint>
+#include <glm/matrix.hpp>
 #include <optional>
 
 namespace crofton::ogre {
@@ -30,6 +32,26 @@ Aabb to_aabb(const Ogre::AxisAlignedBox& box) {
     return result;
 }
 
+scene::Transform transform_of(const SceneNode& node) {
+    const Ogre::Affine3& matrix = node._getFullTransform();
+    scene::Transform transform;
+    for (unsigned row = 0; row < 3; ++row) {
+        const auto r = static_cast<int>(row);
+        for (int column = 0; column < 3; ++column)
+            transform.linear[column][r] = matrix[row][static_cast<unsigned>(column)];
+        transform.translation[r] = matrix[row][3];
+    }
+    return transform;
+}
+
+glm::dmat4 to_glm(const Ogre::Matrix4& m) {
+    glm::dmat4 result;
+    for (unsigned row = 0; row < 4; ++row)
+        for (unsigned column = 0; column < 4; ++column)
+            result[static_cast<int>(column)][static_cast<int>(row)] = m[row][column];
+    return result;
+}
+
 // Entities deform nothing outside their local box, which turns with the node; other objects (particles, billboards) may
 // live in world space, where only their axis-aligned box is known. Empty if the objects have no extent at all.
 std::optional<Obb> box_of(const SceneNode& node) {
@@ -44,15 +66,7 @@ std::optional<Obb> box_of(const SceneNode& node) {
     }
     if (local.is_empty() && world.is_empty()) return std::nullopt;
     if (local.is_empty()) return obb_of(world);
-    const Ogre::Affine3& matrix = node._getFullTransform();
-    scene::Transform transform;
-    for (unsigned row = 0; row < 3; ++row) {
-        const auto r = static_cast<int>(row);
-        for (int column = 0; column < 3; ++column)
-            transform.linear[column][r] = matrix[row][static_cast<unsigned>(column)];
-        transform.translation[r] = matrix[row][3];
-    }
-    const auto turned = scene::transformed_box(transform, obb_of(local), measure::minimal_perimeter());
+    const auto turned = scene::transformed_box(transform_of(node), obb_of(local), measure::minimal_perimeter());
     if (turned && world.is_empty()) return *turned;
     for (const Ogre::MovableObject* object : node.getAttachedObjects())
         if (!object->getBoundingBox().isNull()) world.include(to_aabb(object->getWorldBoundingBox(true)));
@@ -72,6 +86,7 @@ SceneNode::SceneNode(SceneManager& manager, const Ogre::String& name)
     : Ogre::SceneNode(&manager, name), manager_(manager) {}
 SceneNode::~SceneNode() {
     manager_.forget(*this);
+    manager_.forget_occluder(*this);
 }
 
 void SceneNode::_updateBounds() {
@@ -80,7 +95,10 @@ void SceneNode::_updateBounds() {
 }
 
 void SceneNode::setInSceneGraph(bool in_graph) {
-    if (!in_graph) manager_.forget(*this);
+    if (!in_graph) {
+        manager_.forget(*this);
+        manager_.forget_occluder(*this);
+    }
     Ogre::SceneNode::setInSceneGraph(in_graph);
 }
 
@@ -105,31 +123,93 @@ Ogre::SceneNode* SceneManager::createSceneNodeImpl(const Ogre::String& name) {
 }
 
 void SceneManager::bounds_changed(SceneNode& node) {
-    if (node.getAttachedObjects().empty() && node.item_ == boxtree::kNone && !node.unbounded_) return;
-    const bool unbounded = is_unbounded(node);
-    const std::optional<Obb> box = unbounded ? std::nullopt : box_of(node);
-    if (!box || unbounded != node.unbounded_) forget(node);
-    if (unbounded && !node.unbounded_) {
-        node.unbounded_ = true;
-        unbounded_.push_back(&node);
-    }
+    if (node.getAttachedObjects().empty() && node.object_.is_null() && !node.unbounded_) return;
+    if (follows_occluders_) follow_occluder(node);
+    if (is_unbounded(node)) return make_unbounded(node);
+    const std::optional<Obb> box = box_of(node);
+    if (!box || node.unbounded_) forget(node);
     if (!box) return;
-    if (node.item_ != boxtree::kNone) {
-        index_.move(node.item_, *box);
+    world_changed_ = true;
+    if (!node.object_.is_null()) {
+        if (!world_.set_bound(node.object_, *box)) make_unbounded(node);
         return;
     }
-    node.item_ = index_.insert(*box);
-    if (nodes_.size() <= node.item_) nodes_.resize(node.item_ + 1);
-    nodes_[node.item_] = &node;
+    const auto added = world_.add({.bound = *box, .user = reinterpret_cast<std::uintptr_t>(&node)});
+    // What the World refuses, such as infinity, every camera sees.
+    if (!added) return make_unbounded(node);
+    node.object_ = *added;
+}
+
+void SceneManager::make_unbounded(SceneNode& node) {
+    if (node.unbounded_) return;
+    forget(node);
+    node.unbounded_ = true;
+    unbounded_.push_back(&node);
+}
+
+// The entity of a node that has nothing else. A mirrored one shows its back faces in OGRE.
+void SceneManager::follow_occluder(SceneNode& node) {
+    const auto& attached = node.getAttachedObjects();
+    const auto* entity = attached.size() == 1 ? dynamic_cast<const Ogre::Entity*>(attached[0]) : nullptr;
+    const scene::Transform transform = transform_of(node);
+    const bool hides = entity && is_solid(*entity) && glm::determinant(transform.linear) > 0.0;
+    const MeshHandle mesh = hides ? occluder_meshes_.of(*entity->getMesh()) : MeshHandle();
+    if (mesh.is_null()) return forget_occluder(node);
+    world_changed_ = true;
+    if (node.occluder_.is_null()) {
+        const auto added = world_.add({.mesh = mesh,
+                                       .transform = transform,
+                                       .user = reinterpret_cast<std::uintptr_t>(&node),
+                                       .layers = layers_of(*entity),
+                                       .only_occludes = true});
+        if (added) node.occluder_ = *added;
+        return;
+    }
+    const bool followed = world_.set_mesh(node.occluder_, mesh) && world_.set_transform(node.occluder_, transform) &&
+                          world_.set_layers(node.occluder_, layers_of(*entity));
+    if (!followed) forget_occluder(node);
+}
+
+void SceneManager::forget_occluder(SceneNode& node) {
+    if (node.occluder_.is_null()) return;
+    static_cast<void>(world_.remove(node.occluder_));
+    node.occluder_ = {};
+    world_changed_ = true;
+}
+
+// Visibility may change without the bounds, and nobody tells.
+bool SceneManager::hides_as_drawn(SceneNode& node) {
+    const ObjectHandle before = node.occluder_;
+    const auto& attached = node.getAttachedObjects();
+    const auto* entity = attached.size() == 1 ? dynamic_cast<const Ogre::Entity*>(attached[0]) : nullptr;
+    const bool hides = entity && is_solid(*entity) && (layers_of(*entity) & _getCombinedVisibilityMask()) != 0;
+    if (!hides) forget_occluder(node);
+    return node.occluder_ == before;
+}
+
+void SceneManager::use_occlusion(bool use) {
+    use_occlusion_ = use;
+    if (!use || follows_occluders_) return;
+    follows_occluders_ = true;
+    if (mSceneRoot) mSceneRoot->_update(true, true);
 }
 
 void SceneManager::forget(SceneNode& node) {
     if (node.unbounded_) std::erase(unbounded_, &node);
     node.unbounded_ = false;
-    if (node.item_ == boxtree::kNone) return;
-    index_.remove(node.item_);
-    nodes_[node.item_] = nullptr;
-    node.item_ = boxtree::kNone;
+    if (node.object_.is_null()) return;
+    static_cast<void>(world_.remove(node.object_));
+    node.object_ = {};
+    world_changed_ = true;
+}
+
+// Once a frame, whatever the number of cameras and shadow textures: a World counts updates to tell what moves.
+void SceneManager::update_world() {
+    const unsigned long frame = Ogre::Root::getSingleton().getNextFrameNumber();
+    if (!world_changed_ && frame == updated_frame_) return;
+    static_cast<void>(world_.update());  // can only run out of pairs, of which there are none
+    world_changed_ = false;
+    updated_frame_ = frame;
 }
 
 Frustum SceneManager::frustum_of(const Ogre::Camera& camera) {
@@ -171,6 +251,27 @@ void SceneManager::queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::Vi
     if (Ogre::DebugDrawer* drawer = getDebugDrawer()) drawer->drawSceneNode(&node);
 }
 
+// A depth buffer has the camera's own eye and planes: what looks through another frustum or a mirror goes without.
+void SceneManager::find_visible(const Ogre::Camera& camera, bool only_shadow_casters) {
+    const cull::View plain{.frustum = frustum_of(camera)};
+    const bool is_plain = !use_occlusion_ || only_shadow_casters || camera.getCullingFrustum() ||
+                          camera.isReflected() || camera.isCustomNearClipPlaneEnabled();
+    const glm::dmat4 to_clip = to_glm(camera.getProjectionMatrix()) * to_glm(camera.getViewMatrix(true));
+    auto view = occlude::occlusion_view_of(to_clip, DepthRange::minus_one_to_one);
+    if (is_plain || !view) return world_.view(plain, visible_);
+    view->frustum = plain.frustum;
+    for (;;) {
+        const OccludingView occluding{*view, _getCombinedVisibilityMask()};
+        if (!world_.view(occluding, {}, visible_)) return world_.view(plain, visible_);
+        world_.drawn_occluders(visible_, drawn_occluders_);
+        bool right = true;
+        for (const OccluderRef& occluder : drawn_occluders_)
+            right = hides_as_drawn(*reinterpret_cast<SceneNode*>(occluder.user)) && right;
+        if (right) return;
+        update_world();
+    }
+}
+
 void SceneManager::_findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                                        bool only_shadow_casters) {
     const auto start = Clock::now();
@@ -179,12 +280,12 @@ void SceneManager::_findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObject
         find_times_ = {0.0, microseconds_since(start)};
         return;
     }
-    index_.update();
+    update_world();
     const auto cull_start = Clock::now();
-    const cull::VisibleSet& visible = index_.cull({.frustum = frustum_of(*camera)});
+    find_visible(*camera, only_shadow_casters);
     const double cull_time = microseconds_since(cull_start);
-    visible_nodes_ = visible.size();
-    for (const cull::ItemId item : visible.ids()) queue_objects(*nodes_[item], camera, bounds, only_shadow_casters);
+    for (std::size_t i = 0; i < visible_.size(); ++i)
+        queue_objects(*reinterpret_cast<SceneNode*>(visible_[i].user), camera, bounds, only_shadow_casters);
     for (SceneNode* node : unbounded_) queue_objects(*node, camera, bounds, only_shadow_casters);
     find_times_ = {cull_time, microseconds_since(start)};
 }

@@ -4,9 +4,10 @@
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 
+#include <crofton/crofton.hpp>
 #include <vector>
 
-#include "../adapter/cull_index.hpp"
+#include "node_occluders.hpp"
 
 namespace crofton::ogre {
 
@@ -25,8 +26,9 @@ class SceneNode final : public Ogre::SceneNode {
     void setInSceneGraph(bool in_graph) override;
 
     SceneManager& manager_;
-    cull::ItemId item_ = boxtree::kNone;
-    bool unbounded_ = false;  // in the manager's list of objects that every camera sees
+    ObjectHandle occluder_;   // what its entity hides other things with, while the manager asks for it
+    ObjectHandle object_;     // the box around what is attached, in the manager's World
+    bool unbounded_ = false;  // in the manager's list of nodes that every camera sees
 };
 
 // Where the time of the last _findVisibleObjects went, in microseconds.
@@ -43,9 +45,15 @@ class SceneManager final : public Ogre::SceneManager {
 
     // True hands the search back to OGRE, for comparison.
     void use_ogre_culling(bool use) { use_ogre_culling_ = use; }
+    // True: pictures leave out what solid entities hide (is_solid). Shadow textures show all casters as ever. Say so
+    // before the scene is built, or all nodes are looked at again; from then on occluders follow their nodes. A
+    // material that becomes transparent later is noticed when its node next changes.
+    void use_occlusion(bool use);
+    // Of the last picture: what World says of it; nothing for views without a depth buffer of ours, such as mirrors.
+    [[nodiscard]] OcclusionStatistics occlusion_statistics() const { return visible_.occlusion_statistics(); }
     [[nodiscard]] const FindTimes& find_times() const { return find_times_; }
     // Objects with a box that the last search of ours saw.
-    [[nodiscard]] std::size_t visible_nodes() const { return visible_nodes_; }
+    [[nodiscard]] std::size_t visible_nodes() const { return visible_.size(); }
 
     void _findVisibleObjects(Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                              bool only_shadow_casters) override;
@@ -59,16 +67,25 @@ class SceneManager final : public Ogre::SceneManager {
     Ogre::SceneNode* createSceneNodeImpl(const Ogre::String& name) override;
     void bounds_changed(SceneNode& node);
     void forget(SceneNode& node);
+    void make_unbounded(SceneNode& node);
+    void update_world();
+    void follow_occluder(SceneNode& node);
+    void forget_occluder(SceneNode& node);
+    [[nodiscard]] bool hides_as_drawn(SceneNode& node);
+    void find_visible(const Ogre::Camera& camera, bool only_shadow_casters);
     void queue_object(Ogre::MovableObject& object, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                       bool only_shadow_casters);
     void queue_objects(SceneNode& node, Ogre::Camera* camera, Ogre::VisibleObjectsBoundsInfo* bounds,
                        bool only_shadow_casters);
 
-    adapter::CullIndex index_;
-    std::vector<SceneNode*> nodes_;      // by item
+    World world_{{.pairs = false}};
+    VisibleObjects visible_;
+    bool world_changed_ = true;  // since its last update
+    unsigned long updated_frame_ = 0;
     std::vector<SceneNode*> unbounded_;  // hold skies and the like
-    bool use_ogre_culling_ = false;
-    std::size_t visible_nodes_ = 0;
+    OccluderMeshes occluder_meshes_{world_};
+    Vector<OccluderRef> drawn_occluders_;
+    bool use_ogre_culling_ = false, use_occlusion_ = false, follows_occluders_ = false;
     FindTimes find_times_;
 };
 

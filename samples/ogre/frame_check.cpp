@@ -1,41 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "frame_check.hpp"
 
-#include <OgreHardwareBufferManager.h>
-#include <OgreMesh.h>
 #include <OgreSubEntity.h>
-#include <OgreSubMesh.h>
 #include <OgreViewport.h>
 
 #include <algorithm>
 
+#include "mesh_triangles.hpp"
+
 namespace crofton::ogre {
 namespace {
-
-std::vector<Ogre::Vector3> read_positions(const Ogre::VertexData& data) {
-    const Ogre::VertexElement* element = data.vertexDeclaration->findElementBySemantic(Ogre::VES_POSITION);
-    const Ogre::HardwareVertexBufferSharedPtr buffer = data.vertexBufferBinding->getBuffer(element->getSource());
-    std::vector<Ogre::Vector3> positions;
-    auto* vertex = static_cast<unsigned char*>(buffer->lock(Ogre::HardwareBuffer::HBL_READ_ONLY));
-    for (std::size_t i = 0; i < data.vertexCount; ++i, vertex += buffer->getVertexSize()) {
-        float* position = nullptr;
-        element->baseVertexPointerToElement(vertex, &position);
-        positions.emplace_back(position[0], position[1], position[2]);
-    }
-    buffer->unlock();
-    return positions;
-}
-
-void append_triangles(const Ogre::Mesh& mesh, const Ogre::SubMesh& part, std::vector<Ogre::Vector3>& corners) {
-    const auto positions = read_positions(part.useSharedVertices ? *mesh.sharedVertexData : *part.vertexData);
-    const Ogre::IndexData& data = *part.indexData;
-    const auto* words = static_cast<const Ogre::uint16*>(data.indexBuffer->lock(Ogre::HardwareBuffer::HBL_READ_ONLY));
-    const auto* longs = reinterpret_cast<const Ogre::uint32*>(words);
-    const bool wide = data.indexBuffer->getType() == Ogre::HardwareIndexBuffer::IT_32BIT;
-    for (std::size_t i = data.indexStart; i < data.indexStart + data.indexCount; ++i)
-        corners.push_back(positions[wide ? longs[i] : words[i]]);
-    data.indexBuffer->unlock();
-}
 
 bool is_queued(const Ogre::Entity& entity, const QueueRecorder::Pass& pass) {
     const Ogre::Renderable* renderable = const_cast<Ogre::Entity&>(entity).getSubEntity(0);
@@ -95,19 +69,18 @@ void QueueRecorder::postFindVisibleObjects(Ogre::SceneManager*, Ogre::SceneManag
 
 const std::vector<Ogre::Vector3>& MeshTriangles::of(const Ogre::Mesh& mesh) {
     const auto [entry, is_new] = corners_.try_emplace(&mesh);
-    if (is_new)
-        for (const Ogre::SubMesh* part : mesh.getSubMeshes()) append_triangles(mesh, *part, entry->second);
+    if (is_new) entry->second = read_triangles(mesh);
     return entry->second;
 }
 
-FrameCheck check_pass(World& world, const QueueRecorder::Pass& ogre, const QueueRecorder::Pass& crofton,
+FrameCheck check_pass(City& city, const QueueRecorder::Pass& ogre, const QueueRecorder::Pass& crofton,
                       MeshTriangles& meshes) {
     FrameCheck check;
     check.ogre = ogre.queued.size();
     check.crofton = crofton.queued.size();
     for (const Ogre::Renderable* renderable : crofton.queued)
         if (!std::binary_search(ogre.queued.begin(), ogre.queued.end(), renderable)) ++check.not_in_ogre;
-    for (const Ogre::Entity* entity : world.entities()) {
+    for (const Ogre::Entity* entity : city.entities()) {
         const bool expected =
             (entity->getVisibilityFlags() & kShown) != 0 && (!crofton.shadows || entity->getCastShadows());
         if (!expected && is_queued(*entity, crofton)) ++check.not_in_ogre;

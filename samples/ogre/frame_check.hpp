@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "world.hpp"
+#include "city.hpp"
 
 namespace crofton::ogre {
 
@@ -56,7 +56,7 @@ class MeshTriangles {
 };
 
 // Compares one pass, drawn both ways. Entities masked out and, in shadow passes, those that cast none are not expected.
-[[nodiscard]] FrameCheck check_pass(World& world, const QueueRecorder::Pass& ogre, const QueueRecorder::Pass& crofton,
+[[nodiscard]] FrameCheck check_pass(City& city, const QueueRecorder::Pass& ogre, const QueueRecorder::Pass& crofton,
                                     MeshTriangles& meshes);
 
 }  // namespace crofton::ogre

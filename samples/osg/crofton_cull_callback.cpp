@@ -4,9 +4,8 @@
 #include <chrono>
 #include <osg/ComputeBoundsVisitor>
 #include <osg/MatrixTransform>
+#include <osg/Notify>
 #include <osgUtil/CullVisitor>
-
-#include <crofton/scene/transform.hpp>
 
 namespace crofton::osg_adapter {
 namespace {
@@ -50,11 +49,21 @@ Frustum frustum_of(osg::CullingSet& culling) {
 
 CullCallback::CullCallback(osg::Group& group) : group_(group) {
     for (unsigned child = 0; child < group.getNumChildren(); ++child)
-        static_cast<void>(index_.insert(box_of(*group.getChild(child))));  // item i is child i
+        objects_.push_back(world_.add({.bound = box_of(*group.getChild(child)), .user = child}).value());
 }
 
 void CullCallback::child_moved(unsigned child) {
-    index_.move(child, box_of(*group_.getChild(child)));
+    const auto moved = world_.set_bound(objects_[child], box_of(*group_.getChild(child)));
+    if (!moved) OSG_WARN << "child " << child << " stays where it was: " << moved.error().message << std::endl;
+    world_changed_ = true;
+}
+
+// Once a frame, whatever the number of cameras: a World counts updates to tell what moves.
+void CullCallback::update_world(unsigned frame) {
+    if (!world_changed_ && frame == updated_frame_) return;
+    static_cast<void>(world_.update());  // can only run out of pairs, of which there are none
+    world_changed_ = false;
+    updated_frame_ = frame;
 }
 
 void CullCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor) {
@@ -63,12 +72,13 @@ void CullCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor) {
         traverse(node, visitor);
         return;
     }
-    index_.update();
+    update_world(visitor->getTraversalNumber());
     const auto start = std::chrono::steady_clock::now();
-    const cull::VisibleSet& visible = index_.cull({.frustum = frustum_of(culler->getCurrentCullingSet())});
+    world_.view(cull::View{.frustum = frustum_of(culler->getCurrentCullingSet())}, visible_);
     last_cull_microseconds_ =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-    for (const cull::ItemId child : visible.ids()) group_.getChild(child)->accept(*visitor);
+    for (std::size_t i = 0; i < visible_.size(); ++i)
+        group_.getChild(static_cast<unsigned>(visible_[i].user))->accept(*visitor);
 }
 
 }  // namespace crofton::osg_adapter

@@ -4,7 +4,8 @@
 #include <osg/Group>
 #include <osg/NodeCallback>
 
-#include "../adapter/cull_index.hpp"
+#include <crofton/crofton.hpp>
+#include <vector>
 
 namespace crofton::osg_adapter {
 
@@ -20,7 +21,13 @@ class CullCallback final : public osg::NodeCallback {
     [[nodiscard]] double last_cull_microseconds() const { return last_cull_microseconds_; }
 
   private:
-    adapter::CullIndex index_;
+    void update_world(unsigned frame);
+
+    World world_{{.pairs = false}};
+    VisibleObjects visible_;
+    std::vector<ObjectHandle> objects_;  // by child
+    bool world_changed_ = true;          // since its last update
+    unsigned updated_frame_ = 0;
     osg::Group& group_;
     double last_cull_microseconds_ = 0.0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The viewer's parts that need no window: picking, views, the frame history, shapes.
+// The viewer's parts that need no window: near misses, views, the frame history, shapes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,61 +10,13 @@
 
 #include "assets/retriangulate.hpp"
 #include "viewer/camera_controller.hpp"
-#include "viewer/contact_finder.hpp"
 #include "viewer/frame_history.hpp"
+#include "viewer/near_misses.hpp"
 #include "viewer/overlay.hpp"
-#include "viewer/picking.hpp"
 #include "viewer/shape_colors.hpp"
 
 using namespace crofton;
 using namespace crofton::viewer;
-
-namespace {
-
-// Squares across the z axis at the given depths, one instance each.
-scene::Scene squares(std::initializer_list<double> depths) {
-    scene::Scene result;
-    TriangleMesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    mesh.indices = {0, 1, 2, 0, 2, 3};
-    const auto id = result.add_mesh(mesh);
-    REQUIRE(id);
-    for (const double z : depths) {
-        scene::Transform place;
-        place.translation.z = z;
-        const auto node = result.add_node(scene::kNone, place);
-        REQUIRE(node);
-        REQUIRE(result.add_instance(*node, *id));
-    }
-    result.update();
-    return result;
-}
-
-}  // namespace
-
-TEST_SUITE("viewer/picking") {
-    TEST_CASE("nothing is picked from an empty list, behind the camera or beside the square") {
-        const scene::Scene scene = squares({-5.0, 5.0});
-        const Camera camera;
-        CHECK_FALSE(pick(scene, {}, camera, {0.0, 0.0}));
-        const scene::InstanceId behind[] = {1}, ahead[] = {0};
-        CHECK_FALSE(pick(scene, behind, camera, {0.0, 0.0}));
-        CHECK_FALSE(pick(scene, ahead, camera, {0.9, 0.9}));
-    }
-    TEST_CASE("the nearest of several is picked, with its triangle, its distance and the place") {
-        const scene::Scene scene = squares({-9.0, -4.0, -6.0});
-        const Camera camera;
-        const scene::InstanceId all[] = {0, 1, 2};
-        const auto hit = pick(scene, all, camera, {0.01, -0.05});
-        REQUIRE(hit);
-        CHECK(hit->instance == 1);
-        CHECK(hit->triangle == 0);  // below the diagonal
-        CHECK(hit->at.z == doctest::Approx(-4.0));
-        CHECK(hit->distance == doctest::Approx(glm::length(hit->at)));
-        // The cursor's tangent, times the depth.
-        CHECK(hit->at.y == doctest::Approx(-0.05 * std::tan(0.5 * camera.fov_y) * 4.0));
-    }
-}
 
 TEST_SUITE("assets/retriangulate") {
     // A rhombus with diagonals of 10 and 2, cut along the long one, facing −z.
@@ -124,51 +76,7 @@ TEST_SUITE("assets/retriangulate") {
     }
 }
 
-TEST_SUITE("viewer/contact_finder") {
-    // A unit cube, twelve triangles.
-    TriangleMesh cube() {
-        TriangleMesh mesh;
-        for (int i = 0; i < 8; ++i)
-            mesh.positions.push_back(
-                glm::vec3((i & 1) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 0.5f : -0.5f, (i & 4) != 0 ? 0.5f : -0.5f));
-        mesh.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                        2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-        return mesh;
-    }
-    TEST_CASE("contacts of scaled, sheared and mirrored bodies lie on both surfaces, apart there are none") {
-        const glm::dmat3 linears[] = {glm::dmat3(1.0), glm::dmat3(3, 0, 0, 0, 1, 0, 0, 0, 0.5),
-                                      // Turned, stretched and sheared; then mirrored.
-                                      glm::dmat3(0.8, 0.6, 0, -1.2, 1.6, 0, 0.3, 0.4, 1.5),
-                                      glm::dmat3(-1, 0, 0, 0.2, 1, 0, 0, 0, 2)};
-        for (const glm::dmat3& linear_a : linears)
-            for (const glm::dmat3& linear_b : linears) {
-                scene::Scene scene;
-                const auto mesh = scene.add_mesh(cube());
-                REQUIRE(mesh);
-                const glm::dvec3 at(100.0, 5.0, -3.0);
-                for (const auto& [linear, place] : {std::pair{linear_a, at},
-                                                    {linear_b, at + glm::dvec3(0.3, 0.45, 0.1)},
-                                                    {linear_b, at + glm::dvec3(9.0, 0.0, 0.0)}}) {
-                    const auto node = scene.add_node(scene::kNone, {linear, place});
-                    REQUIRE(node);
-                    REQUIRE(scene.add_instance(*node, *mesh));
-                }
-                scene.update();
-                ContactFinder finder;
-                std::vector<Segment> found;
-                finder.find(scene, 0, 1, found);
-                CHECK(found.size() > 2);
-                for (const Segment& segment : found)
-                    for (const glm::dvec3& p : {segment.begin, segment.end})
-                        for (const scene::InstanceId i : {0u, 1u}) {
-                            const scene::Transform& world = scene.world(scene.node_of(i));
-                            const glm::dvec3 local = glm::abs(glm::inverse(world.linear) * (p - world.translation));
-                            CHECK(std::max({local.x, local.y, local.z}) == doctest::Approx(0.5).epsilon(1e-5));
-                        }
-                finder.find(scene, 0, 2, found);
-                CHECK(found.empty());
-            }
-    }
+TEST_SUITE("viewer/near_misses") {
     TEST_CASE("the separation spans the gap along a line that has one box on each side, boxes that meet have none") {
         Obb a, b;
         a.half_extents = {1.0f, 2.0f, 1.0f};

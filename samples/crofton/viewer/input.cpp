@@ -181,7 +181,9 @@ void Session::perform(const Action& action) {
 void Session::click(const glm::dvec2& pixel) {
     const glm::dvec2 size(wanted_size_.width, wanted_size_.height);
     const glm::dvec2 place(2.0 * (pixel.x + 0.5) / size.x - 1.0, 1.0 - 2.0 * (pixel.y + 0.5) / size.y);
-    pick_ = pick(loaded_->scene(), frame_.visible_ids, controller_.camera, place);
+    const auto world = loaded_->mesh_world(!contacts_.empty());
+    if (!world) return report(world.error());
+    pick_ = pick(**world, frame_.visible_ids, controller_.camera, place);
     selected_ = pick_ ? pick_->instance : scene::kNone;
 }
 

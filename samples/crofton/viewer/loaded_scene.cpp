@@ -103,6 +103,16 @@ void LoadedScene::animate(std::uint32_t frame) {
     update_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
+Result<const World*> LoadedScene::mesh_world(bool contacts) {
+    if (!mesh_world_) {
+        auto made = MeshWorld::create(source_.scene, source_.movers);
+        if (!made) return tl::unexpected(std::move(made.error()));
+        mesh_world_.emplace(std::move(*made));
+    }
+    if (auto updated = mesh_world_->update(contacts); !updated) return tl::unexpected(std::move(updated.error()));
+    return &mesh_world_->world();
+}
+
 Result<pipeline::FrameStatistics> LoadedScene::run(const Camera& camera) {
     auto frame = pipeline_->run(camera);
     if (frame) frame->update_us += update_us_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "assets/scene_source.hpp"
+#include "mesh_world.hpp"
 #include "pipeline/pipeline.hpp"
 #include "settings.hpp"
 
@@ -35,6 +36,10 @@ class LoadedScene {
     void animate(std::uint32_t frame);
     [[nodiscard]] Result<pipeline::FrameStatistics> run(const Camera& camera);
 
+    // The scene's meshes as they stand now, with contacts between movers where asked for. Made when first asked for:
+    // most visits need it late or never. Errors: as MeshWorld::create.
+    [[nodiscard]] Result<const World*> mesh_world(bool contacts);
+
     [[nodiscard]] const assets::SceneSource& source() const { return source_; }
     [[nodiscard]] const scene::Scene& scene() const { return source_.scene; }
     [[nodiscard]] const pipeline::Pipeline& pipeline() const { return *pipeline_; }
@@ -48,6 +53,7 @@ class LoadedScene {
 
     assets::SceneSource source_;
     std::optional<pipeline::Pipeline> pipeline_;
+    std::optional<MeshWorld> mesh_world_;
     Method method_;
     pipeline::PipelineOptions options_;
     Aabb extent_, focus_;

@@ -108,7 +108,7 @@ Result<void> Session::load(const SceneRequest& request) {
     const bool same_scene = loaded_ && request.source == request_.source && request.map == request_.map;
     // What refers to the old scene goes first.
     list_.reset();
-    overlay_.clear();
+    contacts_ = {};
     pick_.reset();
     if (!same_scene) {
         other_.reset();

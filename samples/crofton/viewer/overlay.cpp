@@ -40,8 +40,8 @@ std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
 }
 
 void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene& loaded,
-                   const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades,
-                   scene::InstanceId selected, bool show_frustum) {
+                   const pipeline::FrameStatistics& frame, std::span<const Contact> contacts,
+                   std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum) {
     const scene::Scene& scene = loaded.scene();
     legend_.clear();
     draw_bounds(lines, settings, loaded, frame);
@@ -50,6 +50,7 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
     if (settings.coloring == Coloring::collision && settings.collisions) {
         legend_.push_back({"boxes that meet, and their centres", kPair});
         draw_pairs(lines, loaded, frame);
+        draw_contacts(lines, scene, contacts);
         legend_.push_back({"contacts between triangles", kContact, contacts_});
         draw_separations(lines, loaded, frame);
         legend_.push_back({"near misses, separating axis", kSeparation, separations_});
@@ -119,17 +120,18 @@ void Overlay::draw_pairs(LineList& lines, const LoadedScene& loaded, const pipel
             lines.axes(boxes[instance]);
         }
         lines.segment(boxes[a].center, boxes[b].center, kPair);
-        draw_contacts(lines, loaded.scene(), a, b);
     }
 }
 
-void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b) {
-    finder_.find(scene, a, b, found_);
-    contacts_ += found_.size();
-    const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[a].half_extents));
-    for (std::size_t i = 0; i < std::min(found_.size(), kMaxContactsOfPair); ++i) {
-        lines.segment(found_[i].begin, found_[i].end, kContact);
-        lines.cross(0.5 * (found_[i].begin + found_[i].end), size, kContact);
+void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, std::span<const Contact> contacts) {
+    for (const Contact& contact : contacts) contacts_ += contact.triangles.size();
+    for (const Contact& contact : contacts.first(std::min(contacts.size(), kMaxPairs))) {
+        const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[contact.first.user].half_extents));
+        for (const mesh::MeshContact& found :
+             contact.triangles.first(std::min(contact.triangles.size(), kMaxContactsOfPair))) {
+            lines.segment(found.segment.begin, found.segment.end, kContact);
+            lines.cross(0.5 * (found.segment.begin + found.segment.end), size, kContact);
+        }
     }
 }
 

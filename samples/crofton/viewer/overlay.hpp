@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What is drawn over the scene as lines: bounds, frusta, contacts.
 #pragma once
+#include <crofton/crofton.hpp>
 #include <optional>
 
-#include "contact_finder.hpp"
 #include "line_list.hpp"
 #include "loaded_scene.hpp"
+#include "near_misses.hpp"
 #include "settings.hpp"
 
 namespace crofton::viewer {
@@ -28,12 +29,11 @@ struct LineMeaning {
 
 class Overlay {
   public:
-    // All lines that the settings ask for, for an eye at `eye`. `frame` is what culling said; its camera culled.
+    // All lines that the settings ask for. `frame` is what culling said; its camera culled. `contacts` are those of the
+    // scene's MeshWorld.
     void draw(LineList& lines, const Settings& settings, const LoadedScene& loaded,
-              const pipeline::FrameStatistics& frame, std::span<const Cascade> cascades, scene::InstanceId selected,
-              bool show_frustum);
-    // Forgets what belongs to a scene that is gone.
-    void clear() { finder_.clear(); }
+              const pipeline::FrameStatistics& frame, std::span<const Contact> contacts,
+              std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum);
     // Of the lines last drawn.
     [[nodiscard]] std::span<const LineMeaning> legend() const { return legend_; }
     [[nodiscard]] std::uint64_t contact_count() const { return contacts_; }
@@ -45,11 +45,9 @@ class Overlay {
     // The root is level 0.
     void draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level);
     void draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
-    void draw_contacts(LineList& lines, const scene::Scene& scene, scene::InstanceId a, scene::InstanceId b);
+    void draw_contacts(LineList& lines, const scene::Scene& scene, std::span<const Contact> contacts);
     void draw_separations(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
-    ContactFinder finder_;
-    std::vector<Segment> found_;
     std::vector<LineMeaning> legend_;
     std::uint64_t contacts_ = 0, separations_ = 0;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "picking.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -23,25 +23,16 @@ Ray ray_through(const Camera& camera, const glm::dvec2& cursor) {
 
 }  // namespace
 
-std::optional<Pick> pick(const scene::Scene& scene, std::span<const scene::InstanceId> candidates, const Camera& camera,
+std::optional<Pick> pick(const World& world, std::span<const scene::InstanceId> candidates, const Camera& camera,
                          const glm::dvec2& cursor) {
-    Ray ray = ray_through(camera, cursor);
-    std::optional<Pick> best;
-    for (const scene::InstanceId instance : candidates) {
-        if (!mesh::raycast(ray, scene.world_boxes()[instance])) continue;
-        const TriangleMesh& mesh = scene.mesh(scene.mesh_of(instance));
-        const scene::Transform& world = scene.world(scene.node_of(instance));
-        const auto point = [&](std::size_t i) {
-            return world.linear * glm::dvec3(mesh.positions[mesh.indices[i]]) + world.translation;
-        };
-        for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-            const auto distance = mesh::raycast(ray, Triangle{point(t), point(t + 1), point(t + 2)});
-            if (!distance || (best && *distance >= best->distance)) continue;
-            best = {instance, static_cast<std::uint32_t>(t / 3), *distance, ray.origin + *distance * ray.direction};
-            ray.max_t = *distance;
-        }
+    Vector<ObjectHit> hits;
+    world.raycast_all(ray_through(camera, cursor), hits);
+    for (const ObjectHit& hit : hits) {
+        const auto instance = static_cast<scene::InstanceId>(hit.user);
+        if (std::binary_search(candidates.begin(), candidates.end(), instance))
+            return Pick{instance, hit.triangle, hit.t, hit.point};
     }
-    return best;
+    return std::nullopt;
 }
 
 }  // namespace crofton::viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What lies under the cursor.
 #pragma once
-#include <crofton/geometry/camera.hpp>
+#include <crofton/crofton.hpp>
 #include <crofton/scene/scene.hpp>
 #include <optional>
 #include <span>
@@ -15,9 +15,9 @@ struct Pick {
     glm::dvec3 at{0.0};
 };
 
-// The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. Boxes first, then
-// triangles.
-[[nodiscard]] std::optional<Pick> pick(const scene::Scene& scene, std::span<const scene::InstanceId> candidates,
+// The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. `world` has the
+// instances' meshes and their numbers as user data. Candidates ascend.
+[[nodiscard]] std::optional<Pick> pick(const World& world, std::span<const scene::InstanceId> candidates,
                                        const Camera& camera, const glm::dvec2& cursor);
 
 }  // namespace crofton::viewer

@@ -164,6 +164,15 @@ Result<void> Session::cull() {
         cascade.visible = cascade_visible_.size();
     }
     instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_);
+    return find_contacts();
+}
+
+Result<void> Session::find_contacts() {
+    contacts_ = {};
+    if (settings_.coloring != Coloring::collision || !settings_.collisions) return {};
+    const auto world = loaded_->mesh_world(true);
+    if (!world) return tl::unexpected(world.error());
+    contacts_ = (*world)->contacts();
     return {};
 }
 
@@ -171,7 +180,7 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
     list_->select(frame_.visible_ids, camera);
     instance_coloring_.paint(*list_, settings_.wireframe);
     lines_.clear(camera.position);
-    overlay_.draw(lines_, settings_, *loaded_, frame_, cascades_, selected_, show_frustum);
+    overlay_.draw(lines_, settings_, *loaded_, frame_, contacts_, cascades_, selected_, show_frustum);
     render::Frame frame;
     frame.camera = camera;
     frame.transforms = instance_coloring_.transforms();

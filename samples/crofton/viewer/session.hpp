@@ -70,6 +70,7 @@ class Session {
     [[nodiscard]] Result<void> follow_scale();
     void advance(double seconds);
     [[nodiscard]] Result<void> cull();
+    [[nodiscard]] Result<void> find_contacts();
     [[nodiscard]] Result<void> start_drawing();
     [[nodiscard]] Result<void> finish_drawing();
     [[nodiscard]] Result<void> submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
@@ -98,6 +99,7 @@ class Session {
     CameraController controller_;
     Camera culling_camera_;
     pipeline::FrameStatistics frame_, other_frame_;
+    std::span<const Contact> contacts_;  // between triangles, until the scene next moves
     std::vector<Cascade> cascades_;
     VisibleObjects cascade_visible_;
     InstanceColoring instance_coloring_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "world.hpp"
+#include "city.hpp"
 
 #include <OgreLight.h>
 #include <OgreMaterialManager.h>
@@ -14,7 +14,7 @@ constexpr double kSpacing = 12.0;  // metres of ground an entity has to itself, 
 
 }  // namespace
 
-World::World(Ogre::Root& root, const WorldSize& size)
+City::City(Ogre::Root& root, const CitySize& size)
     : root_(root), half_width_(0.5 * kSpacing * std::sqrt(static_cast<double>(size.entities))) {
     manager_ = static_cast<SceneManager*>(root.createSceneManager(SceneManagerFactory::kTypeName));
     manager_->setAmbientLight(Ogre::ColourValue(0.3f, 0.3f, 0.3f));
@@ -31,11 +31,11 @@ World::World(Ogre::Root& root, const WorldSize& size)
     set_frame(0);
 }
 
-World::~World() {
+City::~City() {
     root_.destroySceneManager(manager_);
 }
 
-void World::add_sun(bool shadows) {
+void City::add_sun(bool shadows) {
     if (shadows) {
         manager_->setShadowTechnique(Ogre::SHADOWTYPE_TEXTURE_MODULATIVE);
         manager_->setShadowTextureSettings(256, 1);
@@ -49,7 +49,7 @@ void World::add_sun(bool shadows) {
     node->attachObject(sun);
 }
 
-void World::add_entities(const WorldSize& size) {
+void City::add_entities(const CitySize& size) {
     std::mt19937 random(1);
     const auto uniform = [&](double low, double high) {
         return static_cast<float>(low + (high - low) * static_cast<double>(random()) / 4294967296.0);
@@ -72,7 +72,7 @@ void World::add_entities(const WorldSize& size) {
     }
 }
 
-void World::set_frame(unsigned frame) {
+void City::set_frame(unsigned frame) {
     for (std::size_t i = 0; i < moving_.size(); ++i) {
         const float phase = 0.1f * static_cast<float>(frame) + static_cast<float>(i);
         moving_[i]->translate(0.3f * std::cos(phase), 0.0f, 0.3f * std::sin(phase));

@@ -12,7 +12,7 @@
 
 namespace crofton::ogre {
 
-struct WorldSize {
+struct CitySize {
     unsigned entities = 3000;
     unsigned moving = 300;
     bool shadows = true;
@@ -22,12 +22,12 @@ struct WorldSize {
 // An entity in eight is masked out: masks are OGRE's business and must work as ever.
 inline constexpr Ogre::uint32 kShown = 1, kHidden = 2;
 
-class World {
+class City {
   public:
-    World(Ogre::Root& root, const WorldSize& size);
-    ~World();
-    World(const World&) = delete;
-    World& operator=(const World&) = delete;
+    City(Ogre::Root& root, const CitySize& size);
+    ~City();
+    City(const City&) = delete;
+    City& operator=(const City&) = delete;
 
     // Moves the moving entities and the camera; the same frame is the same picture.
     void set_frame(unsigned frame);
@@ -37,7 +37,7 @@ class World {
     [[nodiscard]] const std::vector<Ogre::Entity*>& entities() const { return entities_; }
 
   private:
-    void add_entities(const WorldSize& size);
+    void add_entities(const CitySize& size);
     void add_sun(bool shadows);
 
     Ogre::Root& root_;
