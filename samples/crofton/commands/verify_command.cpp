@@ -10,6 +10,7 @@
 #include "verify/collide.hpp"
 #include "verify/cull.hpp"
 #include "verify/occlude.hpp"
+#include "verify/occlude_scene.hpp"
 #include "verify/rows.hpp"
 #include "verify/topics.hpp"
 
@@ -27,15 +28,26 @@ constexpr Topic kTopics[] = {
 
 struct Request {
     std::string topic;
+    std::vector<std::string> scenes;
+    std::uint32_t instances = 0;
     VerifyOptions options;
     std::string json_path;
 };
 
 int run(const Request& request) {
+    if (!request.scenes.empty() && request.topic != "occlude") {
+        std::fputs("crofton: --scene goes with the topic occlude\n", stderr);
+        return kBadInput;
+    }
     std::vector<VerifyRow> rows;
     for (const Topic& topic : kTopics)
-        if (request.topic.empty() || request.topic == topic.name)
+        if (request.scenes.empty() && (request.topic.empty() || request.topic == topic.name))
             for (VerifyRow& row : topic.rows(request.options)) rows.push_back(std::move(row));
+    for (const std::string& scene : request.scenes) {
+        auto found = verify_occluded_scene(scene, request.instances, request.options);
+        if (!found) return report_error(scene, found.error());
+        for (VerifyRow& row : *found) rows.push_back(std::move(row));
+    }
     if (request.json_path != "-") std::fputs(table_of(rows).c_str(), stdout);
     if (!request.json_path.empty())
         if (const auto written = write_json(request.json_path, json_of(rows)); !written)
@@ -57,6 +69,9 @@ void add_verify_command(CommandLine& line) {
     command.option("--trials", request->options.trials, "Random queries per row; more make every check sharper")
         .whole_between(1000, std::uint64_t{1} << 40)
         .show_default();
+    command.option("--scene", request->scenes,
+                   "Instead, occlusion in these scenes (files, or \"town\"), by witness rays; with the topic occlude");
+    command.option("--instances", request->instances, "Of the town with --scene: roughly so many").show_default();
     command.option("--seed", request->options.seed, "The same seed gives the same table, bit by bit").show_default();
     command
         .option("--json", request->json_path,
@@ -69,6 +84,7 @@ void add_verify_command(CommandLine& line) {
         "Examples:\n"
         "  crofton verify\n"
         "  crofton verify lines --trials 1000000 --seed 7\n"
+        "  crofton verify occlude --scene town --scene forest.glb --trials 1000000\n"
         "  crofton verify paper --json - | jq '.[] | select(.holds | not)'");
     command.action([request] { return run(*request); });
 }

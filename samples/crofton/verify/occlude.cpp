@@ -9,74 +9,16 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "occlude_setups.hpp"
+
 namespace crofton::cli {
 namespace {
 
 using sampling::Random;
 
-struct Setup {
-    Camera camera;
-    std::vector<Obb> occluders, objects;
-    occlude::BufferSize size;
-};
-
 struct Counts {
     std::uint64_t rays = 0, free = 0, hidden = 0, culled = 0, covered_rays = 0, passed = 0;
 };
-
-glm::dvec3 point_in_view(Random& random, const Camera& camera, double distance) {
-    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
-    const bool perspective = camera.projection == Projection::perspective;
-    const double half = perspective ? distance * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
-    const double x = random.uniform(-1.1, 1.1), y = random.uniform(-1.1, 1.1);
-    return camera.position + to_world * glm::dvec3(half * camera.aspect * x, half * y, -distance);
-}
-
-Obb box_at(Random& random, const glm::dvec3& center, double smallest, double largest) {
-    Obb box;
-    box.center = center;
-    if (random.uniform() < 0.7) box.axes = glm::mat3(sampling::rotation(random.point<3>()));
-    for (int k = 0; k < 3; ++k)
-        box.half_extents[k] = static_cast<float>(smallest * std::pow(largest / smallest, random.uniform()));
-    return box;
-}
-
-// Walls, boxes that touch, slivers, boxes around the eye and across the near plane; objects behind and between them.
-Setup random_setup(Random& random, double offset) {
-    Setup setup;
-    constexpr occlude::BufferSize kSizes[] = {{64, 36}, {160, 90}, {333, 201}, {640, 360}};
-    setup.size = kSizes[random.bits() % 4];
-    Camera& camera = setup.camera;
-    camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) + 3.0 * sampling::direction(random.point<2>());
-    camera.forward = sampling::direction(random.point<2>());
-    camera.up = sampling::direction(random.point<2>());
-    if (random.uniform() < 0.25) camera.projection = Projection::orthographic;
-    camera.fov_y = random.uniform(0.3, 2.0);
-    camera.height = random.uniform(5.0, 40.0);
-    camera.aspect = random.uniform(0.7, 2.0);
-    camera.near_distance = random.uniform(0.05, 1.0);
-    for (std::uint64_t i = 0, count = 2 + random.bits() % 12; i < count; ++i) {
-        const double u = random.uniform();
-        Obb box = box_at(random, point_in_view(random, camera, 0.5 * camera.near_distance + 30.0 * u * u), 0.2, 8.0);
-        const auto k = static_cast<int>(random.bits() % 3);
-        if (random.uniform() < 0.1) box.half_extents[k] = 1e-4f;
-        setup.occluders.push_back(box);
-        if (random.uniform() > 0.2) continue;
-        box.center += 2.0 * static_cast<double>(box.half_extents[k]) * glm::dvec3(box.axes[k]);
-        setup.occluders.push_back(box);
-    }
-    for (int i = 0; i < 256; ++i) {
-        const Obb& beside = setup.occluders[random.bits() % setup.occluders.size()];
-        glm::dvec3 at = beside.center;
-        for (int k = 0; k < 3; ++k)
-            at += random.uniform(-1.1, 1.1) * static_cast<double>(beside.half_extents[k]) * glm::dvec3(beside.axes[k]);
-        const bool perspective = camera.projection == Projection::perspective;
-        at += random.uniform(0.0, 1.5) * (perspective ? at - camera.position : glm::normalize(camera.forward));
-        if (i % 3 == 0) at = point_in_view(random, camera, random.uniform(1.0, 60.0));
-        setup.objects.push_back(box_at(random, at, 0.01, i % 4 ? 0.3 : 3.0));
-    }
-    return setup;
-}
 
 // The points from + t · along, t ≥ t_near; the question is about t = 1.
 struct WitnessRay {
@@ -97,7 +39,12 @@ bool may_block(const WitnessRay& ray, const Obb& box) {
         const double at = glm::dot(normal, from), slope = glm::dot(normal, ray.along);
         const auto half = static_cast<double>(box.half_extents[k]);
         const double rounding = 1e-14 * (size + half);
-        if (std::fabs(slope) <= 1e3 * rounding) return true;
+        // Along this slab the ray is in it, or beside it, for all of 0 ≤ t ≤ 1; or that is unknown.
+        if (std::fabs(slope) <= 1e3 * rounding) {
+            if (std::fabs(at) - std::fabs(slope) > half + rounding) return false;
+            if (std::fabs(at) + std::fabs(slope) < half - rounding) continue;
+            return true;
+        }
         const double a = (-half - at) / slope, b = (half - at) / slope;
         enter = std::max(enter, std::min(a, b));
         leave = std::min(leave, std::max(a, b));
@@ -124,7 +71,8 @@ WitnessRay ray_to(const Camera& camera, const glm::dvec3& point) {
     return {point - forward * depth, forward * depth, t_near};
 }
 
-void ask_for_objects(Random& random, const Setup& setup, const occlude::OcclusionBuffer& buffer, Counts& counts) {
+void ask_for_objects(Random& random, const OccludeSetup& setup, const occlude::OcclusionBuffer& buffer,
+                     Counts& counts) {
     occlude::VisibleSet visible;
     occlude::find_visible(setup.objects, {}, buffer, visible);
     std::vector<bool> shown(setup.objects.size(), false);
@@ -148,7 +96,7 @@ void ask_for_objects(Random& random, const Setup& setup, const occlude::Occlusio
 }
 
 // A ray through each of some covered squares, up to the depth that is stored there: it must not be free.
-void ask_for_pixels(Random& random, const Setup& setup, const occlude::OcclusionBuffer& buffer, Counts& counts) {
+void ask_for_pixels(Random& random, const OccludeSetup& setup, const occlude::OcclusionBuffer& buffer, Counts& counts) {
     const Camera& camera = setup.camera;
     const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
     const double half_x = 0.5 * setup.size.width, half_y = 0.5 * setup.size.height;
@@ -176,33 +124,57 @@ void ask_for_pixels(Random& random, const Setup& setup, const occlude::Occlusion
     }
 }
 
+template <class Make>
+Counts run_setups(Random& random, std::uint64_t rays, const Make& make) {
+    Counts counts;
+    while (counts.rays < rays) {
+        const OccludeSetup setup = make();
+        occlude::OccluderSet set;
+        for (const Obb& box : setup.occluders) (void)set.place(box);
+        auto buffer = *occlude::OcclusionBuffer::create(setup.size);
+        buffer.draw(set, *occlude::occlusion_view_of(setup.camera));
+        ask_for_objects(random, setup, buffer, counts);
+        ask_for_pixels(random, setup, buffer, counts);
+    }
+    return counts;
+}
+
+void add_none(std::vector<VerifyRow>& rows, const std::string& claim, std::uint64_t cases, std::uint64_t measured) {
+    rows.push_back(computed_row(claim, "docs/notes/occlude.md", 0.0, static_cast<double>(measured), 0.0));
+    rows.back().cases = cases;
+}
+
+void add_rows(std::vector<VerifyRow>& rows, const std::string& where, const Counts& counts) {
+    add_none(rows, "of " + std::to_string(counts.free) + " rays that witness an object none has it culled, " + where,
+             counts.free, counts.culled);
+    add_none(rows, "no ray passes a covered pixel, " + where, counts.covered_rays, counts.passed);
+}
+
+constexpr double kOffsets[] = {0.0, 1e4, 1e5, 1e6, 1e7};
+constexpr std::size_t kManyOccluders = 1000;
+
 }  // namespace
 
 std::vector<VerifyRow> verify_occlude(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
-    for (const double offset : {0.0, 1e4, 1e5, 1e6, 1e7}) {
+    for (const double offset : kOffsets) {
         Random random(options.seed);
-        Counts counts;
-        while (counts.rays < options.trials) {
-            const Setup setup = random_setup(random, offset);
-            occlude::OccluderSet set;
-            for (const Obb& box : setup.occluders) (void)set.place(box);
-            auto buffer = *occlude::OcclusionBuffer::create(setup.size);
-            buffer.draw(set, *occlude::occlusion_view_of(setup.camera));
-            ask_for_objects(random, setup, buffer, counts);
-            ask_for_pixels(random, setup, buffer, counts);
-        }
+        const Counts counts = run_setups(random, options.trials, [&] { return random_setup(random, offset); });
         char where[64];
         std::snprintf(where, sizeof where, "at camera offset %g", offset);
-        const auto none = [&](const std::string& what, std::uint64_t cases, std::uint64_t measured) {
-            rows.push_back(
-                computed_row(what + " " + where, "docs/notes/occlude.md", 0.0, static_cast<double>(measured), 0.0));
-            rows.back().cases = cases;
-        };
-        none("of " + std::to_string(counts.free) + " rays that witness an object none has it culled,", counts.free,
-             counts.culled);
-        none("no ray passes a covered pixel,", counts.covered_rays, counts.passed);
+        add_rows(rows, where, counts);
     }
+    for (const HardSetup& hard : hard_setups()) {
+        Random random(options.seed);
+        std::size_t turn = 0;
+        const bool is_dear = hard.make(random, 0.0).occluders.size() > kManyOccluders;
+        const std::uint64_t rays = is_dear ? options.trials / 100 : options.trials / 5;
+        const Counts counts =
+            run_setups(random, rays, [&] { return hard.make(random, kOffsets[turn++ % std::size(kOffsets)]); });
+        add_rows(rows, std::string(hard.name) + ", offsets 0 to 1e7", counts);
+    }
+    const Refusals bad = try_bad_occluders();
+    add_none(rows, "occluders that are open, inside out, flat or NaN are refused", bad.tried, bad.taken);
     return rows;
 }
 

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "occlude_setups.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+
+namespace crofton::cli {
+namespace {
+
+using sampling::Random;
+
+constexpr occlude::BufferSize kSizes[] = {{64, 36}, {160, 90}, {333, 201}, {640, 360}};
+
+// In the camera's frame: x right, y up, z ahead; all within ±1.1 of the picture at that distance.
+glm::dvec3 at_picture(const Camera& camera, double x, double y, double distance) {
+    const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
+    const bool perspective = camera.projection == Projection::perspective;
+    const double half = perspective ? distance * std::tan(0.5 * camera.fov_y) : 0.5 * camera.height;
+    return camera.position + to_world * glm::dvec3(half * camera.aspect * x, half * y, -distance);
+}
+
+glm::dvec3 point_in_view(Random& random, const Camera& camera, double distance) {
+    const double x = random.uniform(-1.1, 1.1), y = random.uniform(-1.1, 1.1);
+    return at_picture(camera, x, y, distance);
+}
+
+Obb box_at(Random& random, const glm::dvec3& center, double smallest, double largest) {
+    Obb box;
+    box.center = center;
+    if (random.uniform() < 0.7) box.axes = glm::mat3(sampling::rotation(random.point<3>()));
+    for (int k = 0; k < 3; ++k)
+        box.half_extents[k] = static_cast<float>(smallest * std::pow(largest / smallest, random.uniform()));
+    return box;
+}
+
+Obb box_of(const glm::dvec3& center, double x, double y, double z) {
+    Obb box;
+    box.center = center;
+    box.half_extents = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    return box;
+}
+
+OccludeSetup empty_setup(Random& random, double offset) {
+    OccludeSetup setup;
+    setup.size = kSizes[random.bits() % 4];
+    setup.camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) +
+                            glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    return setup;
+}
+
+// A small box behind `opening`, on the ray of the eye through it.
+void add_behind(Random& random, const glm::dvec3& opening, OccludeSetup& setup) {
+    const Camera& camera = setup.camera;
+    const bool perspective = camera.projection == Projection::perspective;
+    const glm::dvec3 along = perspective ? opening - camera.position : glm::normalize(camera.forward);
+    const double beyond = random.uniform(0.01, 1.0) * (perspective ? 1.0 : 20.0);
+    setup.objects.push_back(box_at(random, opening + beyond * along, 1e-3, 0.3));
+}
+
+// Two walls side by side, from 1e-6 to a tenth apart, or touching.
+OccludeSetup gap(Random& random, double offset, bool touching) {
+    OccludeSetup setup = empty_setup(random, offset);
+    const glm::dvec3 middle = setup.camera.position + glm::dvec3(random.uniform(-2, 2), 0.0, -10.0);
+    const double half_gap = touching ? 0.0 : 0.5e-6 * std::pow(1e5, random.uniform());
+    setup.occluders = {box_of(middle - glm::dvec3(8.0 + half_gap, 0.0, 0.0), 8.0, 8.0, 0.1),
+                       box_of(middle + glm::dvec3(8.0 + half_gap, 0.0, 0.0), 8.0, 8.0, 0.1)};
+    for (int i = 0; i < 64; ++i)
+        add_behind(random, middle + glm::dvec3(0.9 * half_gap * random.uniform(-1, 1), random.uniform(-4, 4), 0.0),
+                   setup);
+    return setup;
+}
+OccludeSetup narrow_gap(Random& random, double offset) {
+    return gap(random, offset, false);
+}
+OccludeSetup touching_walls(Random& random, double offset) {
+    return gap(random, offset, true);
+}
+
+// The wall ends just before the picture does.
+OccludeSetup open_edge(Random& random, double offset) {
+    OccludeSetup setup = empty_setup(random, offset);
+    const double opening = 1e-6 * std::pow(1e5, random.uniform());
+    const double edge = 10.0 * std::tan(0.5 * setup.camera.fov_y) * setup.camera.aspect;
+    setup.occluders = {box_of(setup.camera.position + glm::dvec3(edge - opening - 50.0, 0.0, -10.1), 50.0, 50.0, 0.1)};
+    for (int i = 0; i < 64; ++i)
+        add_behind(random,
+                   setup.camera.position + glm::dvec3(edge - random.uniform() * opening, random.uniform(-5, 5), -10.0),
+                   setup);
+    return setup;
+}
+
+// Seen from above in parallel, edge to edge, some missing.
+OccludeSetup parallel_tiles(Random& random, double offset) {
+    OccludeSetup setup = empty_setup(random, offset);
+    Camera& camera = setup.camera;
+    camera.forward = {0.0, -1.0, 0.0};
+    camera.up = {0.0, 0.0, -1.0};
+    camera.projection = Projection::orthographic;
+    camera.height = 16.0;
+    camera.aspect = 1.0;
+    for (int x = -8; x < 8; ++x)
+        for (int z = -8; z < 8; ++z) {
+            const glm::dvec3 center = camera.position + glm::dvec3(x + 0.5, -40.0, z + 0.5);
+            if (random.uniform() < 0.8)
+                setup.occluders.push_back(box_of(center, 0.5, 0.1, 0.5));
+            else
+                add_behind(random, center + glm::dvec3(random.uniform(-0.5, 0.5), 0.0, random.uniform(-0.5, 0.5)),
+                           setup);
+        }
+    return setup;
+}
+
+OccludeSetup eye_inside(Random& random, double offset) {
+    OccludeSetup setup = random_setup(random, offset);
+    setup.occluders.push_back(box_at(random, setup.camera.position, 0.5, 20.0));
+    return setup;
+}
+
+OccludeSetup through_near_plane(Random& random, double offset) {
+    OccludeSetup setup = random_setup(random, offset);
+    const double close = setup.camera.near_distance;
+    for (int i = 0; i < 6; ++i)
+        setup.occluders.push_back(box_at(random, point_in_view(random, setup.camera, close * random.uniform(0.5, 1.5)),
+                                         0.1 * close, 4.0 * close));
+    return setup;
+}
+
+OccludeSetup slivers(Random& random, double offset) {
+    OccludeSetup setup = random_setup(random, offset);
+    setup.occluders.resize(2);
+    for (int i = 0; i < 20'000; ++i) {
+        Obb box = box_at(random, point_in_view(random, setup.camera, random.uniform(2.0, 40.0)), 0.01, 1.0);
+        box.half_extents[static_cast<int>(random.bits() % 3)] = 1e-4f;
+        setup.occluders.push_back(box);
+    }
+    return setup;
+}
+
+}  // namespace
+
+OccludeSetup random_setup(Random& random, double offset) {
+    OccludeSetup setup;
+    setup.size = kSizes[random.bits() % 4];
+    Camera& camera = setup.camera;
+    camera.position = offset * glm::dvec3(1.0, -0.75, 0.25) + 3.0 * sampling::direction(random.point<2>());
+    camera.forward = sampling::direction(random.point<2>());
+    camera.up = sampling::direction(random.point<2>());
+    if (random.uniform() < 0.25) camera.projection = Projection::orthographic;
+    camera.fov_y = random.uniform(0.3, 2.0);
+    camera.height = random.uniform(5.0, 40.0);
+    camera.aspect = random.uniform(0.7, 2.0);
+    camera.near_distance = random.uniform(0.05, 1.0);
+    for (std::uint64_t i = 0, count = 2 + random.bits() % 12; i < count; ++i) {
+        const double u = random.uniform();
+        Obb box = box_at(random, point_in_view(random, camera, 0.5 * camera.near_distance + 30.0 * u * u), 0.2, 8.0);
+        const auto k = static_cast<int>(random.bits() % 3);
+        if (random.uniform() < 0.1) box.half_extents[k] = 1e-4f;
+        setup.occluders.push_back(box);
+        if (random.uniform() > 0.2) continue;
+        box.center += 2.0 * static_cast<double>(box.half_extents[k]) * glm::dvec3(box.axes[k]);
+        setup.occluders.push_back(box);
+    }
+    for (int i = 0; i < 256; ++i) {
+        const Obb& beside = setup.occluders[random.bits() % setup.occluders.size()];
+        glm::dvec3 at = beside.center;
+        for (int k = 0; k < 3; ++k)
+            at += random.uniform(-1.1, 1.1) * static_cast<double>(beside.half_extents[k]) * glm::dvec3(beside.axes[k]);
+        const bool perspective = camera.projection == Projection::perspective;
+        at += random.uniform(0.0, 1.5) * (perspective ? at - camera.position : glm::normalize(camera.forward));
+        if (i % 3 == 0) at = point_in_view(random, camera, random.uniform(1.0, 60.0));
+        setup.objects.push_back(box_at(random, at, 0.01, i % 4 ? 0.3 : 3.0));
+    }
+    return setup;
+}
+
+std::vector<HardSetup> hard_setups() {
+    return {{"a gap between two occluders", narrow_gap},
+            {"two large boxes that touch", touching_walls},
+            {"an opening at the picture's edge", open_edge},
+            {"tiles seen in parallel", parallel_tiles},
+            {"the eye inside an occluder", eye_inside},
+            {"occluders through the near plane", through_near_plane},
+            {"20,000 slivers", slivers}};
+}
+
+Refusals try_bad_occluders() {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    TriangleMesh cube;
+    for (unsigned i = 0; i < 8; ++i)
+        cube.positions.push_back({i & 1u ? 1.0f : -1.0f, i & 2u ? 1.0f : -1.0f, i & 4u ? 1.0f : -1.0f});
+    cube.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                    2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+    Refusals result;
+    occlude::OccluderSet set;
+    const auto count = [&](bool taken) {
+        ++result.tried;
+        result.taken += taken;
+    };
+    for (int k = 0; k < 3; ++k) {
+        Obb flat, nan;
+        flat.half_extents[k] = 0.0f;
+        nan.center[k] = kNaN;
+        count(set.place(flat).has_value());
+        count(set.place(nan).has_value());
+    }
+    for (std::size_t t = 0; t < cube.indices.size(); t += 3) {
+        TriangleMesh open = cube;
+        open.indices.erase(open.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                           open.indices.begin() + static_cast<std::ptrdiff_t>(t) + 3);
+        count(set.add_mesh(open).has_value());
+    }
+    TriangleMesh inverted = cube, damaged = cube;
+    for (std::size_t t = 0; t < inverted.indices.size(); t += 3)
+        std::swap(inverted.indices[t], inverted.indices[t + 1]);
+    count(set.add_mesh(inverted).has_value());
+    damaged.positions[3].y = static_cast<float>(kNaN);
+    count(set.add_mesh(damaged).has_value());
+    count(set.add_surface(damaged, occlude::Sides::both).has_value());
+    count(set.add_convex(damaged.positions).has_value());
+    count(set.add_convex(std::span(cube.positions).first(4)).has_value());  // a square
+    const auto shape = set.add_mesh(cube);
+    glm::dmat3 flat(1.0);
+    flat[1][1] = 0.0;
+    if (shape) count(set.place(*shape, {flat, {}}).has_value());
+    if (shape) count(set.place(*shape, {glm::dmat3(1.0), glm::dvec3(kNaN)}).has_value());
+    return result;
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Boxes that hide, boxes behind them, and a camera: at random, and as they are known to break occlusion cullers.
+#pragma once
+#include <crofton/geometry/box.hpp>
+#include <crofton/geometry/camera.hpp>
+#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/sampling/random.hpp>
+#include <vector>
+
+namespace crofton::cli {
+
+struct OccludeSetup {
+    Camera camera;
+    std::vector<Obb> occluders, objects;
+    occlude::BufferSize size;
+};
+
+// Walls, boxes that touch, slivers, boxes around the eye and across the near plane; objects behind and between them.
+[[nodiscard]] OccludeSetup random_setup(sampling::Random& random, double offset);
+
+// Objects are put where a ray through an opening ends, so that a witness is found for many.
+struct HardSetup {
+    const char* name;
+    OccludeSetup (*make)(sampling::Random& random, double offset);
+};
+[[nodiscard]] std::vector<HardSetup> hard_setups();
+
+// Of open, inverted, flat and NaN occluders, how many are not refused by name; and how many there are.
+struct Refusals {
+    std::uint64_t tried = 0, taken = 0;
+};
+[[nodiscard]] Refusals try_bad_occluders();
+
+}  // namespace crofton::cli
