@@ -2,7 +2,7 @@
 // The hierarchy of aligned boxes over a mesh tree's leaves, for rays.
 #include <algorithm>
 #include <crofton/mesh/box_hierarchy.hpp>
-#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 
 namespace crofton::mesh {
 namespace {
@@ -38,14 +38,14 @@ void set_bounds(RayNode& node, std::uint32_t lane, const FloatBox& box) {
 
 }  // namespace
 
-void MeshTree::build_ray_nodes() {
+void MeshParts::build_ray_nodes() {
     Vector<FloatBox> boxes;
-    boxes.reserve(leaves_.size());
-    for (const MeshLeaf& leaf : leaves_) boxes.push_back(bounds_of(leaf));
+    boxes.reserve(leaves.size());
+    for (const MeshLeaf& leaf : leaves) boxes.push_back(bounds_of(leaf));
     const BoxHierarchy tree = build_box_hierarchy(boxes, 1);
-    ray_nodes_.reserve(tree.nodes.size());
+    ray_nodes.reserve(tree.nodes.size());
     for (const BoxHierarchy::Node& from : tree.nodes) {
-        RayNode& node = ray_nodes_.emplace_back();
+        RayNode& node = ray_nodes.emplace_back();
         for (std::uint32_t lane = 0; lane < kRayNodeWidth; ++lane) {
             const bool used = lane < from.count;
             const std::uint32_t child = from.child[lane];
@@ -59,13 +59,13 @@ void MeshTree::build_ray_nodes() {
 }
 
 // Children stand behind their parents.
-void MeshTree::refit_ray_nodes() {
-    for (std::size_t n = ray_nodes_.size(); n-- > 0;)
+void MeshParts::refit_ray_nodes() {
+    for (std::size_t n = ray_nodes.size(); n-- > 0;)
         for (std::uint32_t lane = 0; lane < kRayNodeWidth; ++lane) {
-            const std::uint32_t child = ray_nodes_[n].child[lane];
+            const std::uint32_t child = ray_nodes[n].child[lane];
             if (child == RayNode::kUnused) continue;
-            set_bounds(ray_nodes_[n], lane,
-                       child & kMeshLeaf ? bounds_of(leaves_[child & ~kMeshLeaf]) : bounds_of(ray_nodes_[child]));
+            set_bounds(ray_nodes[n], lane,
+                       child & kMeshLeaf ? bounds_of(leaves[child & ~kMeshLeaf]) : bounds_of(ray_nodes[child]));
         }
 }
 
