@@ -4,6 +4,7 @@
 
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/obb_obb.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 
 #include <deque>
@@ -89,7 +90,7 @@ MeshCase* mesh_case(const std::string& name, benchmark::State& state, MeshBoxes 
 // The mean edge sum of all boxes of a tree, for comparing kinds of boxes on the same splits.
 double mean_edge_sum(const mesh::MeshTree& tree) {
     double sum = 0.0, count = 0.0;
-    for (const mesh::MeshNode& node : tree.nodes())
+    for (const mesh::MeshNode& node : tree.parts().nodes)
         for (std::uint32_t lane = 0; lane < node.count; ++lane, count += 1.0)
             for (int k = 0; k < 3; ++k) sum += 2.0 * static_cast<double>(node.half[k][lane]);
     return sum / count;

@@ -2,6 +2,7 @@
 #include "collide_inputs.hpp"
 
 #include <cmath>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <fstream>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -141,7 +142,7 @@ std::vector<Ray> random_rays(const TriangleMesh& mesh, std::size_t count) {
 
 std::vector<RigidTransform> close_poses(const mesh::MeshTree& tree, std::size_t count) {
     Random random(3);
-    const mesh::MeshBox& box = tree.root_box();
+    const mesh::MeshBox& box = tree.parts().root_box;
     double size = 0.0;
     for (const float half : box.half) size += 4.0 * static_cast<double>(half) * static_cast<double>(half);
     size = std::sqrt(size);

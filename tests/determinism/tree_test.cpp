@@ -2,6 +2,7 @@
 // Trees and what is stored of them, in the same bits everywhere.
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <oracle/tree_contents.hpp>
@@ -60,7 +61,7 @@ std::uint64_t visit_trees() {
 std::uint64_t mesh_tree() {
     const auto tree = *mesh::MeshTree::build(torus(60, 30, 0.2));
     Digest digest;
-    for (const mesh::MeshNode& node : tree.nodes())
+    for (const mesh::MeshNode& node : tree.parts().nodes)
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
             for (std::size_t i = 0; i < 3; ++i) {
                 digest.add(node.center[i][lane]).add(node.half[i][lane]);
@@ -68,7 +69,7 @@ std::uint64_t mesh_tree() {
             }
             digest.add(node.child[lane]);
         }
-    for (const mesh::MeshLeaf& leaf : tree.leaves()) digest.add(leaf.triangle);
+    for (const mesh::MeshLeaf& leaf : tree.parts().leaves) digest.add(leaf.triangle);
     return digest.value();
 }
 

@@ -3,6 +3,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -38,7 +39,7 @@ TriangleMesh bent(const TriangleMesh& mesh, double much) {
 
 double total_half_extents(const MeshTree& tree) {
     double sum = 0.0;
-    for (const MeshNode& node : tree.nodes())
+    for (const MeshNode& node : tree.parts().nodes)
         for (std::uint32_t lane = 0; lane < node.count; ++lane)
             for (int k = 0; k < 3; ++k) sum += double(node.half[k][lane]);
     return sum;
@@ -62,7 +63,7 @@ struct DoubleBox {
 // Calls visit(box, triangle) for every box and every triangle below it.
 template <class Visit>
 void for_each_below(const MeshTree& tree, std::uint32_t node, std::vector<DoubleBox>& above, Visit visit) {
-    const MeshNode& n = tree.nodes()[node];
+    const MeshNode& n = tree.parts().nodes[node];
     for (std::uint32_t lane = 0; lane < n.count; ++lane) {
         DoubleBox box{};
         for (int k = 0; k < 3; ++k) {
@@ -72,7 +73,7 @@ void for_each_below(const MeshTree& tree, std::uint32_t node, std::vector<Double
         }
         above.push_back(box);
         if (n.child[lane] & kMeshLeaf) {
-            const MeshLeaf& leaf = tree.leaves()[n.child[lane] & ~kMeshLeaf];
+            const MeshLeaf& leaf = tree.parts().leaves[n.child[lane] & ~kMeshLeaf];
             for (std::uint32_t i = 0; i < leaf.count; ++i)
                 for (const DoubleBox& one : above) visit(one, leaf.triangle[i]);
         } else {
@@ -97,10 +98,12 @@ void check_boxes(const MeshTree& tree, const TriangleMesh& mesh) {
 }
 
 bool same_bits(const MeshTree& a, const MeshTree& b) {
-    return a.nodes().size() == b.nodes().size() && a.extent() == b.extent() &&
-           std::memcmp(a.nodes().data(), b.nodes().data(), a.nodes().size_bytes()) == 0 &&
-           std::memcmp(a.leaves().data(), b.leaves().data(), a.leaves().size_bytes()) == 0 &&
-           std::memcmp(&a.root_box(), &b.root_box(), sizeof(MeshBox)) == 0;
+    return a.parts().nodes.size() == b.parts().nodes.size() && a.extent() == b.extent() &&
+           std::memcmp(a.parts().nodes.data(), b.parts().nodes.data(), a.parts().nodes.size() * sizeof(MeshNode)) ==
+               0 &&
+           std::memcmp(a.parts().leaves.data(), b.parts().leaves.data(), a.parts().leaves.size() * sizeof(MeshLeaf)) ==
+               0 &&
+           std::memcmp(&a.parts().root_box, &b.parts().root_box, sizeof(MeshBox)) == 0;
 }
 
 }  // namespace
@@ -146,7 +149,7 @@ TEST_SUITE("mesh/mesh_refit") {
             }
             REQUIRE(tree.refit(moved.positions).has_value());
             check_boxes(tree, moved);
-            for (const MeshLeaf& leaf : tree.leaves())
+            for (const MeshLeaf& leaf : tree.parts().leaves)
                 for (std::uint32_t i = 0; i < leaf.count; ++i)
                     for (int v = 0; v < 3; ++v)
                         for (int c = 0; c < 3; ++c)

@@ -3,6 +3,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <cstring>
 #include <limits>
@@ -46,7 +47,7 @@ TriangleMesh torus(std::uint32_t around, std::uint32_t across) {
 
 double edge_sum(const MeshTree& tree) {
     double sum = 0.0;
-    for (const MeshNode& node : tree.nodes())
+    for (const MeshNode& node : tree.parts().nodes)
         for (std::uint32_t lane = 0; lane < node.count; ++lane)
             for (int k = 0; k < 3; ++k) sum += 2.0 * double(node.half[k][lane]);
     return sum;
@@ -68,12 +69,12 @@ double excess(const MeshNode& node, std::uint32_t lane, const glm::vec3& p) {
 void walk(const MeshTree& tree, std::uint32_t node, int depth, std::vector<int>& seen, int& deepest,
           const TriangleMesh& mesh) {
     deepest = std::max(deepest, depth);
-    const MeshNode& n = tree.nodes()[node];
+    const MeshNode& n = tree.parts().nodes[node];
     REQUIRE(n.count >= 1);
     for (std::uint32_t lane = 0; lane < n.count; ++lane) {
         std::vector<int> below(seen.size(), 0);
         if (n.child[lane] & kMeshLeaf) {
-            const MeshLeaf& leaf = tree.leaves()[n.child[lane] & ~kMeshLeaf];
+            const MeshLeaf& leaf = tree.parts().leaves[n.child[lane] & ~kMeshLeaf];
             REQUIRE(leaf.count >= 1);
             for (std::uint32_t i = 0; i < leaf.count; ++i) {
                 ++below[leaf.triangle[i]];
@@ -132,7 +133,7 @@ TEST_SUITE("mesh/mesh_tree") {
                 int levels = 1;
                 for (std::size_t leaves = 16; 8 * leaves < count; leaves *= 16) ++levels;
                 CHECK(deepest == levels);
-                for (const MeshNode& node : tree->nodes().subspan(1)) CHECK(node.count >= 8);
+                for (const MeshNode& node : std::span(tree->parts().nodes).subspan(1)) CHECK(node.count >= 8);
             }
         }
     }
@@ -155,7 +156,8 @@ TEST_SUITE("mesh/mesh_tree") {
         for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
             hwy::SetSupportedTargetsForTest(rest & -rest);
             const MeshTree tree = *MeshTree::build(mesh);
-            CHECK(std::memcmp(tree.nodes().data(), expected.nodes().data(), tree.nodes().size_bytes()) == 0);
+            CHECK(std::memcmp(tree.parts().nodes.data(), expected.parts().nodes.data(),
+                              tree.parts().nodes.size() * sizeof(MeshNode)) == 0);
         }
         hwy::SetSupportedTargetsForTest(0);
     }
@@ -177,11 +179,12 @@ TEST_SUITE("mesh/mesh_tree") {
     TEST_CASE("the same mesh gives the same tree") {
         const TriangleMesh mesh = random_triangles(1000, 5.0f);
         const auto one = MeshTree::build(mesh), two = MeshTree::build(mesh);
-        REQUIRE(one->nodes().size() == two->nodes().size());
-        for (std::size_t n = 0; n < one->nodes().size(); ++n)
-            for (std::uint32_t lane = 0; lane < one->nodes()[n].count; ++lane) {
-                CHECK(one->nodes()[n].child[lane] == two->nodes()[n].child[lane]);
-                for (int k = 0; k < 3; ++k) CHECK(one->nodes()[n].half[k][lane] == two->nodes()[n].half[k][lane]);
+        REQUIRE(one->parts().nodes.size() == two->parts().nodes.size());
+        for (std::size_t n = 0; n < one->parts().nodes.size(); ++n)
+            for (std::uint32_t lane = 0; lane < one->parts().nodes[n].count; ++lane) {
+                CHECK(one->parts().nodes[n].child[lane] == two->parts().nodes[n].child[lane]);
+                for (int k = 0; k < 3; ++k)
+                    CHECK(one->parts().nodes[n].half[k][lane] == two->parts().nodes[n].half[k][lane]);
             }
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -151,14 +152,14 @@ TEST_SUITE("mesh/ray") {
         TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 90, 60);
         auto plain = mesh::MeshTree::build(mesh, {.refittable = true});
         REQUIRE(plain.has_value());
-        CHECK(plain->ray_nodes().empty());
+        CHECK(plain->parts().ray_nodes.empty());
         auto asked = *plain;
         REQUIRE(asked.prepare_rays().has_value());
-        const std::size_t count = asked.ray_nodes().size();
+        const std::size_t count = asked.parts().ray_nodes.size();
         CHECK(count > 100);
         REQUIRE(asked.prepare_rays().has_value());  // the second time nothing is done
-        CHECK(asked.ray_nodes().size() == count);
-        CHECK(plain->ray_nodes().empty());
+        CHECK(asked.parts().ray_nodes.size() == count);
+        CHECK(plain->parts().ray_nodes.empty());
         int hits = 0;
         for (int round = 0; round < 2; ++round) {
             for (int trial = 0; trial < 5000; ++trial) {

@@ -2,6 +2,7 @@
 // Scanned and modelled meshes of the shared data, against brute force.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <cstdio>
 #include <fstream>
@@ -87,7 +88,7 @@ Vector<TrianglePair> brute_force(const Posed& a, const Posed& b, Vector<Triangle
 RigidTransform close_pose(std::mt19937_64& random, const mesh::MeshTree& a, const mesh::MeshTree& b) {
     RigidTransform pose = random_pose(random, 0.0);
     const auto center = [](const mesh::MeshTree& tree) {
-        const float(&c)[3] = tree.root_box().center;
+        const float(&c)[3] = tree.parts().root_box.center;
         return glm::dvec3(double(c[0]), double(c[1]), double(c[2]));
     };
     const glm::dvec3 together = center(a) - pose.rotation * center(b),

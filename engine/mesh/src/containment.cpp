@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
@@ -67,19 +68,20 @@ bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm
     const RigidTransform back = inverse(pose);
     const Ray ray{transform(back, p), back.rotation * glm::dvec3(0.0, 0.0, 1.0),
                   2e-6 * (static_cast<double>(mesh.extent()) + glm::length(p) + glm::length(pose.translation))};
+    const MeshParts& parts = mesh.parts();
     std::uint32_t stack[256];
     std::uint32_t height = 0;
     stack[height++] = 0;
     bool inside = false;
     while (height > 0) {
-        const mesh::MeshNode& node = mesh.nodes()[stack[--height]];
+        const mesh::MeshNode& node = parts.nodes[stack[--height]];
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
             if (!may_meet(ray, node, lane)) continue;
             if (!(node.child[lane] & mesh::kMeshLeaf)) {
                 stack[height++] = node.child[lane];
                 continue;
             }
-            const mesh::MeshLeaf& leaf = mesh.leaves()[node.child[lane] & ~mesh::kMeshLeaf];
+            const mesh::MeshLeaf& leaf = parts.leaves[node.child[lane] & ~mesh::kMeshLeaf];
             for (std::uint32_t i = 0; i < leaf.count; ++i) {
                 if (!pieces[leaf.piece[i]].closed) continue;
                 const Crossing found = crossing(p, triangle_of(leaf, i, pose));

@@ -2,6 +2,7 @@
 // The boxes of a mesh tree.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/mesh/mesh_layout.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
@@ -23,7 +24,7 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
         return intersects(a, b, pose) || containment_of_disjoint(a, b, pose) != Containment::none;
     };
     if (!meet_at(glm::dvec3(0.0))) return {};
-    const double size = size_of(a.root_box()) + size_of(b.root_box());
+    const double size = size_of(a.parts().root_box) + size_of(b.parts().root_box);
     MeshDepth best{2.0 * size, glm::dvec3(0.0)};
     const auto try_direction = [&](const glm::dvec3& direction) {
         const double length = glm::length(direction);
@@ -39,7 +40,8 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
     };
     glm::dvec3 normal(0.0);
     for (const MeshContact& contact : contacts) normal += contact.normal;
-    const glm::dvec3 centers = transform(b_to_a, vector_of(b.root_box().center)) - vector_of(a.root_box().center);
+    const glm::dvec3 centers =
+        transform(b_to_a, vector_of(b.parts().root_box.center)) - vector_of(a.parts().root_box.center);
     for (const double sign : {1.0, -1.0}) {
         try_direction(sign * centers);
         try_direction(sign * normal);
@@ -49,8 +51,8 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
             try_direction(axis);
             try_direction(b_to_a.rotation * axis);
         }
-        for (const auto& axis : a.root_box().axes) try_direction(sign * vector_of(axis));
-        for (const auto& axis : b.root_box().axes) try_direction(sign * (b_to_a.rotation * vector_of(axis)));
+        for (const auto& axis : a.parts().root_box.axes) try_direction(sign * vector_of(axis));
+        for (const auto& axis : b.parts().root_box.axes) try_direction(sign * (b_to_a.rotation * vector_of(axis)));
     }
     return best;
 }

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -37,9 +38,10 @@ MeshPair make_pair(const mesh::MeshTree& a, const mesh::MeshTree& b, const Rigid
     MeshPair pair{};
     const mesh::MeshTree* const trees[2] = {&a, &b};
     for (int side = 0; side < 2; ++side) {
-        pair.nodes[side] = trees[side]->nodes().data();
-        pair.leaves[side] = trees[side]->leaves().data();
-        pair.root[side] = &trees[side]->root_box();
+        const MeshParts& parts = trees[side]->parts();
+        pair.nodes[side] = parts.nodes.data();
+        pair.leaves[side] = parts.leaves.data();
+        pair.root[side] = &parts.root_box;
     }
     const glm::dvec3 back = -(glm::transpose(pose.rotation) * pose.translation);
     for (int i = 0; i < 3; ++i) {
@@ -72,7 +74,7 @@ void for_each_hit(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidT
                   MeshStatistics* statistics, Found found) {
     std::uint64_t exact_tests = 0;
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges) {
-        const Hit hit{a.leaves()[of_a.leaf], b.leaves()[of_b.leaf], of_a.lane, of_b.lane, edges};
+        const Hit hit{a.parts().leaves[of_a.leaf], b.parts().leaves[of_b.leaf], of_a.lane, of_b.lane, edges};
         exact_tests += edges == 0;
         if (edges == 0 && !intersects(triangle_of(hit.in_a, hit.lane_a), triangle_of(hit.in_b, hit.lane_b, pose)))
             return false;
@@ -147,9 +149,9 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
     MeshDistance result;
     ClosestPoints best;
     best.squared = limit * limit;
-    Nearest nearest = towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())), best.squared);
+    Nearest nearest = towards(center_of(a.parts().root_box), transform(b_to_a, center_of(b.parts().root_box)), best.squared);
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t) {
-        const mesh::MeshLeaf &in_a = a.leaves()[of_a.leaf], &in_b = b.leaves()[of_b.leaf];
+        const mesh::MeshLeaf &in_a = a.parts().leaves[of_a.leaf], &in_b = b.parts().leaves[of_b.leaf];
         const Triangle first = triangle_of(in_a, of_a.lane), second = triangle_of(in_b, of_b.lane, b_to_a);
         const TrianglePair indices{in_a.triangle[of_a.lane], in_b.triangle[of_b.lane]};
         if (statistics != nullptr) ++statistics->exact_tests;
@@ -180,8 +182,8 @@ bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTr
                  MeshStatistics* statistics) {
     bool close = false;
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t) {
-        const Triangle first = triangle_of(a.leaves()[of_a.leaf], of_a.lane),
-                       second = triangle_of(b.leaves()[of_b.leaf], of_b.lane, b_to_a);
+        const Triangle first = triangle_of(a.parts().leaves[of_a.leaf], of_a.lane),
+                       second = triangle_of(b.parts().leaves[of_b.leaf], of_b.lane, b_to_a);
         if (statistics != nullptr) ++statistics->exact_tests;
         ClosestPoints best;
         close = intersects(first, second);
@@ -191,7 +193,7 @@ bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTr
     };
     const MeshPair pair = make_pair(a, b, b_to_a, tolerance);
     const Nearest nearest =
-        towards(center_of(a.root_box()), transform(b_to_a, center_of(b.root_box())), tolerance * tolerance);
+        towards(center_of(a.parts().root_box), transform(b_to_a, center_of(b.parts().root_box)), tolerance * tolerance);
     TraversalCounts counts;
     visit_nearest(pair, nearest, visit, counts);
     if (statistics != nullptr) {

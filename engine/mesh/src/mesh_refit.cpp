@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
@@ -21,17 +21,18 @@ bool is_usable(const glm::vec3& p) {
 
 // Vertices of no triangle may be anything: which are used is looked up only when some vertex is bad.
 Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) const {
-    if (refit_.leaves.empty())
+    const MeshRefitData& refit = parts().refit;
+    if (refit.leaves.empty())
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "mesh refit: the tree is not refittable; build it with MeshTreeOptions::refittable");
-    if (positions.size() != refit_.vertex_count)
+    if (positions.size() != refit.vertex_count)
         return fail(ErrorCode::invalid_argument, positions.size(),
-                    "mesh refit: the tree was built from " + std::to_string(refit_.vertex_count) + " positions");
+                    "mesh refit: the tree was built from " + std::to_string(refit.vertex_count) + " positions");
     bool all_usable = true;
     for (const glm::vec3& p : positions) all_usable &= is_usable(p);
     if (all_usable) return {};
     std::uint32_t bad = ~std::uint32_t{0};
-    for (const LeafVertices& leaf : refit_.leaves)
+    for (const LeafVertices& leaf : refit.leaves)
         for (const auto& corner : leaf.vertex)
             for (const std::uint32_t v : corner)
                 if (!is_usable(positions[v])) bad = std::min(bad, v);
@@ -41,22 +42,25 @@ Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) con
 
 Result<void> MeshTree::refit(std::span<const glm::vec3> positions) {
     if (auto checked = check_positions(positions); !checked) return checked;
+    MeshParts& parts = *parts_;
+    const MeshRefitData& refit = parts.refit;
     const float* const numbers = glm::value_ptr(positions.front());
-    extent_ = move_leaves(numbers, refit_.leaves.data(), leaves_.size(), leaves_.data());
-    for (std::size_t n = 0; n < nodes_.size(); ++n) refit_boxes(numbers, leaves_.data(), refit_.nodes[n], nodes_[n]);
+    extent_ = move_leaves(numbers, refit.leaves.data(), parts.leaves.size(), parts.leaves.data());
+    for (std::size_t n = 0; n < parts.nodes.size(); ++n)
+        refit_boxes(numbers, parts.leaves.data(), refit.nodes[n], parts.nodes[n]);
     MeshNode root{};
     root.count = 1;
-    refit_boxes(numbers, leaves_.data(), refit_.root, root);
+    refit_boxes(numbers, parts.leaves.data(), refit.root, root);
     for (int k = 0; k < 3; ++k) {
-        root_box_.center[k] = root.center[k][0];
-        root_box_.half[k] = root.half[k][0];
-        for (int i = 0; i < 3; ++i) root_box_.axes[k][i] = root.axes[k][i][0];
+        parts.root_box.center[k] = root.center[k][0];
+        parts.root_box.half[k] = root.half[k][0];
+        for (int i = 0; i < 3; ++i) parts.root_box.axes[k][i] = root.axes[k][i][0];
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p)
-        pieces_[p] = {positions[refit_.piece_vertices[p]], refit_.piece_closed[p] != 0};
-    for (const Weld& weld : refit_.welds)
+        pieces_[p] = {positions[refit.piece_vertices[p]], refit.piece_closed[p] != 0};
+    for (const VertexWeld& weld : refit.welds)
         if (positions[weld.vertex] != positions[weld.other]) pieces_[weld.piece].closed = false;
-    refit_ray_nodes();
+    parts.refit_ray_nodes();
     return {};
 }
 

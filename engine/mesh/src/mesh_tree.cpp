@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>
-#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
 
@@ -55,11 +55,14 @@ bool is_usable(const glm::vec3& p) {
 class MeshTreeBuilder {
   public:
     MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
-        : mesh_(mesh), options_(options), last_range_(mesh.positions.size(), 0) {}
+        : mesh_(mesh), options_(options), last_range_(mesh.positions.size(), 0) {
+        tree_.parts_ = std::make_unique<MeshParts>();
+    }
 
     Result<MeshTree> build();
 
   private:
+    [[nodiscard]] MeshParts& made() { return *tree_.parts_; }
     void collect();
     void split_node(const Task& task);
     Part split(Part& part);
@@ -160,9 +163,9 @@ std::uint32_t MeshTreeBuilder::add_leaf(const Range& range) {
             for (int i = 0; i < 3; ++i) leaf.vertex[v][i][lane] = vertex(triangle, v)[i];
         }
     }
-    tree_.leaves_.push_back(leaf);
-    if (options_.refittable) tree_.refit_.leaves.push_back(vertices);
-    return static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
+    made().leaves.push_back(leaf);
+    if (options_.refittable) made().refit.leaves.push_back(vertices);
+    return static_cast<std::uint32_t>(made().leaves.size() - 1);
 }
 
 void MeshTreeBuilder::split_node(const Task& task) {
@@ -185,14 +188,14 @@ void MeshTreeBuilder::split_node(const Task& task) {
         if (range.size() <= kMeshLeafWidth) {
             node.child[lane] = kMeshLeaf | add_leaf(range);
         } else {
-            node.child[lane] = static_cast<std::uint32_t>(tree_.nodes_.size());
-            tree_.nodes_.emplace_back();
-            if (options_.refittable) tree_.refit_.nodes.emplace_back();
+            node.child[lane] = static_cast<std::uint32_t>(made().nodes.size());
+            made().nodes.emplace_back();
+            if (options_.refittable) made().refit.nodes.emplace_back();
             tasks_.push_back({range, node.child[lane]});
         }
     }
-    tree_.nodes_[task.node] = node;
-    if (options_.refittable) tree_.refit_.nodes[task.node] = anchors;
+    made().nodes[task.node] = node;
+    if (options_.refittable) made().refit.nodes[task.node] = anchors;
 }
 
 void MeshTreeBuilder::set_pieces(std::span<const std::uint32_t> triangles) {
@@ -202,15 +205,15 @@ void MeshTreeBuilder::set_pieces(std::span<const std::uint32_t> triangles) {
     for (std::size_t p = 0; p < found.vertex.size(); ++p)
         tree_.pieces_.push_back({mesh_.positions[found.vertex[p]], found.closed[p] != 0});
     if (!options_.refittable) return;
-    for (const WeldedVertex& weld : found.welds) tree_.refit_.welds.push_back({weld.vertex, weld.lowest, weld.piece});
-    tree_.refit_.piece_vertices = std::move(found.vertex);
-    tree_.refit_.piece_closed = std::move(found.closed);
+    for (const WeldedVertex& weld : found.welds) made().refit.welds.push_back({weld.vertex, weld.lowest, weld.piece});
+    made().refit.piece_vertices = std::move(found.vertex);
+    made().refit.piece_closed = std::move(found.closed);
 }
 
 // Leaves are numbered subtree by subtree, so that those below a box are a range.
 void MeshTreeBuilder::set_leaf_ranges(std::uint32_t index) {
-    const MeshNode& node = tree_.nodes_[index];
-    BoxAnchors& anchors = tree_.refit_.nodes[index];
+    const MeshNode& node = made().nodes[index];
+    BoxAnchors& anchors = made().refit.nodes[index];
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
         const std::uint32_t child = node.child[lane];
         if (child & kMeshLeaf) {
@@ -219,8 +222,8 @@ void MeshTreeBuilder::set_leaf_ranges(std::uint32_t index) {
             continue;
         }
         set_leaf_ranges(child);
-        const BoxAnchors& below = tree_.refit_.nodes[child];
-        const std::uint32_t count = tree_.nodes_[child].count;
+        const BoxAnchors& below = made().refit.nodes[child];
+        const std::uint32_t count = made().nodes[child].count;
         anchors.first_leaf[lane] = *std::min_element(below.first_leaf, below.first_leaf + count);
         anchors.end_leaf[lane] = *std::max_element(below.end_leaf, below.end_leaf + count);
     }
@@ -240,15 +243,15 @@ Result<MeshTree> MeshTreeBuilder::build() {
     for (const Reference& reference : references_) valid.push_back(reference.triangle);
     set_pieces(valid);
     const std::size_t leaf_estimate = references_.size() / kMeshLeafWidth + 1;
-    tree_.leaves_.reserve(leaf_estimate);
-    tree_.nodes_.reserve(leaf_estimate / 4 + 1);
+    made().leaves.reserve(leaf_estimate);
+    made().nodes.reserve(leaf_estimate / 4 + 1);
     const Range all{0, references_.size()};
-    tree_.root_box_ = fit(all);
-    tree_.nodes_.emplace_back();
+    made().root_box = fit(all);
+    made().nodes.emplace_back();
     if (options_.refittable) {
-        set_anchors(tree_.root_box_, points_, point_vertices_, 0, tree_.refit_.root);
-        tree_.refit_.nodes.emplace_back();
-        tree_.refit_.vertex_count = mesh_.positions.size();
+        set_anchors(made().root_box, points_, point_vertices_, 0, made().refit.root);
+        made().refit.nodes.emplace_back();
+        made().refit.vertex_count = mesh_.positions.size();
     }
     tasks_.push_back({all, 0});
     while (!tasks_.empty()) {
@@ -258,11 +261,32 @@ Result<MeshTree> MeshTreeBuilder::build() {
     }
     if (options_.refittable) {
         set_leaf_ranges(0);
-        tree_.refit_.root.end_leaf[0] = static_cast<std::uint32_t>(tree_.leaves_.size());
+        made().refit.root.end_leaf[0] = static_cast<std::uint32_t>(made().leaves.size());
     }
     if (options_.rays)
         if (auto prepared = tree_.prepare_rays(); !prepared) return tl::unexpected(prepared.error());
     return std::move(tree_);
+}
+
+MeshTree::MeshTree() = default;
+MeshTree::~MeshTree() = default;
+MeshTree::MeshTree(MeshTree&&) noexcept = default;
+MeshTree& MeshTree::operator=(MeshTree&&) noexcept = default;
+
+MeshTree::MeshTree(const MeshTree& other)
+    : rejected_(other.rejected_),
+      pieces_(other.pieces_),
+      triangle_count_(other.triangle_count_),
+      extent_(other.extent_),
+      parts_(other.parts_ ? std::make_unique<MeshParts>(*other.parts_) : nullptr) {}
+
+const MeshParts& MeshTree::parts() const {
+    static const MeshParts kNone;
+    return parts_ ? *parts_ : kNone;
+}
+
+MeshTree& MeshTree::operator=(const MeshTree& other) {
+    return *this = MeshTree(other);
 }
 
 Result<MeshTree> MeshTree::build(const TriangleMesh& mesh, const MeshTreeOptions& options) {

@@ -2,8 +2,8 @@
 // A mesh tree's triangles as the exact tests see them.
 #pragma once
 #include <crofton/geometry/shapes.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
-#include <crofton/mesh/mesh_tree.hpp>
 
 namespace crofton::mesh {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <crofton/geometry/plane_filter.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 
@@ -93,12 +94,12 @@ RayAnswer trace(const Ray& ray, const mesh::MeshTree& mesh, bool any) {
     // Rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any point the mesh can
     // reach.
     query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
-    query.nodes = mesh.ray_nodes().data();
-    query.mesh_nodes = mesh.nodes().data();
-    query.leaves = mesh.leaves().data();
+    query.nodes = mesh.parts().ray_nodes.data();
+    query.mesh_nodes = mesh.parts().nodes.data();
+    query.leaves = mesh.parts().leaves.data();
     query.any = any;
     return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) {
-        return line_meets(ray, triangle_of(mesh.leaves()[leaf], lane));
+        return line_meets(ray, triangle_of(mesh.parts().leaves[leaf], lane));
     });
 }
 

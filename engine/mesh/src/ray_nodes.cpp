@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <crofton/core/recovery.hpp>
 #include <crofton/mesh/box_hierarchy.hpp>
-#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <utility>
 
 namespace crofton::mesh {
@@ -32,28 +32,28 @@ FloatBox bounds_of(const BoxNode& node) {
 }  // namespace
 
 Result<void> MeshTree::prepare_rays() {
-    if (!ray_nodes_.empty() || leaves_.empty()) return {};
+    if (parts().leaves.empty() || !parts().ray_nodes.empty()) return {};
     return detail::recover([&]() -> Result<void> {
         Vector<FloatBox> boxes;
-        boxes.reserve(leaves_.size());
-        for (const MeshLeaf& leaf : leaves_) boxes.push_back(bounds_of(leaf));
+        boxes.reserve(parts_->leaves.size());
+        for (const MeshLeaf& leaf : parts_->leaves) boxes.push_back(bounds_of(leaf));
         BoxHierarchy tree = build_box_hierarchy(boxes, 1);
         for (BoxNode& node : tree.nodes)
             for (std::uint32_t lane = 0; lane < node.count; ++lane)
                 if (std::uint32_t& child = node.child[lane]; child & kMeshLeaf)
                     child = tree.order[tree.leaves[child & ~kMeshLeaf].begin] | kMeshLeaf;
-        ray_nodes_ = std::move(tree.nodes);
+        parts_->ray_nodes = std::move(tree.nodes);
         return {};
     });
 }
 
 // Children stand behind their parents.
-void MeshTree::refit_ray_nodes() {
-    for (std::size_t n = ray_nodes_.size(); n-- > 0;)
-        for (std::uint32_t lane = 0; lane < ray_nodes_[n].count; ++lane) {
-            const std::uint32_t child = ray_nodes_[n].child[lane];
-            set_bounds(ray_nodes_[n], lane,
-                       child & kMeshLeaf ? bounds_of(leaves_[child & ~kMeshLeaf]) : bounds_of(ray_nodes_[child]));
+void MeshParts::refit_ray_nodes() {
+    for (std::size_t n = ray_nodes.size(); n-- > 0;)
+        for (std::uint32_t lane = 0; lane < ray_nodes[n].count; ++lane) {
+            const std::uint32_t child = ray_nodes[n].child[lane];
+            set_bounds(ray_nodes[n], lane,
+                       child & kMeshLeaf ? bounds_of(leaves[child & ~kMeshLeaf]) : bounds_of(ray_nodes[child]));
         }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <crofton/core/diagnostics.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
@@ -37,10 +38,10 @@ TriangleMesh box_mesh(const glm::dmat3& linear, const glm::vec3& half) {
 // How large the nodes' boxes are beside the root: what queries cost grows with it.
 double spread_of(const mesh::MeshTree& tree) {
     double sum = 0.0;
-    for (const mesh::MeshNode& node : tree.nodes())
+    for (const mesh::MeshNode& node : tree.parts().nodes)
         for (std::uint32_t lane = 0; lane < node.count; ++lane)
             sum += double{node.half[0][lane]} + double{node.half[1][lane]} + double{node.half[2][lane]};
-    const mesh::MeshBox& root = tree.root_box();
+    const mesh::MeshBox& root = tree.parts().root_box;
     const double whole = double{root.half[0]} + double{root.half[1]} + double{root.half[2]};
     return whole > 0.0 ? sum / whole : 0.0;
 }

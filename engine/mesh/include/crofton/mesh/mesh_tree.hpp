@@ -6,11 +6,13 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/mesh/mesh_layout.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace crofton::mesh {
+
+struct MeshParts;
 
 // How the boxes of the nodes are turned: the less perimeter they have, the fewer are met (docs/notes/collide.md,
 // "Meshes").
@@ -38,6 +40,13 @@ struct MeshPiece {
 // log16 of the number of leaves, rounded up.
 class MeshTree {
   public:
+    MeshTree();  // of no triangles
+    ~MeshTree();
+    MeshTree(const MeshTree& other);
+    MeshTree& operator=(const MeshTree& other);
+    MeshTree(MeshTree&&) noexcept;
+    MeshTree& operator=(MeshTree&&) noexcept;
+
     // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed
     // in rejected(); the others are unharmed. Errors: no valid triangle; index count no multiple of three; 2^28
     // triangles or more.
@@ -56,44 +65,24 @@ class MeshTree {
     // memory; the tree is as before.
     Result<void> prepare_rays();
 
-    [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }  // the root is the first
-    [[nodiscard]] std::span<const MeshLeaf> leaves() const { return leaves_; }
-    [[nodiscard]] std::span<const BoxNode> ray_nodes() const { return ray_nodes_; }  // likewise; empty: not prepared
-    [[nodiscard]] const MeshBox& root_box() const { return root_box_; }
     [[nodiscard]] std::span<const std::uint32_t> rejected() const { return rejected_; }  // triangles, ascending
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }         // rejected ones not counted
     [[nodiscard]] std::span<const MeshPiece> pieces() const { return pieces_; }          // by their lowest triangles
     // The largest magnitude of any coordinate: rounding errors in the mesh's frame scale with it.
     [[nodiscard]] float extent() const { return extent_; }
 
+    // Nodes and leaves, for the engine's own queries.
+    [[nodiscard]] const MeshParts& parts() const;
+
   private:
     friend class MeshTreeBuilder;
-    // Two vertices of equal position that close a piece.
-    struct Weld {
-        std::uint32_t vertex, other, piece;
-    };
-    // What refit() needs; empty in a tree that is not refittable.
-    struct RefitData {
-        Vector<LeafVertices> leaves;
-        Vector<BoxAnchors> nodes;
-        BoxAnchors root{};
-        Vector<std::uint32_t> piece_vertices;
-        Vector<std::uint8_t> piece_closed;  // at the build
-        Vector<Weld> welds;
-        std::size_t vertex_count = 0;
-    };
     [[nodiscard]] Result<void> check_positions(std::span<const glm::vec3> positions) const;
-    void refit_ray_nodes();
 
-    Vector<MeshNode> nodes_;
-    Vector<MeshLeaf> leaves_;
-    Vector<BoxNode> ray_nodes_;
     Vector<std::uint32_t> rejected_;
     Vector<MeshPiece> pieces_;
-    RefitData refit_;
-    MeshBox root_box_{};
     std::size_t triangle_count_ = 0;
     float extent_ = 0.0f;
+    std::unique_ptr<MeshParts> parts_;  // none without triangles
 };
 
 }  // namespace crofton::mesh
