@@ -11,11 +11,12 @@
 namespace crofton::bench {
 namespace {
 
-std::size_t bytes_in_use = 0;
+std::size_t bytes_in_use = 0, most_bytes_in_use = 0;
 
 void count_memory() {
     set_memory_hooks({[](void*, std::size_t bytes, std::size_t alignment) {
                           bytes_in_use += bytes;
+                          most_bytes_in_use = std::max(most_bytes_in_use, bytes_in_use);
                           return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
                       },
                       [](void*, void* memory, std::size_t bytes, std::size_t) {
@@ -42,8 +43,10 @@ class Churn {
         rest();
     }
     void rest() {
+        most_bytes_in_use = bytes_in_use;
         update_microseconds += microseconds([&] { must(world.update().has_value(), "an update"); });
         most_bytes = std::max(most_bytes, bytes_in_use);
+        most_within_bytes = std::max(most_within_bytes, most_bytes_in_use);
         sum_of_bytes += static_cast<double>(bytes_in_use);
         ++updates;
     }
@@ -54,7 +57,7 @@ class Churn {
     std::vector<ObjectHandle> live;
     // Of the updates since these were last set to zero.
     double update_microseconds = 0.0, sum_of_bytes = 0.0;
-    std::size_t most_bytes = 0, updates = 0;
+    std::size_t most_bytes = 0, most_within_bytes = 0, updates = 0;  // bytes after an update, and while one runs
 
   private:
     std::size_t a_frame_;
@@ -62,23 +65,24 @@ class Churn {
 };
 
 struct AgainstFresh {
-    double view = 0.0, fresh_view = 0.0, fresh_bytes = 0.0;
+    double view = 0.0, fresh_view = 0.0, fresh_bytes = 0.0, fresh_within_bytes = 0.0;
 };
 
 // A view of the world against one that has just been loaded with the same objects.
 AgainstFresh against_fresh(const Churn& churn, const cull::View& view) {
-    const std::size_t before = bytes_in_use;
+    const std::size_t before = most_bytes_in_use = bytes_in_use;
     World fresh({.pairs = false});
     for (const ObjectHandle object : churn.live)
         must(fresh.add({.bound = churn.world.box_of(object).value()}).has_value(), "a copy");
     must(fresh.update().has_value(), "loading");
-    const std::size_t fresh_bytes = bytes_in_use - before;
+    const auto fresh_bytes = static_cast<double>(bytes_in_use - before),
+               fresh_within_bytes = static_cast<double>(most_bytes_in_use - before);
     VisibleObjects seen, seen_fresh;
     const FrameTimes times = compare(
         50, [&](int) { fresh.view(view, seen_fresh, {.order = cull::ResultOrder::tree}); },
         [&](int) { churn.world.view(view, seen, {.order = cull::ResultOrder::tree}); });
     must(seen.size() == seen_fresh.size(), "the views differ");
-    return {times.world, times.by_hand, static_cast<double>(fresh_bytes)};
+    return {times.world, times.by_hand, fresh_bytes, fresh_within_bytes};
 }
 
 // A row: as of now, and of the updates since the row before. `moments`: the views are the mean of so many updates,
@@ -92,15 +96,17 @@ void print_row(const char* when, std::size_t spawns, Churn& churn, const cull::V
         mean.view += now.view / moments;
         mean.fresh_view += now.fresh_view / moments;
         mean.fresh_bytes = now.fresh_bytes;
+        mean.fresh_within_bytes = now.fresh_within_bytes;
     }
     const auto count = static_cast<double>(churn.live.size()), updates = static_cast<double>(churn.updates);
-    const double bytes = churn.sum_of_bytes / updates, most = static_cast<double>(churn.most_bytes);
-    std::printf("%s,%zu,%.0f,%.2f,%.2f,%.1f,%.1f,%.2f,%.0f\n", when, spawns, bytes / count, bytes / mean.fresh_bytes,
-                most / mean.fresh_bytes, mean.view, mean.fresh_view, mean.view / mean.fresh_view,
+    const double bytes = churn.sum_of_bytes / updates, most = static_cast<double>(churn.most_bytes),
+                 most_within = static_cast<double>(churn.most_within_bytes);
+    std::printf("%s,%zu,%.0f,%.2f,%.2f,%.2f,%.1f,%.2f,%.0f\n", when, spawns, bytes / count, bytes / mean.fresh_bytes,
+                most / mean.fresh_bytes, most_within / mean.fresh_within_bytes, mean.view, mean.view / mean.fresh_view,
                 churn.update_microseconds / updates);
     std::fflush(stdout);
     churn.update_microseconds = churn.sum_of_bytes = 0.0;
-    churn.most_bytes = churn.updates = 0;
+    churn.most_bytes = churn.most_within_bytes = churn.updates = 0;
 }
 
 }  // namespace
@@ -112,8 +118,8 @@ void churn(std::size_t live_count, std::size_t spawns) {
         const cull::View view = view_of_share(churn.boxes, 0.2);
         std::printf("# objects: %zu live, %zu removed and as many added in an update\n", live_count, churn.a_frame());
         std::printf(
-            "when,spawns,bytes_an_object,memory_ratio,peak_memory_ratio,view_us,fresh_view_us,view_ratio,"
-            "update_us\n");
+            "when,spawns,bytes an object,mean × fresh,most × fresh,most in an update × in loading,"
+            "view in µs,view × fresh,update in µs\n");
         churn.rest();
         print_row("loaded", 0, churn, view, false);
         std::size_t done = 0;
@@ -123,7 +129,7 @@ void churn(std::size_t live_count, std::size_t spawns) {
         }
         for (int rest = 0; rest < 600; ++rest) churn.rest();
         churn.sum_of_bytes = churn.update_microseconds = 0.0;
-        churn.most_bytes = churn.updates = 0;
+        churn.most_bytes = churn.most_within_bytes = churn.updates = 0;
         churn.rest();
         print_row("600 updates later", done, churn, view, false);
     }

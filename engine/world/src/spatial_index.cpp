@@ -8,18 +8,19 @@
 namespace crofton::world {
 namespace {
 
-constexpr std::uint8_t kUpdatesToMove = 2;  // in a row, until an item leaves the tree
-constexpr std::uint32_t kUpdatesToEnter = 2;  // without moving, until a new item does not wait in the list any more
+constexpr std::uint8_t kUpdatesToMove = 2;    // in a row, until an item leaves the tree
+constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new item does not wait in the list any more
 // Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
 constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
-// A tree of no more items is built anew in one go, within a few milliseconds, once a part of them has changed or waits to
-// enter: in the background its items would change faster than they are built, and each insertion wears the tree.
-constexpr std::size_t kSmallTree = 32768, kSmallTreeChanges = 16, kSmallTreeWaiting = 32, kAttachedToSmallTree = 16;
+// A tree of no more items is built anew in one go, within a few milliseconds, once such a part of them has come or
+// gone, or waits to enter: in the background they would change faster than they are built, and insertions wear it.
+constexpr std::size_t kSmallTree = 32768, kSmallTreeChanges = 24, kSmallTreeWaiting = 48, kAttachedToSmallTree = 16;
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.
 constexpr std::size_t kBudgetPerChange = 128;
-constexpr std::size_t kChangesToRebuild = 64;  // the tree is rebuilt once a part of 1 / 64 of its items has changed
+// The tree is rebuilt once such a part of its items has changed.
+constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 
 void must([[maybe_unused]] const Result<void>& done) {
     CROFTON_ASSERT(done.has_value(), "the index and its tree disagree");
@@ -76,6 +77,7 @@ void SpatialIndex::take(ItemId item) {
 void SpatialIndex::detach(ItemId item) {
     must(tree_.detach(item));
     ++tree_changes_;
+    ++came_or_went_;
     wants_refit_ = true;
 }
 
@@ -172,15 +174,17 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     return changes;
 }
 
-// Begins once enough has changed since the last rebuild began; in a small tree not while more changes, for which
-// bring_to_rest() builds it anew.
+// Begins once enough has changed since the last rebuild began; in a small tree not while items come and go, for
+// which bring_to_rest() builds it anew.
 void SpatialIndex::rebuild_step(std::size_t budget) {
     const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
+    const bool more_come_or_go = came_or_went_ != std::exchange(came_or_went_before_, came_or_went_);
     if (budget == 0) return;
     if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
     if (!rebuilding_) {
-        if (tree_changes_ * kChangesToRebuild < tree_.item_count() || tree_changes_ == 0) return;
-        if (fresh > 0 && tree_.item_count() <= kSmallTree) return;
+        const bool is_small = tree_.item_count() <= kSmallTree;
+        const std::size_t part = is_small ? kChangesToRebuildSmallTree : kChangesToRebuild;
+        if (tree_changes_ * part < tree_.item_count() || tree_changes_ == 0 || (is_small && more_come_or_go)) return;
         rebuilding_ = true;
         changes_at_start_ = tree_changes_;
     }
@@ -188,6 +192,7 @@ void SpatialIndex::rebuild_step(std::size_t budget) {
     rebuilding_ = false;
     tree_changes_ -= changes_at_start_;
     changes_before_ = tree_changes_;
+    came_or_went_ = came_or_went_before_ = 0;
 }
 
 // What is new waits in the list until it is seen to rest: what moves from the beginning stays there. What has just been
@@ -216,6 +221,7 @@ void SpatialIndex::attach(ItemId item) {
     items_[item].place = Place::resting;
     must(tree_.attach(item, last));
     ++tree_changes_;
+    ++came_or_went_;
 }
 
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
@@ -224,7 +230,7 @@ void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Exe
     const std::size_t items = tree_.item_count();
     const bool is_small = items > kFewItems && items <= kSmallTree;
     const std::size_t most_waiting = std::max(kFewItems, is_small ? items / kSmallTreeWaiting : items);
-    if (rested_.size() > most_waiting || (is_small && tree_changes_ > items / kSmallTreeChanges)) {
+    if (rested_.size() > most_waiting || (is_small && came_or_went_ > items / kSmallTreeChanges)) {
         build_tree(rested_, executor);
         changes.tree_built = true;
         return;
@@ -256,7 +262,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) must(built->remove(removed[i]));
     tree_ = std::move(*built);
-    tree_changes_ = changes_before_ = 0;
+    tree_changes_ = changes_before_ = came_or_went_ = came_or_went_before_ = 0;
     rebuilding_ = false;
 }
 

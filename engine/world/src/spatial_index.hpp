@@ -112,6 +112,7 @@ class SpatialIndex {
     std::uint32_t members_changed_ = 0;  // in this update
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.
     std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
+    std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update
     bool rebuilding_ = false, wants_refit_ = false;
 };
 
