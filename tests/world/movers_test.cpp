@@ -113,6 +113,109 @@ TEST_SUITE("world/movers") {
         CHECK(bad_ones > 3);
     }
 
+    TEST_CASE("of several boxes that a mover is given before an update the last counts, read in the caller's structs") {
+        struct Enemy {
+            std::uint32_t health = 3;
+            ObjectHandle object;
+            Obb box;
+        };
+        constexpr std::size_t kCount = 150;
+        World world({.pairs = false});
+        std::vector<Enemy> enemies(kCount);
+        for (std::size_t i = 0; i < kCount; ++i) {
+            enemies[i].box.center.x = 3.0 * double(i);
+            enemies[i].object = world.add({.bound = enemies[i].box}).value();
+        }
+        const auto set = [&] {
+            return world.set_bounds({&enemies[0].object, kCount, sizeof(Enemy)},
+                                    {&enemies[0].box, kCount, sizeof(Enemy)});
+        };
+        for (int frame = 0; frame < 4; ++frame) {
+            for (Enemy& enemy : enemies) enemy.box.center.y += 1.0;
+            REQUIRE(set().has_value());
+            REQUIRE(world.update().has_value());
+        }
+        REQUIRE(world.statistics().moving == kCount);
+        const auto move_first = [&](double by) {
+            for (std::size_t i = 0; i < 10; ++i) enemies[i].box.center.y += by;
+            REQUIRE(set().has_value());
+        };
+        move_first(1.0);
+        move_first(-1.0);  // back to where they are
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().boxes_changed == 0);
+        move_first(2.0);
+        move_first(3.0);
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().boxes_changed == 10);
+        for (const Enemy& enemy : enemies) CHECK(world.box_of(enemy.object)->center == enemy.box.center);
+        // One becomes a ball and a box again, another is removed: its handle is stale.
+        REQUIRE(world.set_bound(enemies[70].object, Sphere{{}, 1.0}).has_value());
+        REQUIRE(world.remove(enemies[80].object).has_value());
+        for (Enemy& enemy : enemies) enemy.box.center.y += 1.0;
+        const auto stale = set();
+        REQUIRE(!stale);
+        CHECK(stale.error().code == ErrorCode::stale_handle);
+        CHECK(stale.error().item == 80);
+        REQUIRE(world.update().has_value());
+        for (const Enemy& enemy : enemies)
+            if (&enemy != &enemies[80]) CHECK(world.box_of(enemy.object)->center == enemy.box.center);
+        REQUIRE(world.set_bound(enemies[70].object, Sphere{{5.0, 0.0, 0.0}, 1.0}).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.box_of(enemies[70].object)->center.x == 5.0);
+        Ray ray;
+        ray.origin = {5.0, 0.0, 9.0};
+        ray.direction = {0.0, 0.0, -1.0};
+        const auto hit = world.raycast(ray);
+        REQUIRE(hit.has_value());
+        CHECK(hit->t == 8.0);  // a ball's, not its box's
+        // The index of the removed one is used again: the old handle stays stale.
+        const auto fresh = world.add({.bound = Sphere{{}, 1.0}}).value();
+        CHECK(fresh.index == enemies[80].object.index);
+        CHECK(set().error().item == 80);
+    }
+
+    TEST_CASE("of many nodes the bad ones are refused, the first is named, and the others move") {
+        constexpr std::size_t kCount = 200;
+        World world;
+        std::vector<NodeHandle> nodes;
+        std::vector<scene::Transform> places(kCount);
+        for (std::size_t i = 0; i < kCount; ++i) {
+            places[i].translation.x = double(i);
+            nodes.push_back(world.add_node().value());
+        }
+        const TriangleMesh triangles = sheet(2, 0.0);
+        const auto mesh = world.add_mesh({.positions = triangles.positions, .indices = triangles.indices}).value();
+        std::vector<ObjectHandle> objects;
+        for (const NodeHandle node : nodes) objects.push_back(world.add({.mesh = mesh, .node = node}).value());
+        const auto check = [&](std::size_t bad, std::size_t other) {
+            REQUIRE(world.update().has_value());
+            for (std::size_t i = 0; i < kCount; ++i)
+                if (i != bad && i != other) CHECK(world.transform_of(objects[i])->translation == places[i].translation);
+        };
+        REQUIRE(world.set_transforms(nodes, places).has_value());
+        check(kCount, kCount);
+        for (scene::Transform& place : places) place.translation.y = 1.0;
+        places[130].linear[1][1] = std::numeric_limits<double>::infinity();
+        places[150].translation.z = 1e16;
+        const auto set = world.set_transforms(nodes, places);
+        REQUIRE(!set);
+        CHECK(set.error().code == ErrorCode::non_finite);
+        CHECK(set.error().item == 130);
+        check(130, 150);
+        CHECK(world.transform_of(objects[130])->translation.y == 0.0);
+        CHECK(world.transform_of(objects[150])->translation.y == 0.0);
+        places[130] = places[150] = {};
+        REQUIRE(world.remove(nodes[64]).has_value());
+        const auto stale = world.set_transforms(nodes, places);
+        REQUIRE(!stale);
+        CHECK(stale.error().code == ErrorCode::stale_handle);
+        CHECK(stale.error().item == 64);
+        REQUIRE(world.update().has_value());
+        for (std::size_t i = 0; i < kCount; ++i)
+            if (i != 64) CHECK(world.transform_of(objects[i])->translation == places[i].translation);
+    }
+
     TEST_CASE("what is set to where it is comes to rest, also when the others go on") {
         World world({.updates_to_rest = 3});
         std::vector<ObjectHandle> objects;

@@ -183,11 +183,11 @@ HWY_INLINE bool all_valid(const Sixteen& boxes) {
     return valid;
 }
 
-std::size_t CountCertainlyValid(const unsigned char* all_boxes, std::size_t count) {
+std::size_t CountCertainlyValid(const unsigned char* all_boxes, std::size_t count, std::size_t stride) {
     Sixteen boxes[2];
     const auto put = [&](Sixteen& to, std::size_t first) HWY_ATTR {
         for (std::size_t lane = 0; lane < kWidth; ++lane)
-            to.put(lane, all_boxes + kBoxBytes * std::min(first + lane, count - 1));
+            to.put(lane, all_boxes + stride * std::min(first + lane, count - 1));
     };
     if (count > 0) put(boxes[0], 0);
     for (std::size_t first = 0, turn = 0; first < count; first += kWidth, turn ^= 1) {
@@ -212,8 +212,8 @@ std::size_t write_lanes(Leaf* leaves, std::span<const LeafId> ids, const ItemId*
                                             reinterpret_cast<const unsigned char*>(boxes));
 }
 
-std::size_t count_certainly_valid(const Obb* boxes, std::size_t count) {
-    return HWY_DYNAMIC_DISPATCH(CountCertainlyValid)(reinterpret_cast<const unsigned char*>(boxes), count);
+std::size_t count_certainly_valid(const Obb* boxes, std::size_t count, std::size_t stride) {
+    return HWY_DYNAMIC_DISPATCH(CountCertainlyValid)(reinterpret_cast<const unsigned char*>(boxes), count, stride);
 }
 
 }  // namespace crofton::boxtree

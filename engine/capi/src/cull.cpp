@@ -13,17 +13,8 @@ struct crofton_visible_set {
     static constexpr std::uint32_t kKind = 0x43724f03;
     Header header;
     cull::VisibleSet visible{};
-    cull::View view{};  // here, so that a query need not clear planes that it does not use
+    cull::View view{};
 };
-
-namespace {
-
-const cull::View& set_view(crofton_visible_set& visible, const crofton_view& view) {
-    copy_view(view, visible.view);
-    return visible.view;
-}
-
-}  // namespace
 
 crofton_status crofton_tree_create(const crofton_box* boxes, const uint32_t* layer_masks, size_t count,
                                    const crofton_jobs* jobs, crofton_tree** tree) {
@@ -125,22 +116,13 @@ crofton_status crofton_visible_set_items(const crofton_visible_set* visible, con
                                          const uint8_t** verdicts, size_t* count) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(ids, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *ids = visible->visible.ids().data();
-    *count = visible->visible.size();
-    if (verdicts) *verdicts = reinterpret_cast<const std::uint8_t*>(visible->visible.verdicts().data());
-    return CROFTON_OK;
+    return give_seen(visible->visible, ids, count, verdicts, __func__);
 }
 
 crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible, crofton_cull_statistics* statistics) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_struct(statistics, __func__));
-    const cull::Statistics& s = visible->visible.statistics();
-    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested, s.accepted_whole,
-                   s.straddling,       s.exact_tests,  s.improper};
-    return CROFTON_OK;
+    return give_statistics(visible->visible.statistics(), statistics, __func__);
 }
 
 crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,

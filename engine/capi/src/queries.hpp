@@ -44,6 +44,35 @@ inline void copy_view(const crofton_view& view, cull::View& result) {
     result.layer_mask = view.layer_mask;
 }
 
+// What a query is asked with. It stays in the result's object, so that a query need not clear planes that it does not
+// use.
+template <class Result>
+[[nodiscard]] const cull::View& set_view(Result& result, const crofton_view& view) {
+    copy_view(view, result.view);
+    return result.view;
+}
+
+// The ids and, where there are any, the verdicts of a set that is seen. `verdicts` may be null.
+template <class Visible>
+[[nodiscard]] crofton_status give_seen(const Visible& seen, const std::uint32_t** ids, std::size_t* count,
+                                       const std::uint8_t** verdicts, const char* function) {
+    CROFTON_CHECK(check_pointer(ids, function));
+    CROFTON_CHECK(check_pointer(count, function));
+    *ids = seen.ids().data();
+    *count = seen.size();
+    if (verdicts)
+        *verdicts = seen.verdicts().empty() ? nullptr : reinterpret_cast<const std::uint8_t*>(seen.verdicts().data());
+    return CROFTON_OK;
+}
+
+[[nodiscard]] inline crofton_status give_statistics(const cull::Statistics& s, crofton_cull_statistics* statistics,
+                                                    const char* function) {
+    CROFTON_CHECK(check_struct(statistics, function));
+    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested, s.accepted_whole,
+                   s.straddling,       s.exact_tests,  s.improper};
+    return CROFTON_OK;
+}
+
 [[nodiscard]] inline crofton_status to_ray(const crofton_ray& ray, const char* function, std::uint64_t item,
                                            Ray& result) {
     result = {to_vector(ray.origin), to_vector(ray.direction), ray.max_t};

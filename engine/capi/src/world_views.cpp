@@ -45,8 +45,7 @@ crofton_status crofton_world_view(const crofton_world* world, const crofton_view
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_query(view, options, jobs, __func__));
     HostJobs executor(jobs);
-    copy_view(*view, visible->view);
-    world->world.view(visible->view, visible->visible, to_options(options), executor);
+    world->world.view(set_view(*visible, *view), visible->visible, to_options(options), executor);
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -72,14 +71,8 @@ crofton_status crofton_visible_objects_ids(const crofton_visible_objects* visibl
                                            const uint8_t** verdicts, size_t* inside_count) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(ids, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    const VisibleObjects& seen = visible->visible;
-    *ids = seen.ids().data();
-    *count = seen.size();
-    if (verdicts)
-        *verdicts = seen.verdicts().empty() ? nullptr : reinterpret_cast<const std::uint8_t*>(seen.verdicts().data());
-    if (inside_count) *inside_count = seen.inside_count();
+    CROFTON_CHECK(give_seen(visible->visible, ids, count, verdicts, __func__));
+    if (inside_count) *inside_count = visible->visible.inside_count();
     return CROFTON_OK;
 }
 
@@ -99,11 +92,7 @@ crofton_status crofton_visible_objects_get_statistics(const crofton_visible_obje
                                                       crofton_cull_statistics* statistics) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_struct(statistics, __func__));
-    const cull::Statistics& s = visible->visible.statistics();
-    *statistics = {sizeof *statistics, s.nodes_tested, s.boxes_tested, s.accepted_whole,
-                   s.straddling,       s.exact_tests,  s.improper};
-    return CROFTON_OK;
+    return give_statistics(visible->visible.statistics(), statistics, __func__);
 }
 
 crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible) {

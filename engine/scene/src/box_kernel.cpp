@@ -198,13 +198,21 @@ HWY_ATTR inline void store(const Image& image, const Box& box, hn::Mask<D> done,
     hn::StoreU(hn::IfThenElseZero(done, hn::Set(d, 1.0)), d, block.done + first);
 }
 
+// A box is one long chain of operations that wait for each other. So the kernels go over all lanes in several passes,
+// each short enough for the processor to overlap what it does for one vector and the next.
+constexpr std::size_t kLanes = hn::MaxLanes(D()), kVectors = kBoxesAtOnce / kLanes;
+static_assert(kBoxesAtOnce % kLanes == 0);
+
 HWY_ATTR void run_boxes(BoxBlock& block, std::size_t count) {
-    for (std::size_t first = 0; first < count; first += hn::Lanes(D())) {
-        const Image image = image_of(load(block, first));
-        const V3 y = normalised(perpendicular_part(image.edges[1], image.edges[0]));
-        store(image, box_with_axes(image, image.edges[0], y), hn::And(image.in_range, image.perpendicular), block,
-              first);
-    }
+    Image images[kVectors];
+    V3 y[kVectors];
+    const std::size_t vectors = (count + kLanes - 1) / kLanes;
+    for (std::size_t i = 0; i < vectors; ++i) images[i] = image_of(load(block, i * kLanes));
+    for (std::size_t i = 0; i < vectors; ++i)
+        y[i] = normalised(perpendicular_part(images[i].edges[1], images[i].edges[0]));
+    for (std::size_t i = 0; i < vectors; ++i)
+        store(images[i], box_with_axes(images[i], images[i].edges[0], y[i]),
+              hn::And(images[i].in_range, images[i].perpendicular), block, i * kLanes);
 }
 
 HWY_ATTR inline V cost_of(const Box& box, const double (&weights)[3]) {
@@ -234,24 +242,36 @@ HWY_ATTR inline void keep_better(const Box& box, V cost, Box& best, V& least) {
 HWY_ATTR void run_sheared_boxes(BoxBlock& block, std::size_t count, const double (&weights)[3]) {
     const D d;
     const V infinity = hn::Set(d, std::numeric_limits<double>::infinity());
-    for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
-        const Image image = image_of(load(block, first));
-        auto done = hn::AndNot(image.perpendicular, image.in_range);
-        Box best{{image.edges[0], image.edges[1], image.edges[2]}, {infinity, infinity, infinity}};
-        V least = infinity;
-        for (int k = 0; k < 3; ++k) {
+    Image images[kVectors];
+    Box best[kVectors];
+    V least[kVectors];
+    hn::Mask<D> done[kVectors];
+    V3 x[kVectors], y[kVectors];
+    const std::size_t vectors = (count + kLanes - 1) / kLanes;
+    for (std::size_t i = 0; i < vectors; ++i) {
+        const Image& image = images[i] = image_of(load(block, i * kLanes));
+        done[i] = hn::AndNot(image.perpendicular, image.in_range);
+        best[i] = {{image.edges[0], image.edges[1], image.edges[2]}, {infinity, infinity, infinity}};
+        least[i] = infinity;
+    }
+    for (int k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < vectors; ++i) {
+            const Image& image = images[i];
             const V3 normal = cross(image.edges[(k + 1) % 3], image.edges[(k + 2) % 3]);
             const V squared = dot(normal, normal);
-            done = hn::And(done, hn::Gt(squared, hn::Set(d, 2.0 * kNothing * kNothing)));
-            const V3 x = normalised(normal, squared);
-            for (int e = 1; e <= 2; ++e) {
-                const V3 y = normalised(perpendicular_part(image.edges[(k + e) % 3], x));
-                const Box box = box_with_axes(image, x, y);
-                keep_better(box, cost_of(box, weights), best, least);
+            done[i] = hn::And(done[i], hn::Gt(squared, hn::Set(d, 2.0 * kNothing * kNothing)));
+            x[i] = normalised(normal, squared);
+        }
+        for (int e = 1; e <= 2; ++e) {
+            for (std::size_t i = 0; i < vectors; ++i)
+                y[i] = normalised(perpendicular_part(images[i].edges[(k + e) % 3], x[i]));
+            for (std::size_t i = 0; i < vectors; ++i) {
+                const Box box = box_with_axes(images[i], x[i], y[i]);
+                keep_better(box, cost_of(box, weights), best[i], least[i]);
             }
         }
-        store(image, best, done, block, first);
     }
+    for (std::size_t i = 0; i < vectors; ++i) store(images[i], best[i], done[i], block, i * kLanes);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -26,8 +26,11 @@ template <class T>
     return {};
 }
 
+[[nodiscard]] inline bool is_node(const Vector<Node>& nodes, NodeId id) {
+    return id < nodes.size() && nodes[id].position != kRemoved;
+}
 [[nodiscard]] inline Result<void> check_node(const Vector<Node>& nodes, NodeId id, const char* what = "node") {
-    return check_id(id, nodes.size(), id < nodes.size() && nodes[id].position == kRemoved, what);
+    return check_id(id, nodes.size(), !is_node(nodes, id), what);
 }
 [[nodiscard]] inline Result<void> check_mesh(const Vector<MeshRecord>& meshes, MeshId id) {
     return check_id(id, meshes.size(), id < meshes.size() && meshes[id].revision == 0, "mesh");

@@ -5,13 +5,14 @@
 #include <utility>
 
 #include "scene_checks.hpp"
+#include "valid_transform.hpp"
 
 namespace crofton::scene {
 
 Result<void> Scene::set_local(NodeId node, const Transform& local) {
     State& s = *state_;
-    if (auto known = check_node(s.nodes, node); !known) return known;
-    if (auto valid = validate(local, node); !valid) return valid;
+    if (!is_node(s.nodes, node)) return check_node(s.nodes, node);
+    if (!is_valid(local)) return validate(local, node);
     s.locals[node] = local;
     s.mark_dirty(node);
     return {};
@@ -24,12 +25,11 @@ Result<void> Scene::set_local(std::span<const NodeId> nodes, std::span<const Tra
                     "scene: " + std::to_string(nodes.size()) + " nodes and " + std::to_string(locals.size()) +
                         " transforms, give as many of each");
     for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (is_node(s.nodes, nodes[i]) && is_valid(locals[i])) continue;
         Result<void> good = check_node(s.nodes, nodes[i]);
         if (good) good = validate(locals[i], i);
-        if (!good)
-            return fail(
-                good.error().code, i,
-                good.error().message + " (entry " + std::to_string(i) + ", node " + std::to_string(nodes[i]) + ")");
+        return fail(good.error().code, i,
+                    good.error().message + " (entry " + std::to_string(i) + ", node " + std::to_string(nodes[i]) + ")");
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         s.locals[nodes[i]] = locals[i];

@@ -20,7 +20,11 @@ inline void compose(const Transform& outer, const Transform& inner, Transform& r
     };
     const glm::dvec3 x = image(inner.linear[0]), y = image(inner.linear[1]), z = image(inner.linear[2]);
     const glm::dvec3 translation = image(inner.translation) + outer.translation;
-    result = {glm::dmat3(x, y, z), translation};
+    // Number by number: a whole Transform would be put together on the stack, and its copy wait for that.
+    result.linear[0] = x;
+    result.linear[1] = y;
+    result.linear[2] = z;
+    result.translation = translation;
 }
 
 // A lane of the kernel's input, and its output as a box.
@@ -41,11 +45,15 @@ inline Obb take(const BoxBlock& block, std::size_t lane) {
 }
 
 inline bool same_bits(const Obb& a, const Obb& b) {
-    std::uint64_t left[9], right[9], difference = 0;
-    std::memcpy(left, &a, sizeof a);
-    std::memcpy(right, &b, sizeof b);
-    for (int i = 0; i < 9; ++i) difference |= left[i] ^ right[i];
-    return difference == 0;
+    // Word by word: copies of whole boxes would go through the stack, and their loads wait for the stores.
+    const auto differing = [&](std::size_t word) {
+        std::uint64_t left, right;
+        std::memcpy(&left, reinterpret_cast<const std::byte*>(&a) + 8 * word, 8);
+        std::memcpy(&right, reinterpret_cast<const std::byte*>(&b) + 8 * word, 8);
+        return left ^ right;
+    };
+    if ((differing(0) | differing(1) | differing(2)) != 0) return false;  // the centre: most that move
+    return (differing(3) | differing(4) | differing(5) | differing(6) | differing(7) | differing(8)) == 0;
 }
 
 template <class T>
@@ -88,7 +96,10 @@ void Scene::State::for_each_updated_node(Visit visit) {
         return;
     }
     updated.resize(order.size());
+    constexpr std::size_t kAhead = 16;
     for (std::size_t position = 0; position < order.size(); ++position) {
+        if (const NodeId later = order.node_at(std::min(position + kAhead, order.size() - 1)); later != kNone)
+            hwy::Prefetch(&nodes[later]);
         const NodeId id = order.node_at(position);
         if (id == kNone) continue;
         const NodeId parent = nodes[id].parent;

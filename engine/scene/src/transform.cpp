@@ -6,10 +6,11 @@
 #include <glm/vector_relational.hpp>
 #include <string>
 
+#include "valid_transform.hpp"
+
 namespace crofton::scene {
 namespace {
 
-constexpr double kLargest = 1e15;
 constexpr double kUnitTolerance = 0.01;    // of a quaternion's length
 constexpr double kUnitRounding = 0x1p-50;  // of its squared length: left as it is
 
@@ -54,13 +55,7 @@ Result<Transform> from_matrix(const glm::dmat4& matrix) {
 }
 
 Result<void> validate(const Transform& transform, std::uint64_t item) {
-    // One comparison each refuses NaN, infinity and what is too large; which of them it was is found out afterwards.
-    const glm::dvec3 limit(kLargest);
-    const bool good = glm::dot(transform.linear[0], transform.linear[0]) <= kLargest * kLargest &&
-                      glm::dot(transform.linear[1], transform.linear[1]) <= kLargest * kLargest &&
-                      glm::dot(transform.linear[2], transform.linear[2]) <= kLargest * kLargest &&
-                      glm::all(glm::lessThanEqual(glm::abs(transform.translation), limit));
-    if (good) return {};
+    if (is_valid(transform)) return {};
     const auto bad = [&](ErrorCode code, const char* why) {
         return fail(code, item, std::string("transform: ") + why);
     };
@@ -68,7 +63,7 @@ Result<void> validate(const Transform& transform, std::uint64_t item) {
         if (!is_finite(transform.linear[k]))
             return bad(ErrorCode::non_finite, "the matrix holds a NaN or infinite number");
     if (!is_finite(transform.translation)) return bad(ErrorCode::non_finite, "the translation is NaN or infinite");
-    if (!glm::all(glm::lessThanEqual(glm::abs(transform.translation), limit)))
+    if (!glm::all(glm::lessThanEqual(glm::abs(transform.translation), glm::dvec3(kLargest))))
         return bad(ErrorCode::out_of_range, "the translation exceeds 1e15");
     return bad(ErrorCode::out_of_range, "the matrix scales by more than 1e15");
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Nodes and meshes.
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -133,9 +134,28 @@ Result<void> World::set_transform(NodeHandle node, const scene::Transform& trans
 }
 
 Result<void> World::set_transforms(Strided<NodeHandle> nodes, Strided<scene::Transform> transforms) {
-    return for_each_pair(nodes, transforms, [&](NodeHandle node, const scene::Transform& transform, std::size_t i) {
-        return state_->set_transform(node, transform, i);
-    });
+    if (nodes.size() != transforms.size()) return fail_sizes();
+    State& s = *state_;
+    constexpr std::size_t kAtOnce = 64;
+    const bool side_by_side = transforms.stride() == sizeof(scene::Transform);
+    Result<void> first;
+    for (std::size_t begin = 0; begin < nodes.size(); begin += kAtOnce) {
+        const std::size_t end = std::min(begin + kAtOnce, nodes.size());
+        scene::NodeId ids[kAtOnce];
+        std::size_t count = 0;
+        while (begin + count < end && s.nodes.contains(nodes[begin + count])) {
+            ids[count] = nodes[begin + count].index;
+            ++count;
+        }
+        // All of them, or, where one is bad, none: then one by one.
+        if (side_by_side && begin + count == end && s.scene.set_local({ids, count}, {&transforms[begin], count}))
+            continue;
+        for (std::size_t i = begin; i < end; ++i) {
+            auto set = s.set_transform(nodes[i], transforms[i], i);
+            if (!set && first) first = std::move(set);
+        }
+    }
+    return first;
 }
 
 Result<void> World::set_parent(NodeHandle node, NodeHandle parent) {

@@ -5,13 +5,6 @@
 #include <utility>
 
 namespace crofton::world {
-namespace {
-
-bool same(const Obb& a, const Obb& b) {
-    return a.center == b.center && a.axes == b.axes && a.half_extents == b.half_extents;
-}
-
-}  // namespace
 
 std::uint32_t MovingList::add(ItemId item, const Obb& box, std::uint32_t last_moved) {
     const auto entry = static_cast<std::uint32_t>(items_.size());
@@ -19,6 +12,7 @@ std::uint32_t MovingList::add(ItemId item, const Obb& box, std::uint32_t last_mo
     boxes_.push_back(box);
     last_moved_.push_back(last_moved);
     staged_for_.push_back(0);
+    differs_.push_back(0);
     earliest_ = std::min(earliest_, last_moved);
     changed_ = true;
     return entry;
@@ -33,15 +27,28 @@ void MovingList::remove(std::size_t entry) {
     fill(boxes_);
     fill(last_moved_);
     fill(staged_for_);
+    fill(differs_);
     changed_ = true;
 }
 
-bool MovingList::set_box(std::size_t entry, const Obb& box, std::uint32_t now) {
-    if (same(boxes_[entry], box)) return false;
-    boxes_[entry] = box;
-    last_moved_[entry] = now;
-    changed_ = true;
-    return true;
+void MovingList::stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride,
+                       std::uint32_t now) {
+    // In registers: what is written below might be them.
+    const Obb* const boxes = boxes_.data();
+    Obb* const staged = staged_boxes_.data();
+    std::uint32_t* const staged_for = staged_for_.data();
+    std::uint8_t* const differs = differs_.data();
+    const auto* from = reinterpret_cast<const std::byte*>(first);
+    std::size_t fresh = 0;
+    for (const std::uint32_t entry : entries) {
+        const Obb& box = *reinterpret_cast<const Obb*>(from);
+        from += stride;
+        staged[entry] = box;
+        differs[entry] = !same(boxes[entry], box);
+        fresh += staged_for[entry] != now;
+        staged_for[entry] = now;
+    }
+    staged_count_ += fresh;
 }
 
 // Where most boxes are staged, the arrays change places and the others are copied.
@@ -49,17 +56,19 @@ void MovingList::commit(std::uint32_t now, Vector<ItemId>& moved) {
     if (staged_count_ == 0) return;
     const bool most = staged_count_ * 2 > items_.size();
     const std::size_t moved_before = moved.size();
+    moved.resize(moved_before + staged_count_);
+    ItemId* end = moved.data() + moved_before;
     for (std::size_t entry = 0; entry < items_.size(); ++entry) {
-        if (staged_for_[entry] != now) {
-            if (most) staged_boxes_[entry] = boxes_[entry];
-            continue;
-        }
-        if (!same(boxes_[entry], staged_boxes_[entry])) {
+        const bool is_staged = staged_for_[entry] == now;
+        if (is_staged && differs_[entry]) {
             last_moved_[entry] = now;
-            moved.push_back(items_[entry]);
+            *end++ = items_[entry];
+            if (!most) boxes_[entry] = staged_boxes_[entry];
+        } else if (most && !is_staged) {
+            staged_boxes_[entry] = boxes_[entry];
         }
-        if (!most) boxes_[entry] = staged_boxes_[entry];
     }
+    moved.resize(static_cast<std::size_t>(end - moved.data()));
     staged_count_ = 0;
     if (moved.size() == moved_before) return;
     if (most) std::swap(boxes_, staged_boxes_);

@@ -3,12 +3,28 @@
 #pragma once
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/moving_boxes.hpp>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace crofton::world {
 
 using boxtree::ItemId;
+
+// Bit for bit.
+[[nodiscard]] inline bool same(const Obb& a, const Obb& b) {
+    static_assert(sizeof(Obb) == 72);
+    // Word by word: copies of whole boxes would go through the stack, and their loads wait for the stores.
+    const auto differing = [&](std::size_t word) {
+        std::uint64_t left, right;
+        std::memcpy(&left, reinterpret_cast<const std::byte*>(&a) + 8 * word, 8);
+        std::memcpy(&right, reinterpret_cast<const std::byte*>(&b) + 8 * word, 8);
+        return left ^ right;
+    };
+    if ((differing(0) | differing(1) | differing(2)) != 0) return false;  // the centre: most that move
+    return (differing(3) | differing(4) | differing(5) | differing(6) | differing(7) | differing(8)) == 0;
+}
 
 // Items have entries 0, 1, … in all arrays. Times are counts of updates. `now` never falls.
 class MovingList {
@@ -23,13 +39,20 @@ class MovingList {
     // The last item takes the entry. Requires that nothing is staged.
     void remove(std::size_t entry);
     // At once. True if it is another box.
-    bool set_box(std::size_t entry, const Obb& box, std::uint32_t now);
+    bool set_box(std::size_t entry, const Obb& box, std::uint32_t now) {
+        if (same(boxes_[entry], box)) return false;
+        boxes_[entry] = box;
+        last_moved_[entry] = now;
+        changed_ = true;
+        return true;
+    }
     // In the commit() of the same `now`. Of several the last counts.
     void stage(std::size_t entry, const Obb& box, std::uint32_t now) {
-        staged_boxes_[entry] = box;
-        staged_count_ += staged_for_[entry] != now;
-        staged_for_[entry] = now;
+        const auto only = static_cast<std::uint32_t>(entry);
+        stage({&only, 1}, &box, sizeof box, now);
     }
+    // Likewise many, whose boxes are `stride` bytes apart.
+    void stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now);
     // Takes over what has been staged. Appends the items whose boxes have changed.
     void commit(std::uint32_t now, Vector<ItemId>& moved);
     // Appends the items that have not moved for so many updates.
@@ -42,6 +65,7 @@ class MovingList {
     Vector<ItemId> items_;
     Vector<Obb> boxes_, staged_boxes_;
     Vector<std::uint32_t> last_moved_, staged_for_;  // the second: the update that the staged box is for
+    Vector<std::uint8_t> differs_;                   // the staged box from the box
     std::size_t staged_count_ = 0;
     std::uint32_t earliest_ = 0;  // no last_moved_ is below
     bool changed_ = false;        // since the last update()

@@ -59,6 +59,37 @@ struct ObjectTable {
     [[nodiscard]] ObjectRef ref(std::uint32_t index) const { return {handle(index), names.users[index]}; }
 };
 
+// Which objects are boxes in the list of what moves, and their entries: all that a call for many of them looks up.
+class MoverTable {
+  public:
+    // The entries of handles[begin … end), up to the first that is another thing or stale. Returns how many.
+    std::size_t list_entries(const Strided<ObjectHandle>& handles, std::size_t begin, std::size_t end,
+                             std::uint32_t* entries) const {
+        std::size_t count = 0;
+        for (; begin + count < end; ++count) {
+            const ObjectHandle handle = handles[begin + count];
+            if (handle.index >= keys_.size()) break;
+            const Key key = keys_[handle.index];
+            if (key.generation != handle.generation || key.entry == kNoIndex) break;
+            entries[count] = key.entry;
+        }
+        return count;
+    }
+    void set(ObjectHandle handle, std::uint32_t entry) {
+        if (handle.index >= keys_.size()) resize(keys_, handle.index + std::size_t{1});
+        keys_[handle.index] = {handle.generation, entry};
+    }
+    void forget(std::uint32_t object) {
+        if (object < keys_.size()) keys_[object].entry = kNoIndex;
+    }
+
+  private:
+    struct Key {
+        std::uint32_t generation = 0, entry = kNoIndex;
+    };
+    Vector<Key> keys_;  // by object
+};
+
 [[nodiscard]] inline Sphere ball_of(const Object& object, const Obb& box) {
     return {box.center, object.radius};
 }

@@ -103,6 +103,7 @@ Result<ObjectHandle> World::add(const ObjectDescription& description) {
 
 void World::State::mark_removed(std::uint32_t object) {
     table.remove(object);
+    movers.forget(object);
     removed.push_back(object);
 }
 
@@ -147,6 +148,7 @@ Result<void> World::State::set_bound(ObjectHandle object, const Bound& bound, st
     StagedChange& change = stage(object.index);
     change.has_bound = true;
     change.bound = bound;
+    movers.forget(object.index);  // until the update, boxes go among the changes too
     return {};
 }
 
@@ -163,19 +165,22 @@ Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
 }
 
 Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes) {
-    // Boxes below this are valid: looked at many at a time where they lie side by side.
-    constexpr std::size_t kAtOnce = 64;
-    std::size_t certain = 0, next_check = boxes.stride() == sizeof(Obb) ? 0 : boxes.size();
-    return for_each_pair(objects, boxes, [&](ObjectHandle object, const Obb& box, std::size_t i) -> Result<void> {
-        if (i == next_check) {
-            certain = i + boxtree::count_certainly_valid(&box, std::min(kAtOnce, boxes.size() - i));
-            next_check += kAtOnce;
+    if (objects.size() != boxes.size()) return fail_sizes();
+    State& s = *state_;
+    constexpr std::size_t kAtOnce = 64;  // are checked, and then found in the cache
+    Result<void> first;
+    for (std::size_t begin = 0; begin < boxes.size(); begin += kAtOnce) {
+        const std::size_t end = std::min(begin + kAtOnce, boxes.size());
+        const std::size_t certain = begin + boxtree::count_certainly_valid(&boxes[begin], end - begin, boxes.stride());
+        std::uint32_t entries[kAtOnce];
+        const std::size_t movers = s.movers.list_entries(objects, begin, certain, entries);
+        if (movers > 0) s.index.stage_movers({entries, movers}, &boxes[begin], boxes.stride());
+        for (std::size_t i = begin + movers; i < end; ++i) {
+            auto set = s.set_bound(objects[i], boxes[i], i);
+            if (!set && first) first = std::move(set);
         }
-        if (i < certain && state_->table.contains(object) &&
-            state_->stage_box_of_mover(object.index, BoundKind::box, box, 0.0))
-            return {};
-        return state_->set_bound(object, box, i);
-    });
+    }
+    return first;
 }
 
 Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {

@@ -8,21 +8,22 @@
 namespace crofton::world {
 namespace {
 
-constexpr std::uint8_t kUpdatesToMove = 2;  // in a row, until an item leaves the tree
+constexpr std::uint8_t kUpdatesToMove = 2;    // in a row, until an item leaves the tree
+constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new item does not wait in the list any more
 // Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
 constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
+// A tree of no more items is built anew in one go, within a few milliseconds, once such a part of them has come or
+// gone, or waits to enter: in the background they would change faster than they are built, and insertions wear it.
+constexpr std::size_t kSmallTree = 32768, kSmallTreeChanges = 24, kSmallTreeWaiting = 48, kAttachedToSmallTree = 16;
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.
 constexpr std::size_t kBudgetPerChange = 128;
-constexpr std::size_t kChangesToRebuild = 64;  // the tree is rebuilt once a part of 1 / 64 of its items has changed
+// The tree is rebuilt once such a part of its items has changed.
+constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 
 void must([[maybe_unused]] const Result<void>& done) {
     CROFTON_ASSERT(done.has_value(), "the index and its tree disagree");
-}
-
-bool same(const Obb& a, const Obb& b) {
-    return a.center == b.center && a.axes == b.axes && a.half_extents == b.half_extents;
 }
 
 }  // namespace
@@ -51,13 +52,17 @@ void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
 void SpatialIndex::add_mover(ItemId item, const Obb& box, std::uint32_t last_moved) {
     items_[item].place = Place::moving;
     items_[item].entry = moving_.add(item, box, last_moved);
+    relisted_.push_back(item);
 }
 
 // Out of the list or its group, where the last item takes its entry.
 void SpatialIndex::take(ItemId item) {
     const Item& taken = items_[item];
     if (taken.place == Place::moving) {
-        items_[moving_.item(moving_.size() - 1)].entry = taken.entry;
+        const ItemId last = moving_.item(moving_.size() - 1);
+        items_[last].entry = taken.entry;
+        relisted_.push_back(item);
+        relisted_.push_back(last);
         moving_.remove(taken.entry);
         return;
     }
@@ -72,6 +77,7 @@ void SpatialIndex::take(ItemId item) {
 void SpatialIndex::detach(ItemId item) {
     must(tree_.detach(item));
     ++tree_changes_;
+    ++came_or_went_;
     wants_refit_ = true;
 }
 
@@ -100,7 +106,8 @@ void SpatialIndex::note_move(ItemId id) {
     moved_items_.push_back(id);
 }
 
-void SpatialIndex::set_box(ItemId id, const Obb& box) {
+// Than in the list.
+void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
     Item& item = items_[id];
     switch (item.place) {
         case Place::nowhere:
@@ -112,7 +119,6 @@ void SpatialIndex::set_box(ItemId id, const Obb& box) {
             group(item.place).boxes[item.entry] = box;
             return;
         case Place::moving:
-            if (moving_.set_box(item.entry, box, now_)) moved_items_.push_back(id);
             return;
         case Place::resting:
             if (same(tree_.boxes()[id], box)) return;
@@ -157,7 +163,7 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     }
     moved_.clear();
     moved_boxes_.clear();
-    enter(changes, executor);
+    enter(settings, changes, executor);
     bring_to_rest(settings, changes, executor);
     if (wants_refit_) tree_.refit();
     wants_refit_ = false;
@@ -168,13 +174,17 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     return changes;
 }
 
-// Begins once enough has changed since the last rebuild began.
+// Begins once enough has changed since the last rebuild began; in a small tree not while items come and go, for
+// which bring_to_rest() builds it anew.
 void SpatialIndex::rebuild_step(std::size_t budget) {
     const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
+    const bool more_come_or_go = came_or_went_ != std::exchange(came_or_went_before_, came_or_went_);
     if (budget == 0) return;
     if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
     if (!rebuilding_) {
-        if (tree_changes_ * kChangesToRebuild < tree_.item_count() || tree_changes_ == 0) return;
+        const bool is_small = tree_.item_count() <= kSmallTree;
+        const std::size_t part = is_small ? kChangesToRebuildSmallTree : kChangesToRebuild;
+        if (tree_changes_ * part < tree_.item_count() || tree_changes_ == 0 || (is_small && more_come_or_go)) return;
         rebuilding_ = true;
         changes_at_start_ = tree_changes_;
     }
@@ -182,11 +192,12 @@ void SpatialIndex::rebuild_step(std::size_t budget) {
     rebuilding_ = false;
     tree_changes_ -= changes_at_start_;
     changes_before_ = tree_changes_;
+    came_or_went_ = came_or_went_before_ = 0;
 }
 
-// What is new waits in the list until it has rested: many come and go before. What has just been loaded is built in one
-// go.
-void SpatialIndex::enter(Changes& changes, Executor& executor) {
+// What is new waits in the list until it is seen to rest: what moves from the beginning stays there. What has just been
+// loaded is built in one go.
+void SpatialIndex::enter(const Settings& settings, Changes& changes, Executor& executor) {
     Group& entering = group(Place::entering);
     if (entering.items.size() > std::max(kFewItems, tree_.item_count() / 2)) {
         rested_.assign(entering.items.begin(), entering.items.end());
@@ -194,11 +205,12 @@ void SpatialIndex::enter(Changes& changes, Executor& executor) {
         changes.tree_built = true;
         return;
     }
+    const std::uint32_t early = settings.updates_to_rest - std::min(settings.updates_to_rest, kUpdatesToEnter);
     while (!entering.items.empty()) {
         const ItemId item = entering.items.back();
         const Obb box = entering.boxes.back();
         take(item);
-        add_mover(item, box, now_);
+        add_mover(item, box, now_ - std::min(now_, early));
     }
 }
 
@@ -209,17 +221,23 @@ void SpatialIndex::attach(ItemId item) {
     items_[item].place = Place::resting;
     must(tree_.attach(item, last));
     ++tree_changes_;
+    ++came_or_went_;
 }
 
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
     rested_.clear();
     moving_.list_rested(now_, settings.updates_to_rest, rested_);
-    if (rested_.size() > std::max(kFewItems, tree_.item_count())) {
+    const std::size_t items = tree_.item_count();
+    const bool is_small = items > kFewItems && items <= kSmallTree;
+    const std::size_t most_waiting = std::max(kFewItems, is_small ? items / kSmallTreeWaiting : items);
+    if (rested_.size() > most_waiting || (is_small && came_or_went_ > items / kSmallTreeChanges)) {
         build_tree(rested_, executor);
         changes.tree_built = true;
         return;
     }
-    rested_.resize(std::min(rested_.size(), std::max(kAttachedPerUpdate, moving_.size() / kAttachedPart)));
+    const std::size_t most =
+        is_small ? kAttachedToSmallTree : std::max(kAttachedPerUpdate, moving_.size() / kAttachedPart);
+    rested_.resize(std::min(rested_.size(), most));
     for (const ItemId item : rested_) attach(item);
 }
 
@@ -244,7 +262,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     // The lowest ids are given first.
     for (std::size_t i = removed.size(); i-- > 0;) must(built->remove(removed[i]));
     tree_ = std::move(*built);
-    tree_changes_ = changes_before_ = 0;
+    tree_changes_ = changes_before_ = came_or_went_ = came_or_went_before_ = 0;
     rebuilding_ = false;
 }
 

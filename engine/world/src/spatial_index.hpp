@@ -28,7 +28,12 @@ class SpatialIndex {
     // A new item, shown, without a box: it is nowhere until it gets one.
     [[nodiscard]] Result<ItemId> add(std::uint32_t layers);
     void remove(ItemId item);
-    void set_box(ItemId item, const Obb& box);
+    void set_box(ItemId item, const Obb& box) {
+        if (items_[item].place != Place::moving)
+            set_box_elsewhere(item, box);
+        else if (moving_.set_box(items_[item].entry, box, now_))
+            moved_items_.push_back(item);
+    }
     void set_shown(ItemId item, bool shown);
     void set_layers(ItemId item, std::uint32_t layers);
 
@@ -38,15 +43,26 @@ class SpatialIndex {
         moving_.stage(items_[item].entry, box, now_);
         return true;
     }
+    // Likewise many, by their entries in the list; boxes are `stride` bytes apart.
+    void stage_movers(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride) {
+        moving_.stage(entries, first, stride, now_);
+    }
+    // kNoIndex: the item is not in the list.
+    [[nodiscard]] std::uint32_t mover_entry(ItemId item) const {
+        return items_[item].place == Place::moving ? items_[item].entry : kNoIndex;
+    }
     // Takes over the staged boxes. Before any other change of an update.
     void commit() {
         moved_items_.clear();
+        relisted_.clear();
         moving_.commit(now_, moved_items_);
     }
 
     Changes update(const Settings& settings, Executor& executor);
     // That the last update() found in the tree or the list and with another box. One may be named twice.
     [[nodiscard]] std::span<const ItemId> moved_items() const { return moved_items_; }
+    // That have come into the list, left it or got another entry since the last commit(). One may be named twice.
+    [[nodiscard]] std::span<const ItemId> relisted_items() const { return relisted_; }
 
     [[nodiscard]] std::size_t size() const { return items_.size(); }  // ids are below it
     [[nodiscard]] bool is_placed(ItemId item) const {                 // in the tree or the list
@@ -77,11 +93,12 @@ class SpatialIndex {
     void put(ItemId item, Place place, const Obb& box);
     void add_mover(ItemId item, const Obb& box, std::uint32_t last_moved);
     void take(ItemId item);
+    void set_box_elsewhere(ItemId item, const Obb& box);
     void detach(ItemId item);
     void note_move(ItemId item);
     void rebuild_step(std::size_t budget);
     void attach(ItemId item);
-    void enter(Changes& changes, Executor& executor);
+    void enter(const Settings& settings, Changes& changes, Executor& executor);
     void bring_to_rest(const Settings& settings, Changes& changes, Executor& executor);
     void build_tree(std::span<const ItemId> entering, Executor& executor);
 
@@ -89,13 +106,14 @@ class SpatialIndex {
     Group groups_[3];  // by Place: nowhere (empty), hidden, entering
     boxtree::BoxTree tree_;
     MovingList moving_;
-    Vector<ItemId> moved_items_;     // in this update
-    Vector<ItemId> moved_, rested_;  // the first: of those the tree's, with
+    Vector<ItemId> moved_items_, relisted_;  // in this update
+    Vector<ItemId> moved_, rested_;          // the first: of those the tree's, with
     Vector<Obb> moved_boxes_;
     std::uint32_t now_ = 1;              // counts updates
     std::uint32_t members_changed_ = 0;  // in this update
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.
     std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
+    std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update
     bool rebuilding_ = false, wants_refit_ = false;
 };
 

@@ -88,6 +88,7 @@ void World::State::apply_changes() {
         pairs_changed |= object.kind != change.bound.kind || object.radius != change.bound.radius;
         object.kind = change.bound.kind;
         object.radius = change.bound.radius;
+        rebound.push_back(change.object);
         index.set_box(change.object, change.bound.box);
     }
     staged.clear();
@@ -98,6 +99,18 @@ void World::State::show(std::uint32_t id) {
     const world::Object& object = table.objects[id];
     index.set_shown(id, object.shown && !object.only_occludes && scene.layer_masks()[object.instance] != 0);
     occluders.note(id);
+}
+
+// Whose box has an entry in the list for set_bounds().
+void World::State::note_movers() {
+    const auto note = [&](std::uint32_t id) {
+        const world::Object& object = table.objects[id];
+        const bool is_box = object.alive && object.kind == BoundKind::box;
+        movers.set(table.handle(id), is_box ? index.mover_entry(id) : kNoIndex);
+    };
+    for (const std::uint32_t id : index.relisted_items()) note(id);
+    for (const std::uint32_t id : rebound) note(id);
+    rebound.clear();
 }
 
 // What the scene's nodes have moved.
@@ -125,6 +138,7 @@ Result<void> World::update(Executor& executor) {
     s.apply_scene(executor);
     const auto changes = s.index.update(
         {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
+    s.note_movers();
     s.update_occluders();
     Result<void> found;
     const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;

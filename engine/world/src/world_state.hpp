@@ -48,6 +48,7 @@ struct World::State {
     WorldStatistics statistics;
     world::ObjectTable table;
     world::SpatialIndex index;
+    world::MoverTable movers;
     world::Bodies bodies;
     world::ContactFinder finder;
     world::Occluders occluders;
@@ -57,8 +58,8 @@ struct World::State {
     Vector<std::uint32_t> object_of_instance;
     Vector<glm::vec3> vertices;  // scratch
     Vector<StagedChange> staged;
-    Vector<std::uint32_t> removed;
-    bool pairs_changed = false;  // something other than a box
+    Vector<std::uint32_t> removed, rebound;  // the second: objects that have got a bound in this update
+    bool pairs_changed = false;              // something other than a box
 
     [[nodiscard]] Result<void> check(ObjectHandle object, std::uint64_t item) const;
     [[nodiscard]] Result<void> check(NodeHandle node, std::uint64_t item) const;
@@ -73,6 +74,7 @@ struct World::State {
     [[nodiscard]] bool stage_box_of_mover(std::uint32_t object, BoundKind kind, const Obb& box, double radius);
     void mark_removed(std::uint32_t object);
     void apply_changes();
+    void note_movers();
     void apply_scene(Executor& executor);
     void show(std::uint32_t object);
     void update_occluders();

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What bench_world measures: the same frames by hand and in a World, in turns.
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+namespace crofton::bench {
+
+// The least microseconds of a frame.
+struct FrameTimes {
+    double by_hand = std::numeric_limits<double>::infinity(), world = std::numeric_limits<double>::infinity();
+};
+
+template <class Work>
+double microseconds(Work work) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    work();
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// In turns, so that both meet the same machine. Each is told which frame it is.
+template <class ByHand, class InWorld>
+FrameTimes compare(int frames, ByHand by_hand, InWorld in_world) {
+    FrameTimes times;
+    for (int frame = 0; frame < frames; ++frame) {
+        times.by_hand = std::min(times.by_hand, microseconds([&] { by_hand(frame); }));
+        times.world = std::min(times.world, microseconds([&] { in_world(frame); }));
+    }
+    return times;
+}
+
+// Ends the program where the two sides differ: then the times say nothing.
+inline void must(bool good, const char* what) {
+    if (good) return;
+    std::fprintf(stderr, "bench_world: %s\n", what);
+    std::exit(1);
+}
+
+// World's objects are bounds (world_bounds.cpp).
+FrameTimes views_ascending(std::size_t count, std::size_t moving, int frames);
+FrameTimes views_in_tree_order(std::size_t count, std::size_t moving, int frames);
+FrameTimes views_of_structs(std::size_t count, std::size_t moving, int frames);
+FrameTimes contacts(std::size_t count, std::size_t moving, int frames);
+FrameTimes rays(std::size_t count, std::size_t moving, int frames);
+
+// Nodes move (world_nodes.cpp): in the World, and in the engine's own scene graph.
+FrameTimes views_of_meshes(std::size_t count, std::size_t moving, int frames);
+FrameTimes views_of_own_scene(std::size_t count, std::size_t moving, int frames);
+
+// Spawns and despawns among as many that live: rows of a CSV to stdout (world_churn.cpp).
+void churn(std::size_t live_count, std::size_t spawns);
+
+}  // namespace crofton::bench
