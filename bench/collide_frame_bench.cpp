@@ -108,9 +108,9 @@ void mesh_refit(benchmark::State& state) {
     state.counters["triangles"] = static_cast<double>(tree->triangle_count());
 }
 
-void mesh_contacts(benchmark::State& state) {
+void mesh_contacts(benchmark::State& state, bool manifold) {
     const TriangleMesh mesh = shared_mesh("bunny");
-    const auto tree = mesh::MeshTree::build(mesh);
+    const auto tree = mesh::MeshTree::build(mesh, {.rays = true});
     if (!tree) return state.SkipWithError("shared data is absent");
     const auto poses = close_poses(*tree, 100);
     Vector<mesh::MeshContact> found;
@@ -120,6 +120,7 @@ void mesh_contacts(benchmark::State& state) {
         for (const RigidTransform& pose : poses) {
             mesh::contacts(*tree, *tree, pose, found);
             count += found.size();
+            if (manifold) benchmark::DoNotOptimize(collide::contact_manifold(*tree, *tree, pose, found).depth);
         }
     }
     state.counters["contacts"] = static_cast<double>(count) / 100.0;
@@ -136,7 +137,10 @@ BENCHMARK(few_movers)
     ->ArgsProduct({{10000, 100000}, {0, 10, 100, 1000}})
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK(mesh_refit)->Name("mesh/bunny refit/crofton")->Unit(benchmark::kMicrosecond);
-BENCHMARK(mesh_contacts)->Name("mesh/bunny contacts/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_contacts, contacts, false)->Name("mesh/bunny contacts/crofton")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(mesh_contacts, manifold, true)
+    ->Name("mesh/bunny contacts and manifold/crofton")
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace crofton::bench

@@ -83,16 +83,16 @@ void count_rays(benchmark::State& state, std::size_t rays, int hits) {
         static_cast<double>(rays) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-const mesh::MeshTree* tree_of(const char* name) {
+const mesh::MeshTree* tree_of(const char* name, bool prepared) {
     static std::map<std::string, mesh::MeshTree> trees;
-    const auto [place, is_new] = trees.try_emplace(name);
+    const auto [place, is_new] = trees.try_emplace(name + std::to_string(prepared));
     if (is_new)
-        if (auto built = mesh::MeshTree::build(mesh_of(name), {.rays = true})) place->second = std::move(*built);
+        if (auto built = mesh::MeshTree::build(mesh_of(name), {.rays = prepared})) place->second = std::move(*built);
     return place->second.triangle_count() == 0 ? nullptr : &place->second;
 }
 
-void single_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
-    const mesh::MeshTree* const tree = tree_of(name);
+void single_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count, bool prepared) {
+    const mesh::MeshTree* const tree = tree_of(name, prepared);
     if (tree == nullptr) return state.SkipWithError("shared data is absent");
     const auto rays = make(mesh_of(name), count);
     int hits = 0;
@@ -165,7 +165,10 @@ void ray_benchmarks() {
             for (const std::size_t count : {std::size_t{256}, std::size_t{20'000}}) {
                 const std::string name =
                     std::string("rays/") + mesh + " " + kind.name + " " + std::to_string(count) + "/";
-                benchmark::RegisterBenchmark((name + "crofton").c_str(), single_rays, mesh, kind.make, count)
+                benchmark::RegisterBenchmark((name + "crofton").c_str(), single_rays, mesh, kind.make, count, true)
+                    ->Unit(benchmark::kMicrosecond);
+                benchmark::RegisterBenchmark((name + "not prepared").c_str(), single_rays, mesh, kind.make, count,
+                                             false)
                     ->Unit(benchmark::kMicrosecond);
 #if defined(CROFTON_HAVE_EMBREE)
                 benchmark::RegisterBenchmark((name + "embree").c_str(), embree_rays, mesh, kind.make, count)

@@ -5,6 +5,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include <crofton/geometry/closest_points.hpp>
 #include "mesh/meshes.hpp"
@@ -147,7 +148,10 @@ TEST_SUITE("mesh/mesh_mesh") {
             for (std::size_t i = 0; i < found.size(); ++i) {
                 REQUIRE(found[i].triangles == pairs[i]);
                 const Triangle a = triangle(mesh, pairs[i].first, {}), b = triangle(mesh, pairs[i].second, pose);
-                const SegmentOfContact segment = contact_segment(a, b);
+                SegmentOfContact segment = contact_segment(a, b);
+                const glm::dvec3 along =
+                    glm::cross(glm::cross(a[1] - a[0], a[2] - a[0]), glm::cross(b[1] - b[0], b[2] - b[0]));
+                if (glm::dot(along, segment.end - segment.begin) < 0.0) std::swap(segment.begin, segment.end);
                 REQUIRE(found[i].segment.begin == segment.begin);
                 REQUIRE(found[i].segment.end == segment.end);
                 const glm::dvec3 n = glm::cross(b[1] - b[0], b[2] - b[0]);

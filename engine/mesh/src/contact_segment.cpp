@@ -40,10 +40,6 @@ glm::dvec3 crossing(const glm::dvec3& p, const glm::dvec3& q, double at_p, doubl
     return p + std::clamp(at_p / (at_p - at_q), 0.0, 1.0) * (q - p);
 }
 
-glm::dvec3 scaled_normal(const Triangle& t) {
-    return glm::cross(t[1] - t[0], t[2] - t[0]);
-}
-
 // Points at which the edges of `t` cross the plane of `other` within it, or run in it.
 void add_edge_points(const Triangle& t, const Triangle& other, SegmentOfContact& best, int& count) {
     const glm::dvec3 n = scaled_normal(other);

@@ -7,6 +7,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include <crofton/geometry/closest_points.hpp>
 #include "contact_segment.hpp"
@@ -88,10 +89,9 @@ void for_each_hit(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidT
     statistics->exact_tests += exact_tests;
 }
 
-glm::dvec3 unit_normal(const Triangle& t) {
-    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
-    const double length = glm::length(n);
-    return length > 0.0 ? n / length : glm::dvec3(0.0);
+glm::dvec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 ? v / length : glm::dvec3(0.0);
 }
 
 }  // namespace
@@ -118,8 +118,12 @@ void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTrans
     found.clear();
     for_each_hit(a, b, b_to_a, false, statistics, [&](const Hit& hit) {
         const Triangle first = triangle_of(hit.in_a, hit.lane_a), second = triangle_of(hit.in_b, hit.lane_b, b_to_a);
-        MeshContact contact{hit.indices(), contact_segment(first, second, hit.edges), unit_normal(second)};
-        if (contact.normal == glm::dvec3(0.0)) contact.normal = unit_normal(first);
+        const glm::dvec3 normals[2] = {scaled_normal(first), scaled_normal(second)};
+        MeshContact contact{hit.indices(), contact_segment(first, second, hit.edges), unit(normals[1])};
+        SegmentOfContact& segment = contact.segment;
+        if (glm::dot(glm::cross(normals[0], normals[1]), segment.end - segment.begin) < 0.0)
+            std::swap(segment.begin, segment.end);
+        if (contact.normal == glm::dvec3(0.0)) contact.normal = unit(normals[0]);
         found.push_back(contact);
         return false;
     });

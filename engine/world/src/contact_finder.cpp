@@ -103,20 +103,21 @@ void ContactFinder::touch_triangles(const PosedTree& a, const PosedTree& b, Work
     }
     if (!touch.hit) return;
     touch.triangle_count = static_cast<std::uint32_t>(worker.found.size());
-    glm::dvec3 normals(0.0);
     for (mesh::MeshContact contact : worker.found) {
         contact.segment = {transform(a.pose, contact.segment.begin), transform(a.pose, contact.segment.end)};
         contact.normal = a.pose.rotation * contact.normal;
-        normals -= contact.normal;
         worker.triangles.push_back(contact);
     }
-    if (options_.mesh_depth) {
-        const mesh::MeshDepth way_out = mesh::penetration(*a.tree, *b.tree, b_to_a, worker.found);
-        touch.depth = way_out.depth;
-        touch.normal = a.pose.rotation * way_out.direction;
-    } else if (const double length = glm::length(normals); length > 0.0) {
-        touch.normal = normals / length;
-    }
+    const collide::Manifold manifold = collide::contact_manifold(*a.tree, *b.tree, b_to_a, worker.found);
+    touch.point_count = static_cast<std::uint32_t>(manifold.count);
+    for (int i = 0; i < manifold.count; ++i)
+        worker.points.push_back({transform(a.pose, manifold.points[i].position), manifold.points[i].depth});
+    touch.depth = manifold.depth;
+    touch.normal = a.pose.rotation * manifold.normal;
+    if (!options_.mesh_depth) return;
+    const mesh::MeshDepth way_out = mesh::penetration(*a.tree, *b.tree, b_to_a, worker.found);
+    touch.depth = way_out.depth;
+    touch.normal = a.pose.rotation * way_out.direction;
 }
 
 // The normal points from the mesh to the ball.

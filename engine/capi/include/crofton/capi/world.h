@@ -33,7 +33,7 @@ typedef struct crofton_world_options {
     uint32_t without_pairs;       /* 1: neither pairs nor contacts are looked for */
     uint32_t without_contacts;    /* 1: pairs alone */
     uint32_t without_containment; /* 1: a closed mesh around another object does not touch it */
-    uint32_t with_mesh_depth;     /* 1: depth and direction of contacts between meshes, which cost more */
+    uint32_t with_mesh_depth;     /* 1: contacts between meshes have a way out, which costs more */
     uint64_t max_pairs;           /* more are an error; 0: 2^24 */
     uint64_t rebuild_budget;      /* items' worth of work on the tree an update; 0: a 128th of the objects and 512 */
     uint32_t without_rebuild;     /* 1: no such work, and no allocation for it */

@@ -55,7 +55,7 @@ typedef struct crofton_object_contact {
     uint32_t inside;                       /* a crofton_containment of first (a) and second (b) */
     double normal[3];                      /* unit, from first to second; 0 where no direction is known */
     double depth;                          /* 0 between meshes unless options ask for it */
-    const crofton_contact_point* points;   /* of two bounds, or a mesh and a ball; valid until the next update */
+    const crofton_contact_point* points;   /* at most four, in the world; valid until the next update */
     const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
     size_t point_count, triangle_count;
 } crofton_object_contact;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 
 namespace crofton::collide {
 
@@ -84,6 +85,13 @@ enum class ManifoldPoints : std::uint8_t {
 // meet exactly, but by less than rounding tells, give one point at least. Points are off by rounding of the boxes' size
 // and distance, not of their coordinates.
 [[nodiscard]] Manifold contact_manifold(const Obb& a, const Obb& b, ManifoldPoints points = ManifoldPoints::reduced);
+// Where two meshes touch, in a's frame: at most four points, from all their contacts (mesh::contacts). The normal is
+// that of the curve in which the surfaces cross, by its vector area: the direction in which an even pressure between
+// the bodies would push. The points are the deepest and those that keep most of the area. A depth is how far b has to
+// move along the normal until the surfaces part on the line through the point; 0 where the point lies in no overlap. No
+// contacts: no points.
+[[nodiscard]] Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
+                                        std::span<const mesh::MeshContact> contacts);
 [[nodiscard]] Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b);  // one point, at the deepest place
 [[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box,
                                         ManifoldPoints points = ManifoldPoints::reduced);

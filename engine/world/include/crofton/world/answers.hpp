@@ -141,8 +141,10 @@ struct Contact {
     ContactPhase phase = ContactPhase::began;
     mesh::Containment inside = mesh::Containment::none;
     glm::dvec3 normal{0.0};  // unit, from the first to the second; zero where no direction is known
-    double depth = 0.0;      // moving the second so far along it ends the contact; 0 between meshes unless asked for
-    std::span<const collide::ContactPoint> points;  // of two bounds, or a mesh and a ball
+    // Moving the second so far along the normal ends the contact. Between meshes that is so with
+    // WorldOptions::mesh_depth; without, it is the depth of the deepest point.
+    double depth = 0.0;
+    std::span<const collide::ContactPoint> points;  // in the world's frame; at most four; none of a mesh inside another
     std::span<const mesh::MeshContact> triangles;   // of two meshes, or a mesh and a box
 };
 

@@ -21,7 +21,7 @@ struct WorldOptions {
     bool pairs = true;        // false: neither pairs nor contacts are looked for
     bool contacts = true;     // false: pairs alone
     bool containment = true;  // a closed mesh around another object touches it
-    bool mesh_depth = false;  // depth and direction of contacts between meshes, which cost more than finding them
+    bool mesh_depth = false;  // a way out of contacts between meshes, which costs more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
     // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
