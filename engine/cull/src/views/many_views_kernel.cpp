@@ -240,17 +240,23 @@ class ManyWalk {
         }
     }
 
+    // A leaf's items, and which views see each of them.
+    struct LeafMasks {
+        static constexpr std::size_t kParts = (boxtree::kWidth + hn::MaxLanes(DU()) - 1) / hn::MaxLanes(DU());
+        VU part[kParts];
+    };
+
     HWY_INLINE void look_into(std::uint32_t id) {
         const std::uint32_t whole = out_.whole[id], open = out_.open[id];
         out_.whole[id] = out_.open[id] = 0;
         const DU du;
+        constexpr std::size_t kLanes = hn::MaxLanes(DU());
+        LeafMasks masks;
+        for (VU& part : masks.part) part = hn::Set(du, whole);
+        for_each_bit(open, [&](unsigned v) HWY_ATTR { test_view(v, id, planes_of(v)[id], masks); });
         const std::size_t count = in_.leaf_counts[id];
-        for (std::size_t l = 0; l < boxtree::kWidth && l < count; l += hn::Lanes(du)) {
-            VU mask = hn::Set(du, whole);
-            for_each_bit(open, [&](unsigned v) HWY_ATTR {
-                const MF sees = test_view(v, id, l, planes_of(v)[id]);
-                mask = hn::Or(mask, hn::IfThenElseZero(hn::RebindMask(du, sees), hn::Set(du, 1u << v)));
-            });
+        for (std::size_t l = 0; l < count; l += kLanes) {
+            const VU mask = masks.part[l / kLanes];
             const auto seen = hn::And(hn::Ne(mask, hn::Zero(du)), hn::FirstN(du, count - l));
             const VU items = hn::Load(du, in_.slot_items + std::size_t{id} * boxtree::kWidth + l);
             store_masks(simd::compress(du, mask, seen), out_.count);
@@ -258,8 +264,9 @@ class ManyWalk {
         }
     }
 
-    // The boxes of a leaf that view v sees, lanes l on.
-    HWY_INLINE MF test_view(std::uint32_t v, std::uint32_t id, std::size_t l, std::uint32_t straddled) const {
+    // Adds view v's bit for the boxes of a leaf that it sees. The planes are brought before the leaf once for all
+    // lanes.
+    HWY_INLINE void test_view(std::uint32_t v, std::uint32_t id, std::uint32_t straddled, LeafMasks& masks) const {
         const boxtree::Leaf& leaf = in_.leaves[id];
         const KernelView& view = in_.views[v];
         LeafPlane planes[KernelView::kMaxPlanes];
@@ -267,18 +274,28 @@ class ManyWalk {
         for_each_bit(straddled, [&](unsigned i) {
             planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
         });
-        const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
-        const BoxTest test = HWY_LIKELY(count == 1) ? test_leaf(LeafRows(leaf, l), lanes, planes[0])
-                                                    : test_leaf(leaf, l, lanes, planes, count, in_.exact);
-        const MF seen = hn::Or(test.inside, test.straddling);
-        if (HWY_LIKELY(hn::AllFalse(DF(), test.undecided))) return seen;
+        const DU du;
+        const VU bit = hn::Set(du, 1u << v);
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
+            const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
+            const BoxTest test = HWY_LIKELY(count == 1) ? test_leaf(LeafRows(leaf, l), lanes, planes[0])
+                                                        : test_leaf(leaf, l, lanes, planes, count, in_.exact);
+            MF seen = hn::Or(test.inside, test.straddling);
+            if (HWY_UNLIKELY(!hn::AllFalse(DF(), test.undecided)))
+                seen = hn::Or(seen, decide(v, id, l, bits_of(test.undecided)));
+            VU& part = masks.part[l / hn::Lanes(du)];
+            part = hn::Or(part, hn::IfThenElseZero(hn::RebindMask(du, seen), bit));
+        }
+    }
+
+    HWY_INLINE MF decide(std::uint32_t v, std::uint32_t id, std::size_t l, std::uint32_t undecided) const {
         alignas(64) std::uint32_t decided[boxtree::kWidth] = {};
-        for_each_bit(bits_of(test.undecided), [&](unsigned lane) {
+        for_each_bit(undecided, [&](unsigned lane) {
             const auto slot = static_cast<std::uint32_t>(id * boxtree::kWidth + l + lane);
             decided[lane] = in_.decide(in_.context, slot, v);
         });
         const DU du;
-        return hn::Or(seen, hn::RebindMask(DF(), hn::Ne(hn::Load(du, decided), hn::Zero(du))));
+        return hn::RebindMask(DF(), hn::Ne(hn::Load(du, decided), hn::Zero(du)));
     }
 
     const ManyViewsInput& in_;

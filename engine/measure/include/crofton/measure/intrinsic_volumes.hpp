@@ -98,9 +98,13 @@ struct PlanarMeasures {
 [[nodiscard]] double improper_outside(const PlanarMeasures& query, const PlanarMeasures& bound,
                                       const PlanarMeasures& object);
 
-// m_i: the measure of motions under which `query` contains the object but not the bound, to first order for queries
-// large beside the bound: F_B·(M − M₀)/4π in space, L_B·(L − L₀)/2π in the plane. What is left out grows with the total
-// length of the query's edges (space) and not at all (plane). Rays contain nothing: 0.
+// m_i: the measure of motions under which `query` contains the object but not the bound. Intrinsic volumes do not
+// determine it; this is an upper bound, the lesser of two:
+// - to first order F_B·(M − M₀)/4π in space, L_B·(L − L₀)/2π in the plane. The relative error goes to 0 as the query
+//   grows. It is an upper bound, since no face of what a query leaves of itself is larger than the query's own.
+// - the measure of motions that contain the object, by Brunn's and Minkowski's inequality: for bounds as large as the
+//   query. Rays contain nothing: 0.
+// Requires object ⊂ bound, both convex.
 [[nodiscard]] double improper_inside(const IntrinsicVolumes& query, const IntrinsicVolumes& bound,
                                      const IntrinsicVolumes& object);
 [[nodiscard]] double improper_inside(const PlanarMeasures& query, const PlanarMeasures& bound,
