@@ -63,6 +63,32 @@ TEST_SUITE("cli/verify") {
               std::map<std::string, std::uint64_t>{{"axis-aligned boxes", 15000}, {"balls", 15000}, {"boxes", 15000}});
     }
 
+    TEST_CASE("nothing seen is culled, in set-ups that break others and in a whole scene") {
+        CliRun run = run_cli("verify occlude --trials 3000 --json -");
+        CHECK(run.status == 0);
+        std::size_t rows = 0;
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            const std::string claim = row["claim"];
+            if (claim.find("witness") == std::string::npos) continue;
+            ++rows;
+            if (claim.find("touch") == std::string::npos) CHECK(row["cases"].get<std::uint64_t>() > 0);
+        }
+        CHECK(rows == 12);
+        run = run_cli("verify occlude --scene town --trials 5000 --json -");
+        CHECK(run.status == 0);
+        CHECK(run.json().size() == 4);
+        for (const auto& row : run.json()) {
+            CHECK(row["holds"] == true);
+            CHECK(row["cases"].get<std::uint64_t>() > 1000);
+            CHECK(row["claim"].get<std::string>().find("(0.0 %") == std::string::npos);
+        }
+        CHECK(run_cli("verify lines --scene town").status == 2);
+        run = run_cli("verify occlude --scene no_such_scene.obj");
+        CHECK(run.status == 2);
+        CHECK(run.err.find("no_such_scene.obj") != std::string::npos);
+    }
+
     TEST_CASE("the table lists one claim a line") {
         const CliRun run = run_cli("verify lines --trials 1000");
         CHECK(run.status == 0);

@@ -2,31 +2,11 @@
 #include "mesh_pieces.hpp"
 
 #include <algorithm>
+#include <crofton/core/disjoint_sets.hpp>
 #include <numeric>
 
 namespace crofton::mesh {
 namespace {
-
-// Disjoint sets of vertices, with paths halved on the way (Tarjan, van Leeuwen 1984).
-class VertexSets {
-  public:
-    explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    [[nodiscard]] std::uint32_t find(std::uint32_t v) {
-        while (parent_[v] != v) {
-            parent_[v] = parent_[parent_[v]];
-            v = parent_[v];
-        }
-        return v;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    Vector<std::uint32_t> parent_;
-};
 
 struct Edge {
     std::uint32_t low, high;
@@ -72,7 +52,7 @@ class PieceFinder {
 
     const TriangleMesh& mesh_;
     std::span<const std::uint32_t> triangles_;
-    VertexSets sets_;
+    DisjointSets sets_;
     Vector<std::uint32_t> lowest_;  // by vertex: the lowest of those welded to it
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/core/disjoint_sets.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <glm/common.hpp>
 #include <numeric>
@@ -95,29 +96,8 @@ Vector<Side> sorted_sides(const PieceMesh& mesh) {
     return sides;
 }
 
-// Disjoint sets of triangles, with paths halved on the way (Tarjan, van Leeuwen 1984).
-class TriangleSets {
-  public:
-    explicit TriangleSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    [[nodiscard]] std::uint32_t find(std::uint32_t t) {
-        while (parent_[t] != t) {
-            parent_[t] = parent_[parent_[t]];
-            t = parent_[t];
-        }
-        return t;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    Vector<std::uint32_t> parent_;
-};
-
 // Numbers the sets by their lowest triangles, which are their roots, and lists the triangles of each.
-Vector<std::uint32_t> list_pieces(PieceMesh& mesh, TriangleSets& sets) {
+Vector<std::uint32_t> list_pieces(PieceMesh& mesh, DisjointSets& sets) {
     const std::size_t count = mesh.triangles.size();
     Vector<std::uint32_t> piece_of(count, 0);
     for (std::uint32_t t = 0; t < count; ++t) {
@@ -155,7 +135,7 @@ PieceMesh split_into_pieces(const TriangleMesh& mesh) {
     PieceMesh result;
     read_triangles(mesh, result);
     const Vector<Side> sides = sorted_sides(result);
-    TriangleSets sets(result.triangles.size());
+    DisjointSets sets(result.triangles.size());
     for (std::size_t i = 1; i < sides.size(); ++i)
         if (sides[i].same_edge(sides[i - 1])) sets.unite(sides[i].triangle, sides[i - 1].triangle);
     const Vector<std::uint32_t> piece_of = list_pieces(result, sets);
