@@ -49,6 +49,8 @@ TEST_SUITE("cli/frames") {
             {scratch().file("empty.obj"), "empty.obj"},
             {scratch().file("far.gltf"), "node 0 'runaway' and all below it: left out: transform"},
             {"town --draw --no-draw", "draw"},
+            {"town --occluders 10", "occlude"},
+            {"town --occlude --occlusion-size 4x90", "4x90"},
         };
         for (const Case& wrong : cases) {
             CAPTURE(wrong.arguments);
@@ -143,6 +145,50 @@ TEST_SUITE("cli/frames") {
             CHECK(document["summary"]["verified"] == true);
             CHECK(document["summary"]["mismatches"] == 0);
         }
+    }
+
+    TEST_CASE("with --occlude frames have both columns, the second has less, and nothing that owns a pixel is hidden") {
+        for (const char* choice : {"", "--bounds sphere", "--bounds aabb --cull flat", "--occlusion-size 64x36",
+                                   "--occluders 0", "--threads 2"}) {
+            CAPTURE(choice);
+            const CliRun run =
+                run_cli(kSmallTown + "--frames 6 --camera street --occlude --verify --ids --json - " + choice);
+            REQUIRE(run.status == 0);
+            const json document = run.json();
+            CHECK(document["summary"]["mismatches"] == 0);
+            CHECK(document["summary"]["hidden_but_seen"] == 0);
+            CHECK(document["summary"]["changed_pictures"] == 0);
+            const bool hides = std::string(choice) != "--occluders 0";
+            std::size_t hidden = 0;
+            for (const json& frame : document["frames"]) {
+                const json& with = frame["occlusion"];
+                REQUIRE(with.is_object());
+                for (const char* field : {"visible", "occluders", "triangles_submitted", "triangles_passed",
+                                          "triangles_clipped", "gpu", "owners", "occlude_us", "draw_us"})
+                    CHECK_MESSAGE(with.contains(field), field);
+                CHECK(with["visible_ids"].size() == with["visible"].get<std::size_t>());
+                CHECK(with["triangles_passed"].get<int>() <= frame["triangles_passed"].get<int>());
+                hidden += frame["visible"].get<std::size_t>() - with["visible"].get<std::size_t>();
+                if (!with["gpu"].is_object()) continue;
+                CHECK(with["gpu"]["input_assembly_primitives"] == with["triangles_submitted"]);
+                CHECK(with["gpu"]["clipping_primitives"] == with["triangles_clipped"]);
+                CHECK(with["owners"]["triangles"].get<int>() <= with["triangles_submitted"].get<int>());
+                CHECK(with["owners"]["instances"].get<int>() > 0);
+            }
+            CHECK((hidden > 0) == hides);
+        }
+        CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --json -").json()["frames"][0]["occlusion"].is_null());
+    }
+
+    TEST_CASE("the table and the CSV hold both columns") {
+        const std::string csv = scratch().file("occlusion.csv");
+        const CliRun run = run_cli(kSmallTown + "--frames 3 --camera street --occlude --csv " + csv);
+        REQUIRE(run.status == 0);
+        CHECK(says(run.out, "triangles submitted"));
+        CHECK(says(run.out, "without"));
+        CHECK(says(run.out, "ms of the frame"));
+        for (const char* column : {"occlusion_visible", "occlusion_triangles_submitted", "occlusion_occlude_us"})
+            CHECK_MESSAGE(says(contents_of(csv), column), column);
     }
 
     TEST_CASE("flat and tree culling see the same instances, with one thread or two, and again from a recorded path") {

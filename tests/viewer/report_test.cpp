@@ -32,6 +32,21 @@ TEST_SUITE("cli/html_report") {
         CHECK(svg_chart("id", "t", "u", {{"a", {0.0, 0.0}}}).find("nan") == std::string::npos);
         CHECK(count_of(svg_chart("id", "t", "u", {{"a", {1.0, 2.0, 3.0}}, {"b", {3.0, 2.0, 1.0}}}), "<polyline") == 2);
     }
+    TEST_CASE("with occlusion a report begins with both columns, and charts them") {
+        const std::string file = scratch().file("occlusion.html");
+        const CliRun run =
+            run_cli("frames --instances 300 --frames 4 --camera street --size 160x90 --occlude --verify --report '" +
+                    file + "'");
+        CHECK(run.status == 0);
+        const std::string page = contents_of(file);
+        for (const char* id : {"occlusion", "chart-occlusion-triangles", "chart-occlusion-frame", "verification"})
+            CHECK_MESSAGE(page.find("id=\"" + std::string(id) + "\"") != std::string::npos, id);
+        for (const auto& column : crofton::pipeline::occlusion_columns())
+            if (std::string(column.name).find("gpu_") == std::string::npos)
+                CHECK_MESSAGE(page.find("<tr><td>" + std::string(column.name) + "</td>") != std::string::npos,
+                              column.name);
+        CHECK(page.find("nan") == std::string::npos);
+    }
     TEST_CASE("a report holds charts, pictures, settings and the verdict, and loads nothing") {
         const std::string file = scratch().file("report.html");
         const CliRun run = run_cli("frames --instances 300 --frames 5 --size 160x90 --verify --report '" + file + "'");

@@ -31,7 +31,7 @@ std::string row_with_occlusion(const FrameStatistics& f) {
 }
 
 std::string mean_row(const char* what, const char* pattern, double without, double with) {
-    return format("  %-34s", what) + format(pattern, without) + format(pattern, with) +
+    return format("  %-33s", what) + format(pattern, without) + format(pattern, with) +
            format(" %8.2f\n", ratio(without, with));
 }
 
@@ -41,7 +41,7 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
         return mean_of(frames, [&](const FrameStatistics& f) { return value(*f.occlusion); });
     };
     const double submitted = rest([](const auto& f) { return f.triangles_submitted; });
-    std::string text = format("\nmean of %zu frames                      without      with    ratio\n", frames.size());
+    std::string text = format("\nmean of %4zu frames                    without      with    ratio\n", frames.size());
     text += mean_row("instances drawn", " %9.1f", mean([](const auto& f) { return f.visible; }),
                      rest([](const auto& f) { return f.visible; }));
     text +=
@@ -49,13 +49,14 @@ std::string means_with_occlusion(std::span<const FrameStatistics> frames) {
     text +=
         mean_row("triangles that meet the frustum", " %9.0f", mean([](const auto& f) { return f.triangles_passed; }),
                  rest([](const auto& f) { return f.triangles_passed; }));
+    const auto median = [&](auto value) { return median_of(frames, value); };
     text +=
-        mean_row("milliseconds to find what to draw", " %9.3f", mean([](const auto& f) { return 1e-3 * f.cull_us; }),
-                 rest([](const auto& f) { return 1e-3 * f.occlude_us; }));
+        mean_row("ms to find what to draw, median", " %9.3f", median([](const auto& f) { return 1e-3 * f.cull_us; }),
+                 median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }));
     if (frames.front().gpu)
-        text += mean_row("milliseconds to draw it", " %9.2f", mean([](const auto& f) { return 1e-3 * f.draw_us; }),
-                         rest([](const auto& f) { return 1e-3 * f.draw_us; }));
-    text += mean_row("milliseconds of the frame", " %9.2f", mean(frame_ms), mean(frame_ms_with_occlusion));
+        text += mean_row("ms to draw it, median", " %9.2f", median([](const auto& f) { return 1e-3 * f.draw_us; }),
+                         median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }));
+    text += mean_row("ms of the frame, median", " %9.2f", median(frame_ms), median(frame_ms_with_occlusion));
     if (const auto owners = pipeline::mean_owners(frames))
         text += format("seen, that own a pixel: %.1f instances of %.0f triangles; %.2f times as many are submitted\n",
                        owners->instances, owners->triangles, ratio(submitted, owners->triangles));

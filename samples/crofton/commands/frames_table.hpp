@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The table that `crofton frames` shows: a row a frame, and means below. With occlusion, two columns of each number.
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "frames_output.hpp"
 #include "pipeline/frame_statistics.hpp"
@@ -25,6 +28,17 @@ template <class Value>
     double sum = 0.0;
     for (const pipeline::FrameStatistics& frame : frames) sum += static_cast<double>(value(frame));
     return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
+}
+
+// Times are told by medians: a frame that the system interrupts does not count.
+template <class Value>
+[[nodiscard]] double median_of(std::span<const pipeline::FrameStatistics> frames, Value value) {
+    std::vector<double> values;
+    for (const pipeline::FrameStatistics& frame : frames) values.push_back(static_cast<double>(value(frame)));
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 }  // namespace crofton::cli

@@ -2,7 +2,10 @@
 #include "html_report.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
+#include "frames_table.hpp"
 #include "html_chart.hpp"
 #include "pipeline/png.hpp"
 
@@ -60,15 +63,54 @@ Series series_of(const char* name, std::span<const FrameStatistics> frames, Valu
     return series;
 }
 
-template <class Value>
-double mean_of(std::span<const FrameStatistics> frames, Value value) {
-    double sum = 0.0;
-    for (const FrameStatistics& frame : frames) sum += static_cast<double>(value(frame));
-    return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
-}
-
 std::string tile(const char* name, const std::string& value) {
     return std::string("<div><b>") + value + "</b><span class=\"quiet\">" + name + "</span></div>";
+}
+
+// A row of the table of both columns; `digits` after the point.
+std::string row_of_both(const char* name, double without, double with, const char* pattern) {
+    char numbers[3][32];
+    std::snprintf(numbers[0], sizeof numbers[0], pattern, without);
+    std::snprintf(numbers[1], sizeof numbers[1], pattern, with);
+    std::snprintf(numbers[2], sizeof numbers[2], "%.1f", with > 0.0 ? without / with : 0.0);
+    std::string html = std::string("<tr><td>") + name + "</td>";
+    for (const int k : {0, 1})
+        html += std::string("<td>") + (pattern[2] == '0' ? readable(k == 0 ? without : with) : numbers[k]) + "</td>";
+    return html + "<td>" + numbers[2] + "</td></tr>\n";
+}
+
+// What occlusion saves: each number without and with it.
+std::string both_columns(const ReportContents& c) {
+    if (!c.frames.front().occlusion) return {};
+    const auto without = [&](auto value) { return mean_of(c.frames, value); };
+    const auto with = [&](auto value) {
+        return mean_of(c.frames, [&](const FrameStatistics& f) { return value(*f.occlusion); });
+    };
+    const auto submitted = [](const auto& f) { return f.triangles_submitted; };
+    std::string html =
+        "<h2>What occlusion saves</h2><div class=\"scroll\"><table id=\"occlusion\">\n<tr><th>mean of a "
+        "frame</th><th>without</th><th>with</th><th>times less</th></tr>\n";
+    html += row_of_both("instances drawn", without([](const auto& f) { return f.visible; }),
+                        with([](const auto& f) { return f.visible; }), "%.0f");
+    html += row_of_both("triangles submitted", without(submitted), with(submitted), "%.0f");
+    html += row_of_both("triangles that meet the frustum", without([](const auto& f) { return f.triangles_passed; }),
+                        with([](const auto& f) { return f.triangles_passed; }), "%.0f");
+    const auto median = [&](auto value) { return median_of(c.frames, value); };
+    html += row_of_both("ms to find what to draw, median", median([](const auto& f) { return 1e-3 * f.cull_us; }),
+                        median([](const auto& f) { return 1e-3 * f.occlusion->occlude_us; }), "%.2f");
+    if (c.frames.front().gpu)
+        html += row_of_both("ms to draw it, median", median([](const auto& f) { return 1e-3 * f.draw_us; }),
+                            median([](const auto& f) { return 1e-3 * f.occlusion->draw_us; }), "%.1f");
+    html += row_of_both("ms of the frame, median", median(frame_ms), median(frame_ms_with_occlusion), "%.1f");
+    html += "</table></div>\n";
+    if (const auto owners = pipeline::mean_owners(c.frames)) {
+        char times[32];
+        std::snprintf(times, sizeof times, "%.2f", with(submitted) / std::max(owners->triangles, 1.0));
+        html += "<p class=\"quiet\">" + readable(std::round(owners->instances)) + " instances of " +
+                readable(owners->triangles) + " triangles own a pixel; with occlusion " + times +
+                " times as many are submitted.</p>\n";
+    }
+    return html;
 }
 
 std::string summary(const ReportContents& c) {
@@ -88,13 +130,37 @@ std::string summary(const ReportContents& c) {
         html += std::string("<p class=\"") + (good ? "good" : "bad") +
                 "\" id=\"verification\">Verified by brute force: " +
                 readable(static_cast<double>(c.verification->mismatches())) + " mismatches in " +
-                readable(static_cast<double>(c.verification->frames)) + " frames.</p>\n";
+                readable(static_cast<double>(c.verification->frames)) + " frames" +
+                (c.frames.front().occlusion && c.frames.front().gpu
+                     ? std::string(": nothing that owns a pixel was hidden, both pictures of each frame are the same")
+                     : std::string()) +
+                ".</p>\n";
     }
     return html;
 }
 
+std::string occlusion_charts(std::span<const FrameStatistics> frames) {
+    if (!frames.front().occlusion) return {};
+    std::vector<Series> triangles{
+        series_of("without occlusion", frames, [](const auto& f) { return f.triangles_submitted; }),
+        series_of("with", frames, [](const auto& f) { return f.occlusion->triangles_submitted; })};
+    if (pipeline::mean_owners(frames))
+        triangles.push_back(series_of("of what owns a pixel", frames, [](const auto& f) {
+            return f.occlusion->owners ? f.occlusion->owners->triangles : 0;
+        }));
+    return svg_chart("chart-occlusion-triangles", "Triangles submitted", "per frame", triangles) +
+           svg_chart(
+               "chart-occlusion-frame", "The frame", "milliseconds",
+               {series_of("without occlusion", frames, frame_ms), series_of("with", frames, frame_ms_with_occlusion),
+                series_of("of it to find what is hidden", frames,
+                          [](const auto& f) { return 1e-3 * f.occlusion->occlude_us; })}) +
+           svg_chart("chart-occlusion-instances", "Instances drawn", "per frame",
+                     {series_of("without occlusion", frames, [](const auto& f) { return f.visible; }),
+                      series_of("with", frames, [](const auto& f) { return f.occlusion->visible; })});
+}
+
 std::string charts(std::span<const FrameStatistics> frames) {
-    std::string html = "<div class=\"charts\">\n";
+    std::string html = "<div class=\"charts\">\n" + occlusion_charts(frames);
     html += svg_chart("chart-instances", "Instances", "per frame",
                       {series_of("visible", frames, [](const auto& f) { return f.visible; }),
                        series_of("inside", frames, [](const auto& f) { return f.inside; }),
@@ -128,9 +194,13 @@ std::string numbers(std::span<const FrameStatistics> frames) {
     std::string html =
         "<h2>All numbers</h2><div class=\"scroll\"><table id=\"numbers\">\n<tr><th>per frame</th><th>least</th>"
         "<th>median</th><th>mean</th><th>most</th></tr>\n";
-    for (const pipeline::StatisticsColumn& column : pipeline::statistics_columns()) {
+    std::vector<pipeline::StatisticsColumn> columns(pipeline::statistics_columns().begin(),
+                                                    pipeline::statistics_columns().end());
+    if (frames.front().occlusion)
+        columns.insert(columns.end(), pipeline::occlusion_columns().begin(), pipeline::occlusion_columns().end());
+    for (const pipeline::StatisticsColumn& column : columns) {
         const std::string name = column.name;
-        if (name.rfind("gpu_", 0) == 0 && !frames.front().gpu) continue;
+        if (name.find("gpu_") != name.npos && !frames.front().gpu) continue;
         std::vector<double> values;
         for (const FrameStatistics& frame : frames) values.push_back(column.value(frame));
         std::sort(values.begin(), values.end());
@@ -146,11 +216,18 @@ std::string pictures(const std::vector<ReportPicture>& list, std::span<const Fra
     std::string html = "<h2>Pictures</h2><div class=\"pictures\">\n";
     for (const ReportPicture& picture : list) {
         const std::string name = "frame " + std::to_string(picture.frame);
+        const FrameStatistics& frame = frames[picture.frame];
         html += "<figure><img alt=\"" + name + "\" src=\"data:image/png;base64," +
-                base64(pipeline::encode_png(picture.image)) + "\"><figcaption class=\"quiet\">" + name + ": " +
-                readable(static_cast<double>(frames[picture.frame].visible)) + " visible, " +
-                readable(static_cast<double>(frames[picture.frame].triangles_passed)) +
-                " triangles in view</figcaption></figure>\n";
+                base64(pipeline::encode_png(picture.image)) + "\"><figcaption class=\"quiet\">" + name + ": ";
+        if (frame.occlusion)
+            html += readable(static_cast<double>(frame.occlusion->visible)) + " of " +
+                    readable(static_cast<double>(frame.visible)) + " instances drawn, " +
+                    readable(static_cast<double>(frame.occlusion->triangles_submitted)) + " of " +
+                    readable(static_cast<double>(frame.triangles_submitted)) + " triangles";
+        else
+            html += readable(static_cast<double>(frame.visible)) + " visible, " +
+                    readable(static_cast<double>(frame.triangles_passed)) + " triangles in view";
+        html += "</figcaption></figure>\n";
     }
     return html + "</div>\n";
 }
@@ -169,8 +246,9 @@ std::string html_report(const ReportContents& c) {
     return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
            "</title>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" + kStyle +
            "</head><body>\n<h1>" + title + "</h1><p class=\"quiet\">" + readable(static_cast<double>(c.frames.size())) +
-           " frames, each culled, collided, drawn and counted.</p>\n" + summary(c) + "<h2>Frame by frame</h2>\n" +
-           charts(c.frames) + pictures(c.pictures, c.frames) + numbers(c.frames) + settings(c) + "</body></html>\n";
+           " frames, each culled, collided, drawn and counted.</p>\n" + both_columns(c) + summary(c) +
+           "<h2>Frame by frame</h2>\n" + charts(c.frames) + pictures(c.pictures, c.frames) + numbers(c.frames) +
+           settings(c) + "</body></html>\n";
 }
 
 }  // namespace crofton::cli

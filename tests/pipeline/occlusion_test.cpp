@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/render/device.hpp>
+
+#include "pipeline/owner_picture.hpp"
+#include "pipeline/scene_occluders.hpp"
+#include "pipeline/verify.hpp"
+
+using namespace crofton;
+using namespace crofton::pipeline;
+
+namespace {
+
+TriangleMesh box_mesh(const glm::vec3& half) {
+    TriangleMesh mesh;
+    for (unsigned i = 0; i < 8; ++i)
+        mesh.positions.push_back(half *
+                                 glm::vec3((i & 1u) ? 1.0f : -1.0f, (i & 2u) ? 1.0f : -1.0f, (i & 4u) ? 1.0f : -1.0f));
+    for (const std::uint32_t index : {0u, 2u, 1u, 1u, 2u, 3u, 4u, 5u, 6u, 5u, 7u, 6u, 0u, 1u, 4u, 1u, 5u, 4u,
+                                      2u, 6u, 3u, 3u, 6u, 7u, 0u, 4u, 2u, 2u, 4u, 6u, 1u, 3u, 5u, 3u, 7u, 5u})
+        mesh.indices.push_back(index);
+    return mesh;
+}
+
+// A wall at z = −10, a row of small cubes behind it, and one beside it; the camera at the origin looks along −z.
+struct Yard {
+    scene::Scene scene;
+    scene::NodeId wall_node = scene::kNone;
+    scene::InstanceId wall = 0, beside = 0;
+    std::vector<scene::InstanceId> behind, all;
+
+    Yard() {
+        const auto wall_mesh = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f}));
+        const auto cube = scene.add_mesh(box_mesh(glm::vec3(0.3f)));
+        wall_node = *scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.0, 0.0, -10.0}});
+        wall = *scene.add_instance(wall_node, *wall_mesh);
+        for (int i = -2; i <= 2; ++i) {
+            const auto node = scene.add_node(scene::kNone, {glm::dmat3(1.0), {1.0 * i, 0.0, -15.0}});
+            behind.push_back(*scene.add_instance(*node, *cube));
+        }
+        beside = *scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {6.5, 0.0, -10.0}}), *cube);
+        scene.update();
+        for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) all.push_back(i);
+    }
+};
+
+const PipelineOptions kWithOcclusion{.occlusion = OcclusionOptions{}};
+
+}  // namespace
+
+TEST_SUITE("pipeline/occlusion") {
+    TEST_CASE("what a wall hides is not listed, and is again once the wall has moved away or is hidden") {
+        for (const bool moves : {true, false}) {
+            CAPTURE(moves);
+            Yard yard;
+            auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor());
+            REQUIRE(pipeline.has_value());
+            auto frame = pipeline->run(Camera{});
+            REQUIRE(frame.has_value());
+            REQUIRE(frame->occlusion.has_value());
+            CHECK(frame->visible_ids == yard.all);
+            CHECK(frame->occlusion->visible_ids == std::vector<std::uint32_t>{yard.wall, yard.beside});
+            CHECK(frame->occlusion->occluders >= 1);
+            CHECK(frame->occlusion->triangles_submitted == 24);
+            CHECK(frame->triangles_submitted == 84);
+            if (moves)
+                REQUIRE(yard.scene.set_local(yard.wall_node, {glm::dmat3(1.0), {0.0, 50.0, -60.0}}).has_value());
+            else
+                REQUIRE(yard.scene.set_instance_layers(yard.wall, 0).has_value());
+            yard.scene.update();
+            frame = pipeline->run(Camera{});
+            REQUIRE(frame.has_value());
+            for (const scene::InstanceId i : yard.behind)
+                CHECK(
+                    std::binary_search(frame->occlusion->visible_ids.begin(), frame->occlusion->visible_ids.end(), i));
+        }
+    }
+
+    TEST_CASE("meshes on one node are one occluding object, and what is not drawn is no part of it") {
+        scene::Scene scene;
+        const auto wall = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f})),
+                   other = scene.add_mesh(box_mesh({0.5f, 4.0f, 4.0f}));
+        std::vector<scene::NodeId> nodes;
+        for (int i = 0; i < 3; ++i) {
+            nodes.push_back(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {20.0 * i, 0.0, 0.0}}));
+            REQUIRE(scene.add_instance(nodes.back(), *wall).has_value());
+            const auto second = scene.add_instance(nodes.back(), *other);
+            if (i == 2) REQUIRE(scene.set_instance_layers(*second, 0).has_value());
+        }
+        scene.update();
+        const SceneOccluders occluders = find_scene_occluders(scene, serial_executor());
+        REQUIRE(occluders.objects.size() == 3);
+        REQUIRE(occluders.kinds.size() == 2);
+        CHECK(occluders.objects[0].kind == occluders.objects[1].kind);
+        CHECK(occluders.kinds[occluders.objects[0].kind].mesh.triangle_count() == 24);
+        CHECK(occluders.kinds[occluders.objects[2].kind].mesh.triangle_count() == 12);
+    }
+
+    TEST_CASE("a right frame has no mismatch, and every kind of wrong occlusion has one") {
+        Yard yard;
+        auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor());
+        REQUIRE(pipeline.has_value());
+        const auto frame = pipeline->run(Camera{});
+        REQUIRE(frame.has_value());
+        const std::vector<scene::InstanceId> owners{yard.wall, yard.beside};
+        const auto check = [&](FrameStatistics tampered, std::span<const scene::InstanceId> seen,
+                               std::uint64_t changed) {
+            Verification verification;
+            verify_occlusion(yard.scene, seen, changed, true, tampered, verification);
+            REQUIRE(tampered.occlusion->owners.has_value());
+            CHECK(tampered.occlusion->owners->instances == seen.size());
+            return verification;
+        };
+        CHECK(check(*frame, owners, 0).mismatches() == 0);
+        CHECK(check(*frame, yard.all, 0).hidden_but_seen == yard.behind.size());
+        CHECK(check(*frame, owners, 7).changed_pictures == 1);
+        FrameStatistics miscounted = *frame;
+        ++miscounted.occlusion->triangles_submitted;
+        CHECK(check(miscounted, owners, 0).wrong_counts == 1);
+        FrameStatistics more = *frame;
+        more.visible_ids.erase(more.visible_ids.begin());
+        CHECK(check(more, owners, 0).wrong_verdicts == 1);
+        FrameStatistics misdrawn = *frame;
+        misdrawn.occlusion->gpu = render::GpuCounters{24, 24, misdrawn.occlusion->triangles_clipped + 1, 0};
+        CHECK(check(misdrawn, owners, 0).wrong_counts == 1);
+    }
+
+    TEST_CASE("the picture of owners names what is seen and nothing else") {
+        Yard yard;
+        render::DeviceOptions software;
+        software.kind = render::DeviceKind::cpu;
+        auto device = render::Device::create(software);
+        if (!device) {
+            MESSAGE("skipped: " << device.error().message);
+            return;
+        }
+        const std::vector<std::uint8_t> is_mover(yard.all.size(), 0);
+        DrawList list(yard.scene, yard.all, is_mover, {});
+        auto rasterizer = render::Rasterizer::create(*device, {.width = 320, .height = 180});
+        REQUIRE(rasterizer.has_value());
+        REQUIRE(rasterizer->set_geometry(list.vertices(), list.indices()).has_value());
+        OwnerPicture picture;
+        list.select(yard.all, Camera{});
+        REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
+        CHECK(std::vector(picture.owners().begin(), picture.owners().end()) ==
+              std::vector<scene::InstanceId>{yard.wall, yard.beside});
+        // Without the wall the others own pixels.
+        std::vector<scene::InstanceId> rest = yard.all;
+        rest.erase(std::find(rest.begin(), rest.end(), yard.wall));
+        list.select(rest, Camera{});
+        REQUIRE(picture.draw(*rasterizer, 0, list, Camera{}).has_value());
+        CHECK(std::vector(picture.owners().begin(), picture.owners().end()) == rest);
+    }
+}
