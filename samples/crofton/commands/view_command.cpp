@@ -33,7 +33,8 @@ Result<void> run(ViewArguments arguments) {
     options.scene.strict = arguments.read.strict;
     options.width = size->width;
     options.height = size->height;
-    options.settings.method = {*bounds, *mode};
+    options.settings.method.bounds = *bounds;
+    options.settings.method.cull = *mode;
     options.window = !arguments.no_window;
     if (!options.window && options.frames == 0 && options.script.empty())
         return fail(ErrorCode::invalid_argument, kNoItem,
@@ -80,6 +81,7 @@ void add_view_command(CommandLine& line) {
     command.option("--bounds", arguments->bounds, "sphere, aabb, obb-volume, obb-area, obb-perimeter or obb-frustum")
         .show_default();
     command.option("--cull", arguments->cull, "none, flat or tree").show_default();
+    command.flag("--occlude", options.settings.method.occlude, "leave out what is hidden behind other things");
     command.option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
     command.option("--after", options.frames, "quit after so many frames");
     command.option("--screenshot", options.screenshot, "the last frame as PNG").writable_file();

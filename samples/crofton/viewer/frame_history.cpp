@@ -40,6 +40,10 @@ double FrameHistory::mean_of_frames(double (*value)(const pipeline::FrameStatist
     return mean_of_last(entries_, last, [value](const HistoryEntry& entry) { return value(entry.frame); });
 }
 
+double FrameHistory::mean_of_occlusion(double (*value)(const OcclusionCounts&), std::size_t last) const {
+    return mean_of_last(entries_, last, [value](const HistoryEntry& entry) { return value(entry.occlusion); });
+}
+
 std::array<float, 20> FrameHistory::frame_time_histogram() const {
     std::array<float, 20> bins{};
     for (const float ms : history([](const HistoryEntry& e) { return e.frame_us * 1e-3; }))

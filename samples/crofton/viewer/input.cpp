@@ -51,10 +51,11 @@ void Session::handle(const Event& event) {
 }
 
 // The switches that a key flips.
-constexpr std::array<std::pair<const char*, bool Settings::*>, 12> kFlips{{{"F", &Settings::freeze},
+constexpr std::array<std::pair<const char*, bool Settings::*>, 13> kFlips{{{"F", &Settings::freeze},
                                                                            {"I", &Settings::inset},
                                                                            {"O", &Settings::outside},
                                                                            {"B", &Settings::bounds},
+                                                                           {"J", &Settings::depth_buffer},
                                                                            {"X", &Settings::wireframe},
                                                                            {"K", &Settings::collisions},
                                                                            {"L", &Settings::exact},
@@ -88,6 +89,8 @@ bool Session::cycle_setting(const std::string& key) {
         next(s.method.cull, 3);
     } else if (key == "Y") {
         next(s.method.triangulation, std::size(kTriangulationNames));
+    } else if (key == "Z") {
+        s.method.occlude = !s.method.occlude;
     } else if (key == "T") {
         const int height = static_cast<int>(loaded_->pipeline().world().tree().structure().height());
         s.tree_level = s.tree_level + 1 >= height ? -1 : s.tree_level + 1;
@@ -181,9 +184,9 @@ void Session::perform(const Action& action) {
 void Session::click(const glm::dvec2& pixel) {
     const glm::dvec2 size(wanted_size_.width, wanted_size_.height);
     const glm::dvec2 place(2.0 * (pixel.x + 0.5) / size.x - 1.0, 1.0 - 2.0 * (pixel.y + 0.5) / size.y);
-    const auto world = loaded_->mesh_world(!contacts_.empty());
-    if (!world) return report(world.error());
-    pick_ = pick(**world, frame_.visible_ids, controller_.camera, place);
+    const auto meshes = loaded_->mesh_world();
+    if (!meshes) return report(meshes.error());
+    pick_ = pick((*meshes)->world(), drawn_ids_, controller_.camera, place);
     selected_ = pick_ ? pick_->instance : scene::kNone;
 }
 

@@ -36,7 +36,7 @@ void InstanceColoring::count(const char* name, const glm::vec3& color) {
 }
 
 void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
-                                scene::InstanceId selected) {
+                                scene::InstanceId selected, std::span<const scene::NodeId> hiders) {
     const auto verdicts = loaded.pipeline().verdicts();
     counts_.clear();
     tint_of_.assign(verdicts.size(), kPlain);
@@ -63,6 +63,9 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
             }
             break;
         }
+        case Coloring::occlusion:
+            classify_occlusion(loaded, frame);
+            break;
         case Coloring::collision:
             count("calm", palette::kCalm);
             count("colliding", palette::kColliding);
@@ -78,13 +81,39 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
                     std::min<std::size_t>(depth_of(loaded.pipeline().world().tree(), i), kDepthNames.size()) - 1);
             break;
     }
-    for (const scene::InstanceId i : frame.visible_ids)
-        if (tint_of_[i] != kPlain) ++counts_[tint_of_[i]].instances;
+    for (const std::uint8_t tint : tint_of_)
+        if (tint != kPlain) ++counts_[tint].instances;
+    if (!hiders.empty()) {
+        count("hides the selected", palette::kHidesSelected);
+        counts_.back().instances =
+            tint_nodes(loaded.scene(), frame.visible_ids, hiders, static_cast<std::uint8_t>(counts_.size() - 1));
+    }
     if (selected < tint_of_.size()) {
         count("selected", palette::kSelected);
         tint_of_[selected] = static_cast<std::uint8_t>(counts_.size() - 1);
         counts_.back().instances = 1;
     }
+}
+
+std::uint64_t InstanceColoring::tint_nodes(const scene::Scene& scene, std::span<const scene::InstanceId> instances,
+                                           std::span<const scene::NodeId> nodes, std::uint8_t tint) {
+    std::uint64_t tinted = 0;
+    for (const scene::InstanceId i : instances) {
+        if (!std::binary_search(nodes.begin(), nodes.end(), scene.node_of(i))) continue;
+        tint_of_[i] = tint;
+        ++tinted;
+    }
+    return tinted;
+}
+
+void InstanceColoring::classify_occlusion(const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
+    count("visible", palette::kInside);
+    count("visible, hides others", palette::kHides);
+    count("hidden", palette::kHidden);
+    for (const scene::InstanceId i : frame.visible_ids) tint_of_[i] = 0;
+    if (loaded.occlusion() == nullptr) return;
+    tint_nodes(loaded.scene(), frame.visible_ids, hiding_nodes(loaded.pipeline()), 1);
+    for (const scene::InstanceId i : loaded.occlusion()->hidden()) tint_of_[i] = 2;
 }
 
 void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {

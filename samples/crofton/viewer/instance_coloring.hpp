@@ -19,6 +19,9 @@ inline constexpr glm::vec3 kStraddling{0.85f, 0.42f, 0.01f};
 inline constexpr glm::vec3 kImproper{0.75f, 0.02f, 0.60f};
 inline constexpr glm::vec3 kColliding{0.90f, 0.02f, 0.02f};
 inline constexpr glm::vec3 kCalm{0.32f, 0.34f, 0.36f};
+inline constexpr glm::vec3 kHidden{0.75f, 0.02f, 0.60f};
+inline constexpr glm::vec3 kHides{0.85f, 0.42f, 0.01f};
+inline constexpr glm::vec3 kHidesSelected{0.90f, 0.02f, 0.02f};
 inline constexpr glm::vec3 kSelected{0.05f, 0.45f, 0.95f};
 }  // namespace palette
 
@@ -26,9 +29,10 @@ inline constexpr glm::vec3 kSelected{0.05f, 0.45f, 0.95f};
 // colour and lie side by side still become one draw.
 class InstanceColoring {
   public:
-    // Decides the colours for this frame. `frame` is what the scene's run() said for the camera that culls.
+    // Decides the colours for this frame. `frame` is what the scene's run() said for the camera that culls; `hiders`
+    // hide the selected instance, with all of theirs.
     void classify(const LoadedScene& loaded, const pipeline::FrameStatistics& frame, Coloring coloring,
-                  scene::InstanceId selected);
+                  scene::InstanceId selected, std::span<const scene::NodeId> hiders);
     // Lays out the selection of `list`, which has been made for the camera that looks.
     void paint(const pipeline::DrawList& list, bool wireframe);
 
@@ -45,6 +49,10 @@ class InstanceColoring {
 
   private:
     void count(const char* name, const glm::vec3& color);
+    // Those of the instances that are on one of the nodes. Returns how many.
+    std::uint64_t tint_nodes(const scene::Scene& scene, std::span<const scene::InstanceId> instances,
+                             std::span<const scene::NodeId> nodes, std::uint8_t tint);
+    void classify_occlusion(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
     std::vector<std::uint8_t> tint_of_;  // by instance: index into counts_, kPlain for the vertices' own colours
     std::vector<Count> counts_;

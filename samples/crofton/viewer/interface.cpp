@@ -51,6 +51,8 @@ Result<void> Session::build_interface() {
     const ImVec2 inset_size =
         inset != nullptr ? ImVec2(static_cast<float>(rasterizer_->width(1)), static_cast<float>(rasterizer_->height(1)))
                          : ImVec2(0.0f, 0.0f);
+    const auto depth = show_depth();
+    if (!depth) return tl::unexpected(depth.error());
     const pipeline::FrameStatistics* drawn =
         frame_history_.entries().empty() ? nullptr : &frame_history_.entries().back().frame;
     wish_ = draw_panels({settings_,
@@ -66,8 +68,12 @@ Result<void> Session::build_interface() {
                          cascades_,
                          pick_,
                          selected_,
+                         hiders_,
+                         other_ ? other_->occlusion() : nullptr,
                          shown,
                          inset_size,
+                         *depth,
+                         depth_picture_,
                          device_->name(),
                          is_recording_,
                          replaying_,
@@ -79,6 +85,14 @@ Result<void> Session::build_interface() {
     if (auto recorded = ui_->record(ui_commands_.handle, *ImGui::GetDrawData()); !recorded) return recorded;
     ui_us_ = computed_us() - start;
     return {};
+}
+
+// The occluders' depth buffer, for its panel; null where it is not shown.
+Result<ImTextureID> Session::show_depth() {
+    const occlude::OcclusionBuffer* buffer = loaded_->pipeline().not_hidden().occlusion_buffer();
+    if (!settings_.depth_buffer || loaded_->occlusion() == nullptr || buffer == nullptr) return nullptr;
+    paint_depth(*buffer, depth_picture_);
+    return ui_->show_pixels(depth_picture_.rgba, {depth_picture_.width, depth_picture_.height});
 }
 
 Result<void> Session::draw_interface() {

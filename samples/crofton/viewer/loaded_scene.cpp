@@ -40,11 +40,13 @@ pipeline::PipelineOptions options_of(const Method& method, const Settings& setti
     options.cull = method.cull;
     options.mode = settings.exact ? cull::CullMode::exact : cull::CullMode::conservative;
     options.collide = settings.collisions;
+    if (method.occlude) options.occlusion.emplace();
     return options;
 }
 
 bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b) {
-    return a.bounds == b.bounds && a.cull == b.cull && a.mode == b.mode && a.collide == b.collide;
+    return a.bounds == b.bounds && a.cull == b.cull && a.mode == b.mode && a.collide == b.collide &&
+           a.occlusion.has_value() == b.occlusion.has_value();
 }
 
 }  // namespace
@@ -87,6 +89,9 @@ bool LoadedScene::needs_reload(const Method& method) const {
 
 Result<void> LoadedScene::configure(const Method& method, const Settings& settings) {
     const pipeline::PipelineOptions wanted = options_of(method, settings);
+    const bool shows_contacts = settings.coloring == Coloring::collision && settings.collisions;
+    mesh_world_is_old_ = mesh_world_is_old_ || shows_contacts != shows_contacts_;
+    shows_contacts_ = shows_contacts;
     if (pipeline_ && same(wanted, options_)) return {};
     auto made = pipeline::Pipeline::create(source_.scene, source_.movers, wanted, serial_executor());
     if (!made) return tl::unexpected(std::move(made.error()));
@@ -100,22 +105,29 @@ void LoadedScene::animate(std::uint32_t frame) {
     const auto start = std::chrono::steady_clock::now();
     source_.animate(frame);
     source_.scene.update();
+    mesh_world_is_old_ = true;
     update_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-Result<const World*> LoadedScene::mesh_world(bool contacts) {
+Result<MeshWorld*> LoadedScene::mesh_world() {
     if (!mesh_world_) {
         auto made = MeshWorld::create(source_.scene, source_.movers);
         if (!made) return tl::unexpected(std::move(made.error()));
         mesh_world_.emplace(std::move(*made));
+        mesh_world_is_old_ = true;
     }
-    if (auto updated = mesh_world_->update(contacts); !updated) return tl::unexpected(std::move(updated.error()));
-    return &mesh_world_->world();
+    if (mesh_world_is_old_)
+        if (auto updated = mesh_world_->update(shows_contacts_); !updated)
+            return tl::unexpected(std::move(updated.error()));
+    mesh_world_is_old_ = false;
+    return &*mesh_world_;
 }
 
 Result<pipeline::FrameStatistics> LoadedScene::run(const Camera& camera) {
     auto frame = pipeline_->run(camera);
-    if (frame) frame->update_us += update_us_;
+    if (!frame) return frame;
+    frame->update_us += update_us_;
+    occlusion_.apply(source_.scene, *pipeline_, *frame);
     return frame;
 }
 

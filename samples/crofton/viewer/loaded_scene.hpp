@@ -7,6 +7,7 @@
 
 #include "assets/scene_source.hpp"
 #include "mesh_world.hpp"
+#include "occlusion.hpp"
 #include "pipeline/pipeline.hpp"
 #include "settings.hpp"
 
@@ -36,9 +37,11 @@ class LoadedScene {
     void animate(std::uint32_t frame);
     [[nodiscard]] Result<pipeline::FrameStatistics> run(const Camera& camera);
 
-    // The scene's meshes as they stand now, with contacts between movers where asked for. Made when first asked for:
-    // most visits need it late or never. Errors: as MeshWorld::create.
-    [[nodiscard]] Result<const World*> mesh_world(bool contacts);
+    // What run() found hidden; nullptr where the method does not ask.
+    [[nodiscard]] const Occlusion* occlusion() const { return method_.occlude ? &occlusion_ : nullptr; }
+    // The scene's meshes as they stand now, with contacts between movers where the settings show them. Made when first
+    // asked for: most visits need it late or never. Errors: as MeshWorld::create.
+    [[nodiscard]] Result<MeshWorld*> mesh_world();
 
     [[nodiscard]] const assets::SceneSource& source() const { return source_; }
     [[nodiscard]] const scene::Scene& scene() const { return source_.scene; }
@@ -54,6 +57,8 @@ class LoadedScene {
     assets::SceneSource source_;
     std::optional<pipeline::Pipeline> pipeline_;
     std::optional<MeshWorld> mesh_world_;
+    bool mesh_world_is_old_ = false, shows_contacts_ = false;
+    Occlusion occlusion_;
     Method method_;
     pipeline::PipelineOptions options_;
     Aabb extent_, focus_;

@@ -109,6 +109,8 @@ Result<void> Session::load(const SceneRequest& request) {
     // What refers to the old scene goes first.
     list_.reset();
     contacts_ = {};
+    hiders_.clear();
+    drawn_ids_.clear();
     pick_.reset();
     if (!same_scene) {
         other_.reset();

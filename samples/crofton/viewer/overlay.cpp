@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t kOutside = rgba(225, 60, 70), kBound = rgba(250, 235, 90), kFrustum = rgba(255, 255, 255),
                         kTree = rgba(110, 220, 255), kPair = rgba(255, 90, 60), kContact = rgba(255, 250, 80),
-                        kSelection = rgba(90, 170, 255), kSeparation = rgba(80, 255, 210);
+                        kSelection = rgba(90, 170, 255), kHiddenBound = rgba(190, 110, 255),
+                        kSeparation = rgba(80, 255, 210);
 constexpr std::array<std::uint32_t, 8> kCascades{rgba(255, 90, 90),   rgba(255, 190, 70),  rgba(130, 230, 90),
                                                  rgba(70, 220, 220),  rgba(100, 140, 255), rgba(210, 110, 255),
                                                  rgba(255, 120, 200), rgba(200, 200, 200)};
@@ -79,6 +80,10 @@ void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Loade
         legend_.push_back({"bounds of what is culled", kOutside});
         for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
             if (!scene.is_removed(i) && verdicts[i] == cull::Verdict::outside) lines.box(boxes[i], kOutside);
+    }
+    if (settings.outside && loaded.occlusion() != nullptr) {
+        legend_.push_back({"bounds of what is hidden", kHiddenBound, loaded.occlusion()->hidden().size()});
+        for (const scene::InstanceId i : loaded.occlusion()->hidden()) lines.box(boxes[i], kHiddenBound);
     }
     if (settings.bounds) {
         legend_.push_back({"bounds of what is visible", kBound});

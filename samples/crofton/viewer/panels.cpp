@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "help_panel.hpp"
+#include "occlusion_panel.hpp"
 #include "scene_panel.hpp"
 #include "shape_colors.hpp"
 #include "statistics_panel.hpp"
@@ -17,6 +18,11 @@ namespace {
 
 constexpr float kFontPixels = 13.0f;  // what Dear ImGui's own font is made for
 constexpr float kMargin = 8.0f;
+constexpr float kPadding = 8.0f;  // Dear ImGui's own, inside a window
+
+float width_of_main_panel(float display, float font) {
+    return std::min(27.0f * font, 0.52f * display);
+}
 
 ImVec4 display_color(const glm::vec3& linear) {
     return {std::sqrt(linear.r), std::sqrt(linear.g), std::sqrt(linear.b), 1.0f};
@@ -144,7 +150,17 @@ void inset_panel(const PanelInput& input, PanelWish& wish) {
 }  // namespace
 
 float main_panel_width() {
-    return std::min(27.0f * ImGui::GetFontSize(), 0.52f * ImGui::GetIO().DisplaySize.x);
+    return width_of_main_panel(ImGui::GetIO().DisplaySize.x, ImGui::GetFontSize());
+}
+
+float font_pixels(float scale) {
+    return std::round(kFontPixels * scale);
+}
+
+float half_beside_main_panel(float display, float font) {
+    const float padding = kPadding * font / kFontPixels;
+    return std::max(0.5f * (display - width_of_main_panel(display, font) - 4.0f * kMargin - 4.0f * padding),
+                    2.0f * font);
 }
 
 bool is_narrow(const ImVec2& display) {
@@ -161,7 +177,7 @@ void apply_style(float scale) {
     style.ScaleAllSizes(scale);
     // Drawn at its size, not enlarged.
     ImFontConfig font;
-    font.SizePixels = std::round(kFontPixels * scale);
+    font.SizePixels = font_pixels(scale);
     ImGui::GetIO().Fonts->Clear();
     ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
@@ -171,6 +187,7 @@ PanelWish draw_panels(const PanelInput& input) {
     main_panel(input, wish);
     scene_panel(input, wish);
     inset_panel(input, wish);
+    depth_panel(input, wish);
     notices_panel(input.notices);
     if (input.settings.help) help_panel(input.settings, wish);
     return wish;

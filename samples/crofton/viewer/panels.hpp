@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera_controller.hpp"
+#include "depth_picture.hpp"
 #include "frame_history.hpp"
 #include "instance_coloring.hpp"
 #include "loaded_scene.hpp"
@@ -54,8 +55,12 @@ struct PanelInput {
     std::span<const Cascade> cascades;
     std::optional<Pick> pick;
     scene::InstanceId selected;
-    ImTextureID inset;  // null: none
+    std::span<const scene::NodeId> hiders;  // that hide the selected instance
+    const Occlusion* other_occlusion;       // of the comparison's B, or null
+    ImTextureID inset;                      // null: none
     ImVec2 inset_size;
+    ImTextureID depth;  // null: none
+    const DepthPicture& depth_picture;
     const std::string& device;
     bool recording, replaying;
     const std::deque<Notice>& notices;
@@ -78,6 +83,9 @@ void apply_style(float scale);
 // True where panels side by side would leave nothing of the picture.
 [[nodiscard]] bool is_narrow(const ImVec2& display);
 [[nodiscard]] float main_panel_width();
+[[nodiscard]] float font_pixels(float scale);
+// Of each of two pictures beside the main panel, side by side, at most; `display` and `font` in pixels.
+[[nodiscard]] float half_beside_main_panel(float display, float font);
 [[nodiscard]] PanelWish draw_panels(const PanelInput& input);
 
 }  // namespace crofton::viewer

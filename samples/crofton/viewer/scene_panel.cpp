@@ -54,7 +54,30 @@ const char* verdict_name(cull::Verdict verdict) {
     }
 }
 
-void show_selection(const PanelInput& input) {
+// A node without a name goes by its first mesh.
+std::string name_of(const scene::Scene& scene, scene::NodeId node, std::span<const scene::InstanceId> instances) {
+    std::string name(scene.node_name(node));
+    if (name.empty() && !instances.empty()) name = scene.mesh_name(scene.mesh_of(instances[0]));
+    if (instances.size() > 1) name += " and " + std::to_string(instances.size() - 1) + " more";
+    return "node " + std::to_string(node) + (name.empty() ? "" : ": " + name);
+}
+
+// What hides it: a click selects it.
+void show_hiders(const PanelInput& input, PanelWish& wish) {
+    constexpr std::size_t kShown = 3;
+    for (std::size_t i = 0; i < std::min(input.hiders.size(), kShown); ++i) {
+        const scene::NodeId hider = input.hiders[i];
+        const auto instances = input.nodes.instances(hider);
+        const std::string label = "  hidden by " + name_of(input.loaded.scene(), hider, instances);
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.55f, 0.5f, 1.0f));
+        if (ImGui::Selectable(label.c_str()) && !instances.empty()) wish.select = instances[0];
+        ImGui::PopStyleColor();
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("red in the picture; a click selects it");
+    }
+    if (input.hiders.size() > kShown) ImGui::TextDisabled("  and by %zu more", input.hiders.size() - kShown);
+}
+
+void show_selection(const PanelInput& input, PanelWish& wish) {
     const scene::Scene& scene = input.loaded.scene();
     const scene::InstanceId instance = input.selected;
     if (instance >= scene.instance_count() || scene.is_removed(instance)) {
@@ -66,8 +89,9 @@ void show_selection(const PanelInput& input) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::Text("instance %u of node %u, mesh %u %s", instance, scene.node_of(instance), mesh,
                 std::string(scene.mesh_name(mesh)).c_str());
-    ImGui::Text("%s triangles, bound %s", with_thousands(scene.mesh(mesh).triangle_count()).c_str(),
-                verdict_name(input.loaded.pipeline().verdicts()[instance]));
+    ImGui::Text("%s triangles, bound %s%s", with_thousands(scene.mesh(mesh).triangle_count()).c_str(),
+                verdict_name(input.loaded.pipeline().verdicts()[instance]), input.hiders.empty() ? "" : ", hidden");
+    show_hiders(input, wish);
     const glm::vec3 edge = 2.0f * box.half_extents;
     ImGui::Text("box %.2f \u00d7 %.2f \u00d7 %.2f m", static_cast<double>(edge.x), static_cast<double>(edge.y),
                 static_cast<double>(edge.z));
@@ -124,7 +148,7 @@ void scene_panel(const PanelInput& input, PanelWish& wish) {
         ImGui::TextWrapped("%s nodes, %s instances", with_thousands(input.loaded.scene().node_count()).c_str(),
                            with_thousands(input.loaded.scene().instance_count()).c_str());
         ImGui::Text("%s triangles", with_thousands(input.loaded.triangle_count()).c_str());
-        show_selection(input);
+        show_selection(input, wish);
         ImGui::Separator();
         if (ImGui::BeginChild("nodes")) show_children(input, wish, scene::kNone, 0);
         ImGui::EndChild();

@@ -90,7 +90,8 @@ Result<void> Session::try_turn() {
         if (auto shown = window_->present(rasterizer_->native_image()->handle, size); !shown) return shown;
     }
     frame_.index = frame_index_++;
-    frame_history_.add({frame_, microseconds_since(start), ui_us_, static_cast<std::uint32_t>(scene_time_)});
+    const OcclusionCounts occlusion = loaded_->occlusion() ? loaded_->occlusion()->counts() : OcclusionCounts{};
+    frame_history_.add({frame_, microseconds_since(start), ui_us_, occlusion, static_cast<std::uint32_t>(scene_time_)});
     // Presenting does not pace on every device: no more than 60 pictures a second.
     if (window_ && !unattended()) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
     return {};
@@ -163,24 +164,43 @@ Result<void> Session::cull() {
         loaded_->pipeline().world().view({*frustum, pipeline::kSeenLayer}, cascade_visible_);
         cascade.visible = cascade_visible_.size();
     }
-    instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_);
+    list_drawn();
+    hiders_.clear();
+    if (loaded_->occlusion() && selected_ < loaded_->scene().instance_count())
+        hiders_ = nodes_that_hide(loaded_->pipeline(), selected_);
+    instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_, hiders_);
     return find_contacts();
+}
+
+// What is hidden is drawn where its colour is asked for: from elsewhere it is seen.
+void Session::list_drawn() {
+    drawn_ids_ = frame_.visible_ids;
+    if (settings_.coloring != Coloring::occlusion || loaded_->occlusion() == nullptr) return;
+    const auto hidden = loaded_->occlusion()->hidden();
+    const auto middle = static_cast<std::ptrdiff_t>(drawn_ids_.size());
+    drawn_ids_.insert(drawn_ids_.end(), hidden.begin(), hidden.end());
+    std::inplace_merge(drawn_ids_.begin(), drawn_ids_.begin() + middle, drawn_ids_.end());
 }
 
 Result<void> Session::find_contacts() {
     contacts_ = {};
     if (settings_.coloring != Coloring::collision || !settings_.collisions) return {};
-    const auto world = loaded_->mesh_world(true);
-    if (!world) return tl::unexpected(world.error());
-    contacts_ = (*world)->contacts();
+    const auto meshes = loaded_->mesh_world();
+    if (!meshes) return tl::unexpected(meshes.error());
+    contacts_ = (*meshes)->world().contacts();
     return {};
 }
 
 Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
-    list_->select(frame_.visible_ids, camera);
-    instance_coloring_.paint(*list_, settings_.wireframe);
+    list_->select(drawn_ids_, camera);
     lines_.clear(camera.position);
     overlay_.draw(lines_, settings_, *loaded_, frame_, contacts_, cascades_, selected_, show_frustum);
+    return submit(camera, picture);
+}
+
+// What is selected, in its colours, and the lines.
+Result<void> Session::submit(const Camera& camera, std::uint32_t picture) {
+    instance_coloring_.paint(*list_, settings_.wireframe);
     render::Frame frame;
     frame.camera = camera;
     frame.transforms = instance_coloring_.transforms();
@@ -200,10 +220,30 @@ Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, b
     return rasterizer_->submit(frame, picture);
 }
 
+// B of the comparison, where the picture A will be: for its time and its counts. Its triangles are A's unless they are
+// cut in another way.
+Result<void> Session::draw_other() {
+    other_frame_.gpu.reset();
+    if (settings_.other.triangulation != settings_.method.triangulation) return {};
+    const auto start = Clock::now();
+    list_->select(other_frame_.visible_ids, controller_.camera);
+    lines_.clear(controller_.camera.position);
+    if (auto begun = submit(controller_.camera, 0); !begun) return begun;
+    other_frame_.triangles_clipped = list_->predict_clipped();
+    auto counters = rasterizer_->finish();
+    if (!counters) return tl::unexpected(std::move(counters.error()));
+    other_frame_.draw_us = microseconds_since(start);
+    other_frame_.gpu = *counters;
+    return {};
+}
+
 Result<void> Session::start_drawing() {
     if (settings_.inset) {
         // As texts are scaled, but no wider than half the picture.
-        const double width = std::min(400.0 * static_cast<double>(scale_), 0.45 * wanted_size_.width);
+        double width = std::min(400.0 * static_cast<double>(scale_), 0.45 * wanted_size_.width);
+        if (settings_.depth_buffer)
+            width = std::min(width, static_cast<double>(half_beside_main_panel(static_cast<float>(wanted_size_.width),
+                                                                               font_pixels(scale_))));
         const auto columns = static_cast<std::uint32_t>(std::max(width, 16.0));
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
         if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
@@ -212,6 +252,8 @@ Result<void> Session::start_drawing() {
         if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }
+    if (other_)
+        if (auto drawn = draw_other(); !drawn) return drawn;
     draw_start_ = Clock::now();
     return submit_view(controller_.camera, 0, settings_.freeze);
 }
@@ -257,7 +299,10 @@ Result<void> Session::save_screenshots() {
                              {"separations", overlay_.separation_count()},
                              {"lines", lines_.vertices().size() / 2}});
         if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
+        if (loaded_->occlusion()) pictures_.back()["occlusion"] = to_json(loaded_->occlusion()->counts());
+        if (other_ && other_->occlusion()) pictures_.back()["other_occlusion"] = to_json(other_->occlusion()->counts());
         if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;
+        if (!hiders_.empty()) pictures_.back()["hidden_by"] = hiders_;
         pictures_.back()["messages"] = Json::array();
         for (const Notice& notice : notices_) pictures_.back()["messages"].push_back(notice.text);
     }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "camera_controller.hpp"
+#include "depth_picture.hpp"
 #include "frame_history.hpp"
 #include "instance_coloring.hpp"
 #include "json/json.hpp"
@@ -71,9 +72,13 @@ class Session {
     void advance(double seconds);
     [[nodiscard]] Result<void> cull();
     [[nodiscard]] Result<void> find_contacts();
+    void list_drawn();
+    [[nodiscard]] Result<void> draw_other();
     [[nodiscard]] Result<void> start_drawing();
     [[nodiscard]] Result<void> finish_drawing();
     [[nodiscard]] Result<void> submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum);
+    [[nodiscard]] Result<void> submit(const Camera& camera, std::uint32_t picture);
+    [[nodiscard]] Result<ImTextureID> show_depth();
     [[nodiscard]] Result<void> build_interface();
     [[nodiscard]] Result<void> draw_interface();
     [[nodiscard]] Result<void> save_screenshots();
@@ -99,6 +104,9 @@ class Session {
     CameraController controller_;
     Camera culling_camera_;
     pipeline::FrameStatistics frame_, other_frame_;
+    std::vector<scene::InstanceId> drawn_ids_;  // in this frame: what is visible, and what is hidden where it is shown
+    std::vector<scene::NodeId> hiders_;         // that hide the selected instance
+    DepthPicture depth_picture_;
     std::span<const Contact> contacts_;  // between triangles, until the scene next moves
     std::vector<Cascade> cascades_;
     VisibleObjects cascade_visible_;

@@ -9,13 +9,14 @@
 namespace crofton::viewer {
 namespace {
 
-constexpr std::array<std::pair<const char*, bool Settings::*>, 13> kFlags{{{"compare", &Settings::compare},
+constexpr std::array<std::pair<const char*, bool Settings::*>, 14> kFlags{{{"compare", &Settings::compare},
                                                                            {"exact", &Settings::exact},
                                                                            {"collisions", &Settings::collisions},
                                                                            {"freeze", &Settings::freeze},
                                                                            {"inset", &Settings::inset},
                                                                            {"outside", &Settings::outside},
                                                                            {"bounds", &Settings::bounds},
+                                                                           {"depth_buffer", &Settings::depth_buffer},
                                                                            {"wireframe", &Settings::wireframe},
                                                                            {"panels", &Settings::panels},
                                                                            {"help", &Settings::help},
@@ -72,6 +73,11 @@ Result<void> set_switch(Settings& settings, const std::string& name, const Json&
         settings.*flag = value.boolean();
         return {};
     }
+    if (name == "occlude" || name == "other_occlude") {
+        if (!value.is_boolean()) return bad_value(name, "true or false");
+        (name == "occlude" ? settings.method : settings.other).occlude = value.boolean();
+        return {};
+    }
     if (name == "bounds_kind") return set_method(settings.method, name, true, value);
     if (name == "cull") return set_method(settings.method, name, false, value);
     if (name == "other_bounds_kind") return set_method(settings.other, name, true, value);
@@ -104,6 +110,8 @@ Json to_json(const Settings& settings) {
                 {"other_cull", pipeline::to_string(settings.other.cull)},
                 {"triangulation", to_string(settings.method.triangulation)},
                 {"other_triangulation", to_string(settings.other.triangulation)},
+                {"occlude", settings.method.occlude},
+                {"other_occlude", settings.other.occlude},
                 {"tree_level", settings.tree_level},
                 {"cascades", settings.cascades},
                 {"time_scale", settings.time_scale},

@@ -11,8 +11,9 @@
 
 namespace crofton::viewer {
 
-enum class Coloring : std::uint8_t { lit, verdict, improper, collision, depth, shape };
-inline constexpr const char* kColoringNames[] = {"lit", "verdict", "improper", "collision", "depth", "shape"};
+enum class Coloring : std::uint8_t { lit, verdict, improper, occlusion, collision, depth, shape };
+inline constexpr const char* kColoringNames[] = {"lit",       "verdict", "improper", "occlusion",
+                                                 "collision", "depth",   "shape"};
 
 // How polygons and the planar patches of meshes are cut into triangles; `loaded`: as the scene came.
 enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };
@@ -23,6 +24,7 @@ struct Method {
     pipeline::BoundsKind bounds = pipeline::BoundsKind::obb_perimeter;
     pipeline::CullMode cull = pipeline::CullMode::tree;
     Triangulation triangulation = Triangulation::loaded;
+    bool occlude = false;  // what is hidden behind other things is not visible
     bool operator==(const Method&) const = default;
 };
 
@@ -42,11 +44,12 @@ struct Settings {
     Coloring coloring = Coloring::lit;
     bool exact = true;  // exact second stage; false: planes only
     bool collisions = true;
-    bool freeze = false;   // culling keeps its camera
-    bool inset = false;    // a second view, from outside
-    bool outside = false;  // what is culled, as wire boxes
-    bool bounds = false;   // the visible instances' bounds
-    int tree_level = -1;   // bounds of the tree's nodes at this depth; −1: none
+    bool freeze = false;        // culling keeps its camera
+    bool inset = false;         // a second view, from outside
+    bool outside = false;       // what is culled, as wire boxes
+    bool bounds = false;        // the visible instances' bounds
+    bool depth_buffer = false;  // of the occluders, as a picture
+    int tree_level = -1;        // bounds of the tree's nodes at this depth; −1: none
     bool wireframe = false;
     int cascades = 1;  // views: the camera's depth range split into so many
     bool panels = true;
@@ -57,8 +60,8 @@ struct Settings {
     double resolution = 1.0;  // share of the picture's pixels each way that is drawn; the rest is enlarged
 };
 
-// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "other_bounds_kind",
-// "other_cull", "other_triangulation", "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or
+// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "occlude",
+// "other_bounds_kind", …, "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or
 // range; nothing is changed then.
 [[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const Json& value);
 [[nodiscard]] Json to_json(const Settings& settings);

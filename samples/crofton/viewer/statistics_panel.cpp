@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace crofton::viewer {
 namespace {
@@ -72,6 +73,40 @@ bool is_counted_later(const std::string& column) {
     return column == "draw_us" || column == "triangles_clipped" || column.rfind("gpu_", 0) == 0;
 }
 
+// Of A, and of B or the mean; only where one of the two asks.
+void occlusion_rows(const PanelInput& input) {
+    using Count = double (*)(const OcclusionCounts&);
+    struct Row {
+        const char *label, *hint;
+        Count count;
+    };
+    static constexpr Row kRows[] = {
+        {"hidden", "instances whose bound meets the view, behind occluders: not drawn",
+         [](const OcclusionCounts& c) { return static_cast<double>(c.hidden); }},
+        {"  their triangles", "not submitted, because what they belong to is hidden",
+         [](const OcclusionCounts& c) { return static_cast<double>(c.triangles_hidden); }},
+        {"  occluders", "drawn into the depth buffer: those that are worth most to this view",
+         [](const OcclusionCounts& c) { return static_cast<double>(c.occluders); }},
+        {"occlude \u00b5s", "to choose occluders, to draw them, and to ask for every object",
+         [](const OcclusionCounts& c) { return c.us; }},
+    };
+    const Occlusion* own = input.loaded.occlusion();
+    if (own == nullptr && input.other_occlusion == nullptr) return;
+    for (const Row& row : kRows) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(row.label);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.hint);
+        ImGui::TableNextColumn();
+        if (own != nullptr) number(row.count(own->counts()));
+        ImGui::TableNextColumn();
+        if (input.other == nullptr)
+            number(input.frame_history.mean_of_occlusion(row.count, kMeanOf));
+        else if (input.other_occlusion != nullptr)
+            number(row.count(input.other_occlusion->counts()));
+    }
+}
+
 void table(const char* id, const PanelInput& input, std::span<const StatisticsRow> rows) {
     const bool compare = input.other != nullptr;
     if (!ImGui::BeginTable(id, 3, ImGuiTableFlags_RowBg)) return;
@@ -100,9 +135,10 @@ void table(const char* id, const PanelInput& input, std::span<const StatisticsRo
         ImGui::TableNextColumn();
         if (!compare)
             number(input.frame_history.mean_of_frames(value, kMeanOf));
-        else if (!later)
+        else if (!later || input.other->gpu)
             number(value(*input.other));
     }
+    if (std::string_view(id) == "statistics") occlusion_rows(input);
     ImGui::EndTable();
 }
 
@@ -162,6 +198,7 @@ void history_plots(const FrameHistory& frame_history) {
     plot("cull", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.cull_us; });
     plot("collide", "%.0f \u00b5s", [](const HistoryEntry& e) { return e.frame.collide_us; });
     plot("visible", "%.0f instances", [](const HistoryEntry& e) { return static_cast<double>(e.frame.visible); });
+    plot("hidden", "%.0f instances", [](const HistoryEntry& e) { return static_cast<double>(e.occlusion.hidden); });
     plot("in view", "%.0f triangles",
          [](const HistoryEntry& e) { return static_cast<double>(e.frame.triangles_passed); });
     plot("pairs", "%.0f colliding", [](const HistoryEntry& e) { return static_cast<double>(e.frame.colliding_pairs); });

@@ -40,7 +40,8 @@ void combo(const char* label, Enum& value, std::span<const Enum> choices) {
     ImGui::EndCombo();
 }
 
-void method(const char* bounds_label, const char* cull_label, const char* triangulation_label, Method& value) {
+void method(const char* bounds_label, const char* cull_label, const char* triangulation_label,
+            const char* occlude_label, Method& value) {
     using enum pipeline::BoundsKind;
     static constexpr pipeline::BoundsKind kBounds[] = {sphere, aabb, obb_volume, obb_area, obb_perimeter, obb_frustum};
     static constexpr pipeline::CullMode kModes[] = {pipeline::CullMode::none, pipeline::CullMode::flat,
@@ -53,6 +54,8 @@ void method(const char* bounds_label, const char* cull_label, const char* triang
                                                         Triangulation::delaunay, Triangulation::minimum_weight};
     combo(triangulation_label, value.triangulation, std::span<const Triangulation>(kTriangulations));
     hint("Y");
+    ImGui::Checkbox(occlude_label, &value.occlude);
+    hint("Z");
 }
 
 void flags(Settings& s) {
@@ -95,8 +98,11 @@ void switches_panel(const PanelInput& input, PanelWish& wish) {
         s.coloring = static_cast<Coloring>(coloring);
     hint("C");
     method(s.compare ? "A: bounds (N)" : "bounds (N)", s.compare ? "A: cull (M)" : "cull (M)",
-           s.compare ? "A: cut (Y)" : "cut (Y)", s.method);
-    if (s.compare) method("B: bounds", "B: cull", "B: cut", s.other);
+           s.compare ? "A: cut (Y)" : "cut (Y)", s.compare ? "A: occlude (Z)" : "occlude (Z)", s.method);
+    ImGui::SameLine();
+    ImGui::Checkbox("depth buffer (J)", &s.depth_buffer);
+    hint("J");
+    if (s.compare) method("B: bounds", "B: cull", "B: cut", "B: occlude", s.other);
     flags(s);
     sliders(input);
     ImGui::PopItemWidth();

@@ -60,9 +60,9 @@ Result<void> UiRenderer::create_layouts() {
     result = vk.vkCreateDescriptorSetLayout(context_.device, &set_layout, nullptr, &set_layout_);
     if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateDescriptorSetLayout");
 
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2};
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 3};
     VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    pool.maxSets = 2;
+    pool.maxSets = 3;
     pool.poolSizeCount = 1;
     pool.pPoolSizes = &size;
     result = vk.vkCreateDescriptorPool(context_.device, &pool, nullptr, &pool_);
@@ -71,7 +71,7 @@ Result<void> UiRenderer::create_layouts() {
     sets.descriptorPool = pool_;
     sets.descriptorSetCount = 1;
     sets.pSetLayouts = &set_layout_;
-    for (VkDescriptorSet* set : {&font_set_, &shown_set_}) {
+    for (VkDescriptorSet* set : {&font_set_, &shown_set_, &pixels_set_}) {
         result = vk.vkAllocateDescriptorSets(context_.device, &sets, set);
         if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkAllocateDescriptorSets");
     }
@@ -125,20 +125,19 @@ ImTextureID UiRenderer::show(VkImageView picture) {
     return reinterpret_cast<ImTextureID>(shown_set_);
 }
 
-Result<void> UiRenderer::upload_font() {
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-    const VkExtent2D extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-    auto image = render::ImageResource::create(context_, extent, VK_FORMAT_R8G8B8A8_UNORM,
-                                               VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                               VK_IMAGE_ASPECT_COLOR_BIT);
-    if (!image) return tl::unexpected(std::move(image.error()));
-    font_ = std::move(*image);
+Result<void> UiRenderer::upload(render::ImageResource& image, VkExtent2D& size, const void* rgba, VkExtent2D extent) {
+    if (size.width != extent.width || size.height != extent.height) {
+        auto made = render::ImageResource::create(context_, extent, VK_FORMAT_R8G8B8A8_UNORM,
+                                                  VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                  VK_IMAGE_ASPECT_COLOR_BIT);
+        if (!made) return tl::unexpected(std::move(made.error()));
+        image = std::move(*made);
+        size = extent;
+    }
     const VkDeviceSize bytes = VkDeviceSize{4} * extent.width * extent.height;
-    auto staging = render::create_host_buffer(context_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-    if (!staging) return tl::unexpected(std::move(staging.error()));
-    std::memcpy(staging->mapped, pixels, bytes);
+    if (auto grown = render::reserve_host_buffer(context_, staging_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT); !grown)
+        return grown;
+    std::memcpy(staging_.mapped, rgba, bytes);
     auto commands = render::Commands::create(context_);
     if (!commands) return tl::unexpected(std::move(commands.error()));
     if (auto begun = commands->begin(); !begun) return begun;
@@ -148,22 +147,38 @@ Result<void> UiRenderer::upload_font() {
         context_.vk.vkCmdPipelineBarrier(commands->handle, before, after, 0, 0, nullptr, 0, nullptr, 1, &what);
     };
     barrier(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, kTransfer,
-            render::color_barrier(font_.handle, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
+            render::color_barrier(image.handle, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
                                   VK_ACCESS_TRANSFER_WRITE_BIT));
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {extent.width, extent.height, 1};
-    context_.vk.vkCmdCopyBufferToImage(commands->handle, staging->handle, font_.handle,
+    context_.vk.vkCmdCopyBufferToImage(commands->handle, staging_.handle, image.handle,
                                        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     barrier(kTransfer, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-            render::color_barrier(font_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+            render::color_barrier(image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
                                   VK_ACCESS_SHADER_READ_BIT));
-    if (auto done = commands->submit_and_wait(); !done) return done;
+    return commands->submit_and_wait();
+}
+
+Result<void> UiRenderer::upload_font() {
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    const VkExtent2D extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    if (auto uploaded = upload(font_, font_size_, pixels, extent); !uploaded) return uploaded;
     point_at(font_set_, font_.view);
     point_at(shown_set_, font_.view);
+    point_at(pixels_set_, font_.view);
     ImGui::GetIO().Fonts->SetTexID(reinterpret_cast<ImTextureID>(font_set_));
     return {};
+}
+
+Result<ImTextureID> UiRenderer::show_pixels(std::span<const std::uint32_t> rgba, VkExtent2D extent) {
+    if (auto uploaded = upload(pixels_, pixels_size_, rgba.data(), extent); !uploaded)
+        return tl::unexpected(std::move(uploaded.error()));
+    point_at(pixels_set_, pixels_.view);
+    return reinterpret_cast<ImTextureID>(pixels_set_);
 }
 
 Result<void> UiRenderer::upload_lists(const ImDrawData& data) {

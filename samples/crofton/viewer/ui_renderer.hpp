@@ -5,7 +5,9 @@
 #include <imgui.h>
 
 #include <crofton/render/resources.hpp>
+#include <cstdint>
 #include <memory>
+#include <span>
 
 namespace crofton::viewer {
 
@@ -25,6 +27,8 @@ class UiRenderer {
 
     // What an ImGui::Image shows: one picture beside the font, replaced by the next call.
     [[nodiscard]] ImTextureID show(VkImageView picture);
+    // The same for pixels in memory, red in the lowest byte: one more picture. Errors: Vulkan's.
+    [[nodiscard]] Result<ImTextureID> show_pixels(std::span<const std::uint32_t> rgba, VkExtent2D extent);
 
     // Records the pass; the target is in SHADER_READ_ONLY_OPTIMAL before and after. Errors: Vulkan's.
     [[nodiscard]] Result<void> record(VkCommandBuffer commands, const ImDrawData& data);
@@ -34,20 +38,24 @@ class UiRenderer {
     [[nodiscard]] Result<void> create_layouts();
     [[nodiscard]] Result<void> create_pipeline();
     [[nodiscard]] Result<void> upload_lists(const ImDrawData& data);
+    // A new image where the size is another one.
+    [[nodiscard]] Result<void> upload(render::ImageResource& image, VkExtent2D& size, const void* rgba,
+                                      VkExtent2D extent);
     void point_at(VkDescriptorSet set, VkImageView view) const;
 
     const render::VulkanContext& context_;
     VkSampler sampler_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    VkDescriptorSet font_set_ = VK_NULL_HANDLE, shown_set_ = VK_NULL_HANDLE;
+    VkDescriptorSet font_set_ = VK_NULL_HANDLE, shown_set_ = VK_NULL_HANDLE, pixels_set_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkRenderPass pass_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
     VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
     VkExtent2D extent_{};
-    render::ImageResource font_;
-    render::Buffer vertices_, indices_;
+    render::ImageResource font_, pixels_;
+    VkExtent2D font_size_{}, pixels_size_{};
+    render::Buffer vertices_, indices_, staging_;
 };
 
 }  // namespace crofton::viewer
