@@ -2,6 +2,7 @@
 // Stored trees with one fault each, refused for that fault. The layout is written down here a second time.
 #include <doctest/doctest.h>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/boxtree/radius_range.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <cstring>
 #include <oracle/random_boxes.hpp>
@@ -13,6 +14,8 @@ using boxtree::ItemId;
 using boxtree::Leaf;
 using boxtree::LeafRange;
 using boxtree::Node;
+using boxtree::NodeRadii;
+using boxtree::RadiusRange;
 
 namespace {
 
@@ -32,8 +35,10 @@ struct Stored {
     std::vector<ItemId> free_items;
     std::vector<Node> nodes;
     std::vector<LeafRange> ranges;
+    std::vector<NodeRadii> node_radii;
     std::vector<Leaf> leaves;
     std::vector<std::uint8_t> leaf_counts;
+    std::vector<RadiusRange> leaf_radii;
     std::vector<ItemId> slot_items;
     std::vector<std::uint32_t> item_slots;
 
@@ -53,8 +58,10 @@ struct Stored {
         take_all(free_items, header.free_items);
         take_all(nodes, header.nodes);
         take_all(ranges, header.nodes);
+        take_all(node_radii, header.nodes);
         take_all(leaves, header.leaves);
         take_all(leaf_counts, header.leaves);
+        take_all(leaf_radii, header.leaves);
         take_all(slot_items, header.leaves * boxtree::kWidth);
         take_all(item_slots, header.boxes);
         REQUIRE(at == bytes.size());
@@ -77,8 +84,10 @@ struct Stored {
         put_all(free_items);
         put_all(nodes);
         put_all(ranges);
+        put_all(node_radii);
         put_all(leaves);
         put_all(leaf_counts);
+        put_all(leaf_radii);
         put_all(slot_items);
         put_all(item_slots);
         return result;
@@ -155,6 +164,7 @@ TEST_SUITE("boxtree/stored") {
             s.leaves.push_back(s.leaves[0]);
             s.leaves.back().count = 0;
             s.leaf_counts.push_back(0);
+            s.leaf_radii.push_back(boxtree::kNoRadii);
             s.slot_items.resize(s.slot_items.size() + boxtree::kWidth, boxtree::kNone);
         };
         check_refused_after(add_leaf, "below no node");
@@ -165,6 +175,7 @@ TEST_SUITE("boxtree/stored") {
             root.layers_every = ~std::uint32_t{0};
             s.nodes.push_back(root);
             s.ranges.push_back({});
+            s.node_radii.push_back({});
         };
         check_refused_after(add_root, "not below the root");
     }
@@ -193,6 +204,12 @@ TEST_SUITE("boxtree/stored") {
         is_wrong([](Node& node, Stored&) { node.rounding *= 0.5f; }, "frame");
         is_wrong([](Node& node, Stored&) { node.only_leaves ^= 1; }, "children's kind");
         check_refused_after([](Stored& s) { s.nodes[0].only_leaves = 1; }, "children's kind");
+        // The largest radius a step of its 16 bits smaller, the least one larger.
+        for (const RadiusRange step : {RadiusRange{0u - 0x10000u}, RadiusRange{1}}) {
+            check_refused_after([=](Stored& s) { s.node_radii[0].below[0] += step; }, "range of radii does not");
+            check_refused_after([=](Stored& s) { s.node_radii.back().below[0] += step; }, "range of radii does not");
+            check_refused_after([=](Stored& s) { s.leaf_radii[0] += step; }, "leaf's range of radii");
+        }
         check_refused_after([](Stored& s) { s.ranges[0].count = 10000; }, "leaves do not exist");
         check_refused_after([](Stored& s) { s.ranges[0].first = 1; }, "leaves do not exist");
         // Item 5's leaf has a gap, so the root's leaves have none that they could promise.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/moving_boxes.hpp>
+#include <oracle/aged_tree.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -218,6 +219,93 @@ TEST_SUITE("cull/draw_limits") {
         cull::find_visible(tree, {*frustum_of(camera)}, visible, {.limits = &limits});
         CHECK(visible.size() > 0);
         if (cull::kCountStatistics) CHECK(visible.statistics().boxes_tested < 5000);
+    }
+
+    TEST_CASE("what is small is dropped by nodes, and what is large is kept by them") {
+        const oracle::Crowd crowd = oracle::random_crowd(20000, 0.0, 9);
+        std::vector<Obb> boxes = crowd.boxes;
+        for (Obb& box : boxes) box.half_extents = glm::vec3(0.1f);
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
+        const cull::View view{*frustum_of(Camera{})};
+        cull::VisibleSet all, visible;
+        cull::find_visible(tree, view, all);
+        const auto tested = [&](const cull::DrawLimits& limits) {
+            cull::find_visible(tree, view, visible, {.limits = &limits});
+            return visible.statistics().boxes_tested;
+        };
+        if (!cull::kCountStatistics) return;
+        CHECK(tested({.least_radius = 0.1}) == all.statistics().boxes_tested);
+        CHECK(visible.size() == all.size());
+        CHECK(tested({.radii = 1e6}) == all.statistics().boxes_tested);
+        CHECK(tested({.least_radius = 0.2}) == 0);
+        CHECK(visible.size() == 0);
+        CHECK(tested({.radii = 50.0}) < 2000);
+        CHECK(visible.size() > 0);
+    }
+
+    TEST_CASE("a tree that has lived keeps what a loop over its items keeps, on every instruction set") {
+        std::size_t some = 0;
+        for (std::uint64_t seed = 100; seed < 112; ++seed) {
+            LimitedCrowd of(seed, seed % 2 ? 300 : 2000, 0.0);
+            of.limits.item_distances = {};
+            oracle::NearMisses random(seed);
+            oracle::AgedTree aged(of.crowd);
+            for (int age = 0; age < 5; ++age) {
+                aged.live(random, age == 0 ? 3 : 300);
+                REQUIRE(aged.tree.validate().has_value());
+                std::vector<cull::ItemId> expected;
+                for (cull::ItemId i = 0; i < aged.boxes.size(); ++i)
+                    if (aged.holds(i) && aged.layers[i] & of.view.layer_mask &&
+                        cull::classify(of.view.frustum, aged.boxes[i]) != cull::Verdict::outside &&
+                        oracle_keeps(of.limits, aged.boxes[i], i, aged.layers[i] & of.view.layer_mask))
+                        expected.push_back(i);
+                some += expected.size();
+                cull::VisibleSet visible;
+                for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+                    hwy::SetSupportedTargetsForTest(left & -left);
+                    cull::find_visible(aged.tree, of.view, visible, {.limits = &of.limits});
+                    REQUIRE(std::ranges::equal(visible.ids(), expected));
+                    hwy::SetSupportedTargetsForTest(0);
+                }
+            }
+        }
+        CHECK(some > 300);
+    }
+
+    TEST_CASE("sizes and distances that floats cannot square are decided all the same") {
+        std::vector<Obb> boxes;
+        for (int i = 0; i < 400; ++i) {
+            Obb box;
+            box.half_extents = glm::vec3(std::ldexp(1.0f, i / 4 - 3 * (i % 40)));
+            box.center = {0.0, 0.0, -std::ldexp(1.0, i / 4)};
+            boxes.push_back(box);
+        }
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
+        Camera camera;
+        camera.far_distance = 1e30;
+        cull::View view{*frustum_of(camera)};
+        view.frustum.plane_count = 5;
+        for (const double radii : {1e-20, 0.5, 3.0, 1e3, 1e12, 1e25})
+            for (const double least : {0.0, 1e-25, 1.0, 1e22}) {
+                const cull::DrawLimits limits{.radii = radii, .least_radius = least};
+                std::vector<cull::ItemId> expected;
+                for (cull::ItemId i = 0; i < boxes.size(); ++i)
+                    if (cull::classify(view.frustum, boxes[i]) != cull::Verdict::outside &&
+                        cull::is_worth_drawing(limits, boxes[i], i))
+                        expected.push_back(i);
+                cull::VisibleSet visible;
+                cull::find_visible(tree, view, visible, {.limits = &limits});
+                REQUIRE(std::ranges::equal(visible.ids(), expected));
+            }
+    }
+
+    TEST_CASE("from an eye beyond all coordinates nothing is dropped") {
+        const std::vector<Obb> boxes(40, Obb{.center = {0.0, 0.0, -10.0}, .half_extents = glm::vec3(1.0f)});
+        const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
+        const cull::DrawLimits limits{.eye = {1e31, 0.0, 0.0}, .radii = 2.0};
+        cull::VisibleSet visible;
+        cull::find_visible(tree, {*frustum_of(Camera{})}, visible, {.limits = &limits});
+        CHECK(visible.size() == boxes.size());
     }
 
     TEST_CASE("with hysteresis an item at its limit comes and goes once, without it in every other frame") {

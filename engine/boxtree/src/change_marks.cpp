@@ -2,6 +2,7 @@
 #include <crofton/boxtree/change_marks.hpp>
 
 #include <algorithm>
+#include <crofton/boxtree/items.hpp>
 
 namespace crofton::boxtree {
 
@@ -11,8 +12,10 @@ void ChangeMarks::reset(std::size_t leaves) {
 }
 
 void ChangeMarks::add_leaf() {
-    for (Vector<std::uint16_t>* lanes : {&dirty_lanes_, &moved_last_refit_, &moved_two_refits_ago_})
+    for (Vector<std::uint16_t>* lanes : {&dirty_lanes_, &moved_last_refit_, &moved_two_refits_ago_}) {
+        make_room_for(*lanes, 1);
         lanes->push_back(0);
+    }
 }
 
 // Neighbours often share a leaf: theirs are put down at once.

@@ -35,8 +35,8 @@ Result<ItemId> Items::add(const Obb& box, std::uint32_t layer_mask) {
         return item;
     }
     if (item >= kMaxItems) return fail(ErrorCode::out_of_range, item, "box tree: more than 2^30 boxes");
-    grow_for_one(boxes_);
-    grow_for_one(layer_masks_);
+    make_room_for(boxes_, 1);
+    make_room_for(layer_masks_, 1);
     boxes_.push_back(box);
     layer_masks_.push_back(layer_mask);
     return item;

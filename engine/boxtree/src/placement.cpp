@@ -2,6 +2,7 @@
 #include "placement.hpp"
 
 #include <array>
+#include <crofton/boxtree/radius_range.hpp>
 #include <limits>
 
 #include "bounds.hpp"
@@ -26,7 +27,7 @@ void Placement::vacate(ItemId item) {
     structure_.slot_items_[l * kWidth + last] = kNone;
     structure_.item_slots_[item] = kNone;
     invalidate_item_count(leaf.parent);
-    structure_.layers_changed_ = true;
+    structure_.contents_changed_ = true;
     structure_.marks_.mark(slot);
 }
 
@@ -41,15 +42,21 @@ void Placement::place(ItemId item) {
     structure_.slot_items_[slot] = item;
     structure_.item_slots_[item] = slot;
     structure_.write_item(item);
+    structure_.leaf_radii_[l] = united(structure_.leaf_radii_[l], radius_range_of(structure_.items_.boxes()[item]));
     invalidate_item_count(leaf.parent);
     refresh_path(leaf.parent);
 }
 
 LeafId Placement::add_leaf() {
     const auto fresh = static_cast<LeafId>(leaves_.size());
+    make_room_for(leaves_, 1);
+    make_room_for(structure_.leaf_counts_, 1);
+    make_room_for(structure_.leaf_radii_, 1);
+    make_room_for(structure_.slot_items_, kWidth);
     leaves_.emplace_back();
     clear(leaves_[fresh]);
     structure_.leaf_counts_.push_back(0);
+    structure_.leaf_radii_.push_back(kNoRadii);
     structure_.slot_items_.resize(structure_.slot_items_.size() + kWidth, kNone);
     structure_.marks_.add_leaf();
     return fresh;
@@ -126,6 +133,7 @@ void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent
     }
     structure_.leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
     structure_.write_leaf_layers(l);
+    structure_.write_leaf_radii(l);
     structure_.rewrite_leaf(l);
 }
 
@@ -169,9 +177,13 @@ NodeId Placement::split_node(NodeId n) {
         return std::span<const std::uint32_t>(children).subspan(halves.ranges[side].begin, halves.ranges[side].size());
     };
     const auto fresh = static_cast<NodeId>(nodes_.size());
+    make_room_for(nodes_, 2);
+    make_room_for(structure_.ranges_, 2);
+    make_room_for(structure_.node_radii_, 2);
     if (n == 0) {
         nodes_.resize(fresh + 2);
         structure_.ranges_.resize(fresh + 2);
+        structure_.node_radii_.resize(fresh + 2);
         make_node(fresh, half(0), 0, 0);
         make_node(fresh + 1, half(1), 0, 1);
         const std::uint32_t both[2] = {fresh, fresh + 1};
@@ -184,6 +196,7 @@ NodeId Placement::split_node(NodeId n) {
     }
     nodes_.emplace_back();
     structure_.ranges_.emplace_back();
+    structure_.node_radii_.emplace_back();
     const NodeId parent = nodes_[n].parent;
     make_node(n, half(0), parent, nodes_[n].lane_in_parent);
     make_node(fresh, half(1), parent, 0);

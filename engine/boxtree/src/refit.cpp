@@ -26,7 +26,7 @@ void Refit::run() {
         for (std::size_t i = 0; i < work_.nodes.size(); ++i) refit_node(work_.nodes[i]);
         work_.nodes.swap(work_.parents);
     }
-    structure_.layers_changed_ = false;
+    structure_.contents_changed_ = false;
     if (!work_.leaves.empty()) structure_.marks_.finish_refit();
 }
 
@@ -42,6 +42,7 @@ void Refit::refit_leaves() {
         for (std::size_t i = 0; i < leaves.size(); ++i) {
             const Leaf& leaf = leaves_[leaves[i]];
             Aabb bounds = bounds_of(leaf, extents[i]);
+            if (structure_.contents_changed_) structure_.write_leaf_radii(leaves[i]);
             const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
             // Far from its origin a leaf loses digits.
             if (double{leaf.reach} > 8.0 * (size.x + size.y + size.z)) {
@@ -80,11 +81,11 @@ void Refit::refit_node(NodeId n) {
     if (parent != kNone) set_child(parent, nodes_[n].lane_in_parent, bounds, work_.parents);
 }
 
-// A child's bound, and layers if any have changed, into its lane; the node then is to be refitted. All lanes anew if
-// its frame does not take the bound.
+// A child's bound, and layers and radii if any have changed, into its lane; the node then is to be refitted. All lanes
+// anew if its frame does not take the bound.
 void Refit::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
     if (!write_lane(nodes_[n], lane, bounds)) structure_.refresh_node(n);
-    if (structure_.layers_changed_) structure_.refresh_layers(n, lane);
+    if (structure_.contents_changed_) structure_.refresh_contents(n, lane);
     std::uint64_t& word = work_.node_bits[n / 64];
     const std::uint64_t bit = std::uint64_t{1} << (n % 64);
     if (word & bit) return;

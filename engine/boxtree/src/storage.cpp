@@ -11,7 +11,7 @@ namespace {
 
 struct Header {
     char magic[8] = {'c', 'r', 'o', 'f', 't', 'r', 'e', 'e'};
-    std::uint32_t version = 4;
+    std::uint32_t version = 5;
     std::uint32_t byte_order = 0x01020304;
     std::uint32_t node_bytes = sizeof(Node), leaf_bytes = sizeof(Leaf), box_bytes = sizeof(Obb);
     std::uint32_t height = 0;
@@ -41,8 +41,10 @@ struct TreeStorage {
         visit(items.free_ids_, h.free_items);
         visit(structure.nodes_, h.nodes);
         visit(structure.ranges_, h.nodes);
+        visit(structure.node_radii_, h.nodes);
         visit(structure.leaves_, h.leaves);
         visit(structure.leaf_counts_, h.leaves);
+        visit(structure.leaf_radii_, h.leaves);
         visit(structure.slot_items_, h.leaves * kWidth);
         visit(structure.item_slots_, h.boxes);
     }

@@ -5,7 +5,9 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/core/diagnostics.hpp>
+#include <limits>
 
+#include <crofton/boxtree/radius_range.hpp>
 #include "bounds.hpp"
 #include "leaf_writer.hpp"
 #include "subtree.hpp"
@@ -21,7 +23,9 @@ void Structure::make_room(const Topology& topology) {
     height_ = topology.height;
     nodes_.resize(topology.nodes.size());
     ranges_.resize(topology.nodes.size());
+    node_radii_.resize(topology.nodes.size());
     leaf_counts_.assign(topology.leaves.size(), 0);
+    leaf_radii_.assign(topology.leaves.size(), kNoRadii);
     slot_items_.assign(topology.leaves.size() * kWidth, kNone);
     item_slots_.assign(items_.size(), kNone);
     marks_.reset(topology.leaves.size());
@@ -78,10 +82,11 @@ void Structure::fill_leaf(LeafId l, LeafId end, const Topology& topology, const 
     }
     leaf_counts_[l] = static_cast<std::uint8_t>(leaf.count);
     write_leaf_layers(l);
+    write_leaf_radii(l);
     rewrite_leaf(l);
 }
 
-// Bounds, layers and the number of items, from the children's. Parents come before children.
+// Bounds, layers, radii and the number of items, from the children's. Parents come before children.
 void Structure::bound_nodes(NodeId begin, NodeId end) {
     for (NodeId n = end; n-- > begin;) {
         refresh_node(n);
@@ -94,8 +99,10 @@ void Structure::begin_steps(const Topology& topology) {
     item_slots_.reserve(items_.size());
     nodes_.reserve(topology.nodes.size());
     ranges_.reserve(topology.nodes.size());
+    node_radii_.reserve(topology.nodes.size());
     leaves_.reserve(topology.leaves.size());
     leaf_counts_.reserve(topology.leaves.size());
+    leaf_radii_.reserve(topology.leaves.size());
     slot_items_.reserve(topology.leaves.size() * kWidth);
 }
 
@@ -107,6 +114,7 @@ void Structure::add_nodes(NodeId end, const Topology& topology) {
     const auto begin = static_cast<NodeId>(nodes_.size());
     nodes_.resize(end);
     ranges_.resize(end);
+    node_radii_.resize(end);
     link_nodes(begin, end, topology);
 }
 
@@ -114,6 +122,7 @@ void Structure::add_leaves(LeafId end, const Topology& topology, const Structure
     const auto begin = static_cast<LeafId>(leaves_.size()), all = static_cast<LeafId>(topology.leaves.size());
     leaves_.resize(end);
     leaf_counts_.resize(end, 0);
+    leaf_radii_.resize(end, kNoRadii);
     slot_items_.resize(std::size_t{end} * kWidth, kNone);
     for (LeafId l = begin; l < end; ++l) fill_leaf(l, all, topology, &current);
 }
@@ -125,6 +134,22 @@ void Structure::write_leaf_layers(LeafId l) {
         leaf.layers[lane] = items_.layer_masks()[slot_items_[l * kWidth + lane]];
         leaf.layers_every &= leaf.layers[lane];
     }
+}
+
+void Structure::write_leaf_radii(LeafId l) {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (std::uint32_t lane = 0; lane < leaves_[l].count; ++lane) {
+        const double square = square_of_radius(items_.boxes()[slot_items_[l * kWidth + lane]]);
+        least = std::min(least, square);
+        most = std::max(most, square);
+    }
+    leaf_radii_[l] = leaves_[l].count > 0 ? radius_range_of_squares(least, most) : kNoRadii;
+}
+
+// A box that joins the leaf, or that has another size than before.
+void Structure::widen_leaf_radii(LeafId l, const Obb& box) {
+    leaf_radii_[l] = united(leaf_radii_[l], radius_range_of(box));
+    contents_changed_ = true;
 }
 
 // Writes all boxes anew in a fitting frame.
@@ -150,7 +175,7 @@ void Structure::write_item(ItemId item) {
     if (!write_lane(leaves_[slot / kWidth], slot % kWidth, items_.boxes()[item])) rewrite_leaf(slot / kWidth);
 }
 
-// Bounds and layers of all lanes from the children, in a fitting frame.
+// Bounds, layers and radii of all lanes from the children, in a fitting frame.
 void Structure::refresh_node(NodeId n) {
     Node& node = nodes_[n];
     Aabb bounds[kWidth], whole;
@@ -163,19 +188,24 @@ void Structure::refresh_node(NodeId n) {
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
         [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane]);
         CROFTON_ASSERT(fits, "a frame around bounds must take them");
-        refresh_layers(n, lane);
+        refresh_contents(n, lane);
     }
 }
 
-void Structure::refresh_layers(NodeId n, unsigned lane) {
+// Layers and radii.
+void Structure::refresh_contents(NodeId n, unsigned lane) {
     Node& node = nodes_[n];
     const std::uint32_t child = node.child[lane];
     if (child & kLeafBit) {
         const Leaf& leaf = leaves_[child & ~kLeafBit];
         write_layers(node, lane, leaf.layers, leaf.layers, leaf.count);
+        node_radii_[n].below[lane] = leaf_radii_[child & ~kLeafBit];
     } else {
         const Node& below = nodes_[child];
         write_layers(node, lane, below.layers_any, below.layers_all, below.count);
+        RadiusRange range = kNoRadii;
+        for (unsigned i = 0; i < below.count; ++i) range = united(range, node_radii_[child].below[i]);
+        node_radii_[n].below[lane] = range;
     }
     node.layers_every = ~std::uint32_t{0};
     for (unsigned i = 0; i < node.count; ++i) node.layers_every &= node.layers_all[i];

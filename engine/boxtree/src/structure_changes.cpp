@@ -19,19 +19,20 @@ void prefetch_all(const T& value) {
 }  // namespace
 
 void Structure::reserve_item(ItemId item) {
-    if (item >= item_slots_.size()) grow_for_one(item_slots_);
+    if (item >= item_slots_.size()) make_room_for(item_slots_, 1);
 }
 
 void Structure::update_box(ItemId item) {
     const std::uint32_t slot = item_slots_[item];
     marks_.mark(slot);
+    widen_leaf_radii(slot / kWidth, items_.boxes()[item]);
     if (marks_.has_few_changes(slot / kWidth)) write_item(item);
 }
 
 void Structure::update_layers(ItemId item) {
     const std::uint32_t slot = item_slots_[item];
     write_layers(leaves_[slot / kWidth], slot % kWidth, items_.layer_masks()[item]);
-    layers_changed_ = true;
+    contents_changed_ = true;
     marks_.mark(slot);
 }
 
@@ -55,8 +56,9 @@ void Structure::move_found(std::span<const ItemId> items, std::span<const Obb> b
         if (i + kAhead < items.size()) prefetch_all(items_.boxes()[items[i + kAhead]]);
         if (i + kNear < items.size() && marks_.has_few_changes(slots[i + kNear] / kWidth))
             prefetch_all(leaves_[slots[i + kNear] / kWidth]);
-        items_.set_box(items[i], boxes[i]);
         const LeafId leaf = slots[i] / kWidth;
+        if (items_.boxes()[items[i]].half_extents != boxes[i].half_extents) widen_leaf_radii(leaf, boxes[i]);
+        items_.set_box(items[i], boxes[i]);
         if (marks_.has_few_changes(leaf) && !write_lane(leaves_[leaf], slots[i] % kWidth, boxes[i])) rewrite_leaf(leaf);
     }
 }

@@ -5,6 +5,7 @@
 #include <crofton/boxtree/structure.hpp>
 #include <string>
 
+#include <crofton/boxtree/radius_range.hpp>
 #include "bounds.hpp"
 
 namespace crofton::boxtree {
@@ -74,6 +75,11 @@ Result<void> validate_child(const Structure& structure, NodeId n, unsigned lane,
         write_layers(layers, lane, nodes[id].layers_any, nodes[id].layers_all, nodes[id].count);
     if (layers.layers_any[lane] != nodes[n].layers_any[lane] || layers.layers_all[lane] != nodes[n].layers_all[lane])
         return broken(n, "layers do not match those below");
+    RadiusRange radii = is_leaf ? structure.leaf_radii()[id] : kNoRadii;
+    for (unsigned i = 0; !is_leaf && i < nodes[id].count; ++i)
+        radii = united(radii, structure.node_radii()[id].below[i]);
+    if (!includes(structure.node_radii()[n].below[lane], radii))
+        return broken(n, "a range of radii does not contain those below");
     return {};
 }
 
@@ -117,6 +123,8 @@ Result<void> validate_item(const Structure& structure, std::uint32_t slot, Trust
     if (!is_frame(leaf) || !write_lane(expected, lane, box) || !lanes_agree(leaf, expected, lane) ||
         expected.reach > leaf.reach || (leaf.layers_every & ~layers) != 0)
         return broken(item, "an item's lane does not match its box");
+    if (!includes(structure.leaf_radii()[slot / kWidth], radius_range_of(box)))
+        return broken(item, "the leaf's range of radii does not contain the item's");
     return {};
 }
 
@@ -143,7 +151,8 @@ Result<void> validate(const Structure& structure, Trust trust) {
     const std::span<const Node> nodes = structure.nodes();
     const std::span<const Leaf> leaves = structure.leaves();
     if (nodes.empty() || structure.leaf_ranges().size() != nodes.size() ||
-        structure.leaf_counts().size() != leaves.size() || structure.slot_items().size() != leaves.size() * kWidth ||
+        structure.leaf_counts().size() != leaves.size() || structure.leaf_radii().size() != leaves.size() ||
+        structure.node_radii().size() != nodes.size() || structure.slot_items().size() != leaves.size() * kWidth ||
         structure.item_slots().size() != items.size() || items.layer_masks().size() != items.size())
         return broken(kNoItem, "array sizes do not match");
     for (LeafId l = 0; l < leaves.size(); ++l)

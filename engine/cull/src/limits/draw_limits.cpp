@@ -8,7 +8,6 @@
 
 #include "exact/box_constraints.hpp"
 #include "limits/limits.hpp"
-#include "limits/limits_kernel.hpp"
 
 namespace crofton::cull {
 namespace {
@@ -49,15 +48,15 @@ KernelLimits kernel_limits_of(const DrawLimits& limits) {
     KernelLimits result{};
     for (int j = 0; j < 3; ++j) result.eye[j] = limits.eye[j];
     // Radii are at least 1e-18 in floats: up to 1e9 of them are a length that is truly too long.
-    const bool has_radii = counts(limits.radii), radii_fit = radii * longer <= 1e9;
+    const bool is_eye = is_usable(Sphere{limits.eye, 0.0});  // otherwise no limit counts
+    const bool has_radii = is_eye && counts(limits.radii), radii_fit = radii * longer <= 1e9;
     result.radii[0] = !has_radii ? kInfinity : radii_fit ? static_cast<float>(radii * radii) : 0.0f;
     result.radii[1] = has_radii && radii_fit ? static_cast<float>(radii * longer * (radii * longer)) : kInfinity;
-    const bool has_least = counts(least) && least > 0.0, least_fits = is_moderate_limit(least);
+    const bool has_least = is_eye && counts(least) && least > 0.0, least_fits = is_moderate_limit(least);
     result.least_radius[0] = !has_least ? 0.0f : least_fits ? static_cast<float>(least * least) : kInfinity;
     result.least_radius[1] = has_least && least_fits ? static_cast<float>(least / longer * (least / longer)) : 0.0f;
-    result.has_layers = limits.layer_distances.size() >= 32;
-    result.has_items = !limits.item_distances.empty();
-    result.has_sizes = has_radii || has_least;
+    result.has_layers = is_eye && limits.layer_distances.size() >= 32;
+    result.has_items = is_eye && !limits.item_distances.empty();
     result.layer_square = [](const void* of, std::uint32_t common_layers, bool least_of_all) {
         const auto& from = *static_cast<const DrawLimits*>(of);
         const double limit =

@@ -5,7 +5,12 @@
 #include <crofton/cull/draw_limits.hpp>
 #include <crofton/geometry/box.hpp>
 
+#include "limits/kernel_limits.hpp"
+
 namespace crofton::cull {
+
+// What a kernel needs, but for the tree's radii.
+[[nodiscard]] KernelLimits kernel_limits_of(const DrawLimits& limits);
 
 // Whether a limit is one.
 [[nodiscard]] inline bool counts(double limit) {

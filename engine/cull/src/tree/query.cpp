@@ -11,7 +11,7 @@
 
 #include "exact/box_constraints.hpp"
 #include "id_bits_kernel.hpp"
-#include "limits/limits_kernel.hpp"
+#include "limits/kernel_limits.hpp"
 #include "list/direct_kernel.hpp"
 #include "tree/block_planes.hpp"
 
@@ -180,10 +180,13 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     output.work_size = structure.nodes().size() + structure.leaves().size() + kPadding;
     grow(visible_.work_, kWorkLists * output.work_size);
     output.work = visible_.work_.data();
-    if (options_.limits)
-        run_limits_kernel(input, kernel_limits_of(*options_.limits), output);
-    else
+    if (options_.limits) {
+        KernelLimits limits = kernel_limits_of(*options_.limits);
+        limits.radii_below = structure.node_radii().data();
+        run_limited_tree_kernel(input, limits, output);
+    } else {
         run_tree_kernel(input, tasks.entries, tasks.count, output);
+    }
     std::size_t inside = output.inside_count, straddling = output.straddling_count;
     append_decided(output, decide(tree, output), inside, straddling);
     finish(tree, inside, straddling, executor);

@@ -15,6 +15,7 @@
 // clang-format on
 #include <hwy/highway.h>
 
+#include "limits/limit_tests-inl.hpp"
 #include "tree/leaf_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,10 +24,14 @@ namespace {
 
 // In an entry's planes: everything below is inside, and in a layer that the view sees.
 constexpr std::uint32_t kWhole = 1u << 31;
+// There too: something below may be beyond a draw limit.
+constexpr std::uint32_t kLimited = 1u << 30;
 
+template <class Limits>
 class Walk {
   public:
-    HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output) : in_(input), out_(output) {}
+    HWY_INLINE Walk(const TreeKernelInput& input, const TreeKernelOutput& output, const Limits& limits)
+        : in_(input), out_(output), limits_(limits) {}
 
     // A copy of the output travels with the walk, so that the compiler keeps it in registers.
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
@@ -86,6 +91,11 @@ class Walk {
             const std::uint32_t planes = nodes_.planes[head];
             const boxtree::Node& node = in_.nodes[nodes_.children[head]];
             if (kCountStatistics) out_.nodes_tested += node.count;
+            if constexpr (Limits::kAny)
+                if (planes & kLimited) {
+                    visit_limited(node, nodes_.children[head], planes & ~kLimited);
+                    continue;
+                }
             if (is_one(planes))
                 visit_crossed_once(node, planes);
             else
@@ -126,6 +136,18 @@ class Walk {
             note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
     }
 
+    // Limits first: few nodes near one are left when all lanes are dropped.
+    HWY_INLINE void visit_limited(const boxtree::Node& node, boxtree::NodeId id, std::uint32_t planes) {
+        const DU du;
+        const NodeTest test = test_node(*in_.view, node, planes);
+        for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
+            const LimitTest limits = limits_.test(node, id, l);
+            const VU open = hn::IfThenZeroElse(hn::RebindMask(du, limits.kept), hn::Set(du, kLimited));
+            note<false>(node, l, hn::AndNot(limits.dropped, hn::RebindMask(DF(), mask_of(test.alive >> l))),
+                        hn::Or(hn::Load(du, test.planes + l), open));
+        }
+    }
+
     // Where they go, children l on of a node that are not certainly outside; kOnce: none straddles several planes.
     template <bool kOnce>
     HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled) {
@@ -150,7 +172,8 @@ class Walk {
         if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
             return crossing_.append(leaves, straddled, of_leaves);
         const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
-        const auto once = hn::And(few, straddles);
+        auto once = hn::And(few, straddles);
+        if constexpr (Limits::kAny) once = hn::And(once, hn::Lt(straddled, hn::Set(du, kLimited)));
         crossing_.append(leaves, straddled, hn::And(of_leaves, once));
         cornered_.append(leaves, straddled, hn::AndNot(once, of_leaves));
     }
@@ -164,6 +187,7 @@ class Walk {
     HWY_INLINE void prefetch_node(boxtree::NodeId node) const {
         for (std::size_t at = 0; at < offsetof(boxtree::Node, layers_any); at += 64)
             hwy::Prefetch(reinterpret_cast<const char*>(in_.nodes + node) + at);
+        if constexpr (Limits::kAny) limits_.prefetch(node);
     }
 
     // What lies inside as a whole, as runs of slots. A node whose leaves are not consecutive leaves it to its children,
@@ -253,6 +277,11 @@ class Walk {
             const boxtree::LeafId id = cornered_.children[at];
             const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
+            if constexpr (Limits::kAny)
+                if (cornered_.planes[at] & kLimited) {
+                    visit_limited_leaf(id, cornered_.planes[at] & ~kLimited);
+                    continue;
+                }
             LeafPlane planes[KernelView::kMaxPlanes];
             unsigned count = 0;
             for (std::uint32_t rest = cornered_.planes[at]; rest; rest &= rest - 1) {
@@ -269,6 +298,32 @@ class Walk {
         }
     }
 
+    HWY_INLINE void visit_limited_leaf(boxtree::LeafId id, std::uint32_t straddled) {
+        const DU du;
+        const KernelView& view = *in_.view;
+        const boxtree::Leaf& leaf = in_.leaves[id];
+        LeafPlane planes[KernelView::kMaxPlanes];
+        unsigned count = 0;
+        for (std::uint32_t rest = straddled; rest; rest &= rest - 1) {
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
+            planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
+        }
+        for (std::size_t l = 0; l < boxtree::kWidth && l < leaf.count; l += hn::Lanes(du)) {
+            const LimitTest limits = limits_.test(leaf, l);
+            const MF lanes = hn::AndNot(limits.dropped, present(view, leaf.layers_every, leaf.layers, leaf.count, l));
+            if (hn::AllFalse(DF(), lanes)) continue;
+            const MF none = hn::FirstN(DF(), 0);
+            BoxTest test{lanes, none, none, none, none};
+            if (count == 1) test = test_leaf(LeafRows(leaf, l), lanes, planes[0]);
+            if (count > 1) test = test_leaf(leaf, l, lanes, planes, count, in_.exact);
+            const MF unsure = hn::AndNot(limits.kept, hn::Or(test.inside, test.straddling));
+            test.inside = hn::And(test.inside, limits.kept);
+            test.straddling = hn::And(test.straddling, limits.kept);
+            test.undecided = hn::Or(test.undecided, unsure);
+            emit(id, l, test);
+        }
+    }
+
     [[nodiscard]] HWY_INLINE std::uint32_t* work(std::size_t list) const { return out_.work + list * out_.work_size; }
 
     const TreeKernelInput& in_;
@@ -280,11 +335,19 @@ class Walk {
     std::size_t whole_count_ = 0;
     SlotRun* runs_ = out_.runs != nullptr ? out_.runs : reinterpret_cast<SlotRun*>(work(7));
     std::uint32_t run_end_ = 0;
+    Limits limits_;
 };
 
 void run_tree(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count, TreeKernelOutput& output) {
-    Walk walk(input, output);
+    Walk<NoLimits> walk(input, output, {});
     walk.run(entries, count);
+    output = walk.result();
+}
+
+void run_limited_tree(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output) {
+    Walk<LimitTester> walk(input, output, LimitTester(limits, input.view->layer_mask));
+    const std::uint64_t root = tree_entry(0, ((1u << input.view->plane_count) - 1) | kLimited);
+    walk.run(&root, 1);
     output = walk.result();
 }
 
@@ -315,6 +378,7 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::cull {
 
 HWY_EXPORT(run_tree);
+HWY_EXPORT(run_limited_tree);
 HWY_EXPORT(expand_tree);
 
 std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
@@ -324,6 +388,10 @@ std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry
 void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                      TreeKernelOutput& output) {
     HWY_DYNAMIC_DISPATCH(run_tree)(input, entries, count, output);
+}
+
+void run_limited_tree_kernel(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output) {
+    HWY_DYNAMIC_DISPATCH(run_limited_tree)(input, limits, output);
 }
 
 }  // namespace crofton::cull

@@ -4,6 +4,7 @@
 #include <crofton/boxtree/layout.hpp>
 
 #include "kernel_view.hpp"
+#include "limits/kernel_limits.hpp"
 
 namespace crofton::cull {
 
@@ -55,5 +56,9 @@ std::size_t expand_tree_kernel(const TreeKernelInput& input, std::uint64_t entry
 // Handles the children that `count` ≤ 256 entries name, and all below them.
 void run_tree_kernel(const TreeKernelInput& input, const std::uint64_t* entries, std::size_t count,
                      TreeKernelOutput& output);
+
+// From the root, where draw limits hold: `undecided` are also the slots whose items may be beyond one. `runs` is not
+// used.
+void run_limited_tree_kernel(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output);
 
 }  // namespace crofton::cull

@@ -12,10 +12,11 @@ namespace crofton::boxtree {
 
 inline constexpr std::size_t kMaxItems = std::size_t{1} << 30;
 
-// By an eighth where there is no room: a tree that is loaded and then changes a little does not double its memory.
+// Room for some more; by an eighth where there is none: a tree that is loaded and then changes does not double its
+// memory.
 template <class T>
-void grow_for_one(Vector<T>& items) {
-    if (items.size() == items.capacity()) items.reserve(items.size() + items.size() / 8 + 16);
+void make_room_for(Vector<T>& items, std::size_t more) {
+    if (items.size() + more > items.capacity()) items.reserve(items.size() + items.size() / 8 + 16 * more);
 }
 
 class Items {

@@ -105,6 +105,14 @@ static_assert(sizeof(Node) == 448 && sizeof(Leaf) == 512);
            (1.0f + 0x1p-20f);
 }
 
+// A range of radii of items (radius_range.hpp).
+using RadiusRange = std::uint32_t;
+
+// The radii of the items below each child of a node, beside it.
+struct alignas(64) NodeRadii {
+    RadiusRange below[kWidth];
+};
+
 // The leaves below a node, where they are consecutive (they are after a build): count 0 says they are not.
 struct LeafRange {
     LeafId first = 0;

@@ -28,6 +28,8 @@ class Structure {
     [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_; }          // kNone in empty slots
     [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const { return leaf_counts_; }  // leaves()[i].count
     [[nodiscard]] std::span<const LeafRange> leaf_ranges() const { return ranges_; }          // by NodeId
+    [[nodiscard]] std::span<const RadiusRange> leaf_radii() const { return leaf_radii_; }
+    [[nodiscard]] std::span<const NodeRadii> node_radii() const { return node_radii_; }
     [[nodiscard]] unsigned height() const { return height_; }  // nodes on the longest path from the root to a leaf
     [[nodiscard]] std::span<const std::uint32_t> item_slots() const { return item_slots_; }  // kNone: in no leaf
     [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return item_slots_[item]; }
@@ -79,23 +81,28 @@ class Structure {
 
     void init_node(NodeId n, const Topology& topology);
     void write_leaf_layers(LeafId l);
+    void write_leaf_radii(LeafId l);
+    void widen_leaf_radii(LeafId l, const Obb& box);
     void rewrite_leaf(LeafId l);
     void write_item(ItemId item);
     void refresh_node(NodeId n);
-    void refresh_layers(NodeId n, unsigned lane);
+    void refresh_contents(NodeId n, unsigned lane);
     [[nodiscard]] std::uint32_t items_without_gaps(NodeId n) const;
 
     Items& items_;
     measure::Criterion criterion_;
     Vector<Node> nodes_;
     Vector<LeafRange> ranges_;
+    Vector<NodeRadii> node_radii_;
     Vector<Leaf> leaves_;
     Vector<std::uint8_t> leaf_counts_;
+    Vector<RadiusRange> leaf_radii_;
     Vector<ItemId> slot_items_;
     Vector<std::uint32_t> item_slots_;
     unsigned height_ = 1;
     ChangeMarks marks_;
-    bool layers_changed_ = false;  // since the last refit: then layers are looked at again, otherwise only bounds
+    // Since the last refit: then layers and radii are looked at again, otherwise only bounds.
+    bool contents_changed_ = false;
     Scratch scratch_;
 };
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One view against a box tree where draw limits hold.
+// Draw limits as the vector kernels read them: plain numbers, no GLM.
 #pragma once
-#include <crofton/cull/draw_limits.hpp>
-
-#include "tree/tree_kernel.hpp"
+#include <crofton/boxtree/layout.hpp>
 
 namespace crofton::cull {
 
@@ -13,17 +11,12 @@ struct KernelLimits {
     double eye[3];
     float radii[2];
     float least_radius[2];
-    bool has_layers, has_items, has_sizes;
+    bool has_layers, has_items;
     // Of an item in these layers; of any item in some of them. NaN where floats cannot square it.
     float (*layer_square)(const void* limits, std::uint32_t common_layers, bool least_of_all);
     const void* limits;
     float longer_square;
+    const boxtree::NodeRadii* radii_below;  // by NodeId
 };
-
-[[nodiscard]] KernelLimits kernel_limits_of(const DrawLimits& limits);
-
-// Like run_tree_kernel from the root, for trees whose boxes are valid; `undecided` are also the slots whose items may
-// be beyond a limit. `runs` and `whole_count` are not used.
-void run_limits_kernel(const TreeKernelInput& input, const KernelLimits& limits, TreeKernelOutput& output);
 
 }  // namespace crofton::cull
