@@ -31,7 +31,7 @@ struct WorldOptions {
 struct WorldStatistics {
     std::size_t objects = 0, resting = 0, moving = 0;  // shown ones: in the tree, in the list
     std::uint32_t boxes_changed = 0;                   // in this update
-    bool tree_built = false;                           // all at once: much has come to rest
+    bool tree_built = false;                           // all at once: much has come to rest, or come and gone
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
     std::uint32_t nodes_updated = 0;
     std::uint32_t out_of_range =
