@@ -8,6 +8,7 @@
   bench/results.py tables
       writes each table of bench/results/tables.json into its page, between the markers
       <!-- table NAME --> and <!-- end -->.
+      A table with "plain": true shows its CSV's own rows, which another command has written.
   bench/results.py check
       as tables, but writes nothing and exits with 1 where a page would change: the test of the docs.
 
@@ -45,7 +46,7 @@ def specifications():
 
 def names_in(table):
     """All benchmarks that a table needs."""
-    return {name for row in table["rows"] for name in (row["benchmark"], row.get("beside")) if name}
+    return {name for row in table.get("rows", []) for name in (row["benchmark"], row.get("beside")) if name}
 
 
 def times_of(report):
@@ -113,6 +114,14 @@ def span(low, high):
     return number(low) if number(low) == number(high) else f"{number(low)} to {number(high)}"
 
 
+def plain_table(path):
+    """The lines of a table: a CSV's own rows."""
+    with path.open(encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    lines = ["| " + " | ".join(row) + " |" for row in rows]
+    return lines[:1] + ["|" + "---|" * len(rows[0])] + lines[1:]
+
+
 def table_of(table, times):
     """The lines of a table: least to median of each row, per instruction set, and how many times as long the other takes."""
     sets = table["instruction_sets"]
@@ -125,7 +134,8 @@ def table_of(table, times):
         if others:
             beside = row.get("beside")
             ratios = [times[beside, name][0] / times[row["benchmark"], name][0] for name in sets] if beside else []
-            cells.append(f"{' / '.join(number(ratio) for ratio in ratios)} ×" if ratios else "")
+            shown = (lambda ratio: f"{ratio:.2f}") if table.get("fine_ratios") else number
+            cells.append(f"{' / '.join(shown(ratio) for ratio in ratios)} ×" if ratios else "")
         lines.append("| " + " | ".join(cells) + " |")
     return lines
 
@@ -135,7 +145,8 @@ def write_tables(check):
     for name, table in specifications().items():
         path = ROOT / table["page"]
         page = path.read_text(encoding="utf-8")
-        lines = table_of(table, read(RESULTS / table["processor"] / f"{table['csv']}.csv"))
+        path_of_csv = RESULTS / table["processor"] / f"{table['csv']}.csv"
+        lines = plain_table(path_of_csv) if table.get("plain") else table_of(table, read(path_of_csv))
         marked = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.S)
         if len(marked.findall(page)) != 1:
             sys.exit(f"{table['page']} must have the markers of the table {name} once")

@@ -14,7 +14,7 @@ constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new ite
 constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
 // A tree of no more items is built anew in one go, within a few milliseconds, once such a part of them has come or
 // gone, or waits to enter: in the background they would change faster than they are built, and insertions wear it.
-constexpr std::size_t kSmallTree = 32768, kSmallTreeChanges = 24, kSmallTreeWaiting = 48, kAttachedToSmallTree = 16;
+constexpr std::size_t kSmallTree = 32768, kSmallTreeChanges = 32, kSmallTreeWaiting = 64, kAttachedToSmallTree = 16;
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.

@@ -47,7 +47,7 @@ typedef struct crofton_world_statistics {
     uint64_t box_pairs_tested, contact_pairs_tested;
     uint32_t boxes_changed, nodes_updated;
     uint32_t out_of_range; /* objects that the product of transforms has put beyond it: hidden until they return */
-    uint32_t tree_built;   /* 1: all at once, because much has come to rest */
+    uint32_t tree_built;   /* 1: all at once, because much has come to rest, or come and gone */
 } crofton_world_statistics;
 
 /* A mesh in its own frame, in the caller's arrays; World copies what it needs. Three indices a triangle,

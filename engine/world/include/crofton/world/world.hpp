@@ -33,7 +33,7 @@ struct WorldOptions {
 struct WorldStatistics {
     std::size_t objects = 0, resting = 0, moving = 0;  // shown ones: in the tree, in the list
     std::uint32_t boxes_changed = 0;                   // in this update
-    bool tree_built = false;                           // all at once: much has come to rest
+    bool tree_built = false;                           // all at once: much has come to rest, or come and gone
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
     collide::BatchStatistics box_tests;  // how the pairs of boxes were told apart
     double contacts_us = 0.0;            // microseconds of this update that pairs and contacts took
