@@ -2,6 +2,7 @@
 // Runs the culling benchmarks and ends with the ratios that matter, of times from the same run.
 #include <cstdio>
 
+#include "cull_inputs.hpp"
 #include "least_times.hpp"
 #include "simd_target.hpp"
 
@@ -51,9 +52,10 @@ class Ratios : public crofton::bench::LeastTimes {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!crofton::bench::take_target_option(argc, argv)) return 1;
-    std::printf("Instruction set: %s\n", crofton::bench::target_in_use());
+    if (!crofton::bench::take_target_option(argc, argv) || !crofton::bench::take_scene_option(argc, argv)) return 1;
+    std::printf("Instruction set: %s, scene: %s\n", crofton::bench::target_in_use(), crofton::bench::scene_in_use());
     Ratios reporter;
     benchmark::AddCustomContext("instruction_set", crofton::bench::target_in_use());  // for bench/results.py
+    benchmark::AddCustomContext("scene", crofton::bench::scene_in_use());
     return crofton::bench::run(argc, argv, reporter);
 }
