@@ -33,6 +33,33 @@ BENCHMARK_CAPTURE(flat_cull, conservative, cull::CullMode::conservative, false)-
 BENCHMARK_CAPTURE(flat_cull, exact, cull::CullMode::exact, false)->Arg(10000)->Arg(1000000);
 BENCHMARK_CAPTURE(flat_cull, exact_ids, cull::CullMode::exact, true)->Arg(10000)->Arg(1000000);
 
+void flat_cull_cold(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    bench::time_cold(state, [&] { cull::find_visible(set, boxes, view, verdicts); });
+    report(state, 0);
+}
+BENCHMARK(flat_cull_cold)->Arg(10000)->Arg(1000000)->UseManualTime();
+
+// What a list must read, and nothing else: eight bytes a box, summed.
+void read_rows(benchmark::State& state) {
+    cull::BoxSet set;
+    set.assign(boxes_of(state.range(0)));
+    const auto* words = reinterpret_cast<const std::uint64_t*>(set.rows().data());
+    const std::size_t count = set.size();
+    for (auto _ : state) {
+        std::uint64_t sums[8] = {};
+        for (std::size_t i = 0; i + 8 <= count; i += 8)
+            for (std::size_t k = 0; k < 8; ++k) sums[k] += words[i + k];
+        benchmark::DoNotOptimize(sums);
+    }
+    report(state, 0);
+}
+BENCHMARK(read_rows)->Arg(1000000);
+
 // Every fifth bit of a million, as ids.
 void list_ids(benchmark::State& state) {
     std::vector<std::uint64_t> bits(15625);
@@ -54,6 +81,13 @@ void few_boxes(benchmark::State& state) {
         cull::find_visible(boxes, {}, view, visible);
         benchmark::DoNotOptimize(visible.ids().data());
     }
+    report(state, visible.size());
+}
+void few_boxes_cold(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::VisibleSet visible;
+    bench::time_cold(state, [&] { cull::find_visible(boxes, {}, view, visible); });
     report(state, visible.size());
 }
 void few_boxes_list(benchmark::State& state) {
@@ -79,6 +113,7 @@ void few_boxes_tree(benchmark::State& state) {
     report(state, visible.size());
 }
 BENCHMARK(few_boxes)->Arg(20)->Arg(100)->Arg(1000)->Arg(100000);
+BENCHMARK(few_boxes_cold)->Arg(20)->Arg(1000)->Arg(100000)->UseManualTime();
 BENCHMARK(few_boxes_list)->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(few_boxes_tree)->Arg(20)->Arg(100)->Arg(1000);
 

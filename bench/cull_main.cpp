@@ -2,6 +2,7 @@
 // Runs the culling benchmarks and ends with the ratios that matter, of times from the same run.
 #include <cstdio>
 
+#include "cull_inputs.hpp"
 #include "least_times.hpp"
 
 namespace {
@@ -50,6 +51,9 @@ class Ratios : public crofton::bench::LeastTimes {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (!crofton::bench::take_scene_option(argc, argv)) return 1;
+    std::printf("Scene: %s\n", crofton::bench::scene_in_use());
+    benchmark::AddCustomContext("scene", crofton::bench::scene_in_use());
     Ratios reporter;
     return crofton::bench::run(argc, argv, reporter);
 }

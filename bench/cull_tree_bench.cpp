@@ -34,6 +34,17 @@ BENCHMARK_CAPTURE(tree_cull, exact, cull::CullMode::exact, cull::ResultOrder::tr
 BENCHMARK_CAPTURE(tree_cull, exact_ascending, cull::CullMode::exact, cull::ResultOrder::ascending, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull, exact_1_percent, cull::CullMode::exact, cull::ResultOrder::tree, 0.01)->Arg(1000000);
 
+void tree_cull_cold(benchmark::State& state, cull::ResultOrder order, double share) {
+    const boxtree::BoxTree& tree = tree_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
+    cull::VisibleSet visible;
+    bench::time_cold(state, [&] { cull::find_visible(tree, view, visible, {cull::CullMode::exact, order}); });
+    report(state, visible.size());
+}
+BENCHMARK_CAPTURE(tree_cull_cold, exact, cull::ResultOrder::tree, 0.2)->Arg(10000)->Arg(1000000)->UseManualTime();
+BENCHMARK_CAPTURE(tree_cull_cold, exact_ascending, cull::ResultOrder::ascending, 0.2)->Arg(1000000)->UseManualTime();
+BENCHMARK_CAPTURE(tree_cull_cold, exact_1_percent, cull::ResultOrder::tree, 0.01)->Arg(1000000)->UseManualTime();
+
 void tree_cull_numbered(benchmark::State& state, cull::ResultOrder order) {
     const auto& boxes = boxes_in_tree_order(state.range(0));
     const boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);

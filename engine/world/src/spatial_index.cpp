@@ -228,7 +228,7 @@ void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Exe
     rested_.clear();
     moving_.list_rested(now_, settings.updates_to_rest, rested_);
     const std::size_t items = tree_.item_count();
-    const bool is_small = items > kFewItems && items <= kSmallTree;
+    const bool is_small = settings.rebuild_budget != 0 && items > kFewItems && items <= kSmallTree;
     const std::size_t most_waiting = std::max(kFewItems, is_small ? items / kSmallTreeWaiting : items);
     if (rested_.size() > most_waiting || (is_small && came_or_went_ > items / kSmallTreeChanges)) {
         build_tree(rested_, executor);
