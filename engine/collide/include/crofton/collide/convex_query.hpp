@@ -8,6 +8,11 @@
 #include <optional>
 #include <span>
 
+namespace crofton::mesh {
+class MeshTree;
+struct MeshContact;
+}  // namespace crofton::mesh
+
 namespace crofton::collide {
 
 // Simple bodies that boxes meet: spheres, capsules, triangles, half-spaces.
