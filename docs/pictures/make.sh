@@ -13,12 +13,14 @@ trap 'rm -rf "$work"' EXIT
 cp "$work"/town/*0003.png town.png
 "$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
 "$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
+"$crofton" frames town --camera street --frames 120 --size 960x540 --png "$work/street"
+cp "$work"/street/*0006.png street.png
 ./crofton.py >crofton.svg
 ./modules.py >modules.svg
 if command -v chromium >/dev/null; then
-    "$crofton" frames town --frames 120 --size 480x270 --verify --report "$work/report.html"
+    "$crofton" frames town --frames 120 --camera street --occlude --size 640x360 --verify --report "$work/report.html"
     chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" \
-        --blink-settings=preferredColorScheme=1 --window-size=960,900 --screenshot="$work/report.png" \
+        --blink-settings=preferredColorScheme=1 --window-size=960,1250 --screenshot="$work/report.png" \
         "file://$work/report.html" >/dev/null 2>&1
     cp "$work/report.png" report.png
 fi

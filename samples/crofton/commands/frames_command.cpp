@@ -39,8 +39,8 @@ struct FramesOptions {
     unsigned threads = 1;
     bool draw = false, no_draw = false, verify = false;
     bool occlude = false;
-    std::string occlusion_size = "480x270";
-    std::uint32_t occluders = 256;
+    std::string occlusion_size = "400x225";
+    std::uint32_t occluders = 128;
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
     ReadOptions read;

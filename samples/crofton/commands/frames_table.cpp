@@ -30,9 +30,10 @@ std::string row_with_occlusion(const FrameStatistics& f) {
                   frame_ms_with_occlusion(f), ratio(frame_ms(f), frame_ms_with_occlusion(f)), 1e-3 * o.occlude_us);
 }
 
+// No ratio where it is not less.
 std::string mean_row(const char* what, const char* pattern, double without, double with) {
-    return format("  %-33s", what) + format(pattern, without) + format(pattern, with) +
-           format(" %8.2f\n", ratio(without, with));
+    const std::string numbers = format("  %-33s", what) + format(pattern, without) + format(pattern, with);
+    return numbers + (without >= with ? format(" %8.2f\n", ratio(without, with)) : "\n");
 }
 
 std::string means_with_occlusion(std::span<const FrameStatistics> frames) {

@@ -72,7 +72,9 @@ std::string row_of_both(const char* name, double without, double with, const cha
     char numbers[3][32];
     std::snprintf(numbers[0], sizeof numbers[0], pattern, without);
     std::snprintf(numbers[1], sizeof numbers[1], pattern, with);
-    std::snprintf(numbers[2], sizeof numbers[2], "%.1f", with > 0.0 ? without / with : 0.0);
+    // Nothing where it is not less.
+    numbers[2][0] = '\0';
+    if (with > 0.0 && without >= with) std::snprintf(numbers[2], sizeof numbers[2], "%.1f", without / with);
     std::string html = std::string("<tr><td>") + name + "</td>";
     for (const int k : {0, 1})
         html += std::string("<td>") + (pattern[2] == '0' ? readable(k == 0 ? without : with) : numbers[k]) + "</td>";
