@@ -3,8 +3,9 @@
 //   bench_capi --benchmark_min_time=0.5 --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true
 #include <benchmark/benchmark.h>
 #include <crofton/capi/crofton.h>
+#include <crofton/boxtree/box_tree.hpp>
 
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/cull/cull.hpp>
 #include <vector>
 

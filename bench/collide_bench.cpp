@@ -3,9 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include <deque>
 

@@ -3,9 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -3,7 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include "collide_inputs.hpp"
 

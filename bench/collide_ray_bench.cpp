@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include <cmath>
 #include <glm/geometric.hpp>

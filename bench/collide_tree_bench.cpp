@@ -3,7 +3,8 @@
 // box is the same for both.
 #include <benchmark/benchmark.h>
 
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/collide/broadphase.hpp>
 #include <random>
 
 #include "cull_crowd.hpp"

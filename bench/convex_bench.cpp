@@ -6,8 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/cast.hpp>
-#include <crofton/convex/manifold.hpp>
+#include <crofton/convex/query.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <random>

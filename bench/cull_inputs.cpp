@@ -2,6 +2,7 @@
 #include "cull_inputs.hpp"
 
 #include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <cstdio>
 #include <map>

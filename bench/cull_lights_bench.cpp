@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/lights.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <random>

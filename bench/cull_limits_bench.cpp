@@ -2,6 +2,7 @@
 // What draw limits cost a query, and save it.
 #include <benchmark/benchmark.h>
 
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // One view of a list, beside the plainest loop over AABBs. Compare within one run.
 #include <benchmark/benchmark.h>
 
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 
 #include "cull_inputs.hpp"

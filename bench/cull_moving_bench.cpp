@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/moving_boxes.hpp>
 #include <cstdlib>
 #include <map>
 #include <random>

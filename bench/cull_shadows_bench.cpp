@@ -2,8 +2,9 @@
 // Shadow casters of a crowd: what is in the shadow volume, and what could fall on something seen.
 #include <benchmark/benchmark.h>
 
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/shadow_casters.hpp>
+#include <crofton/cull/lights.hpp>
 #include <vector>
 
 #include "cull_inputs.hpp"

@@ -2,6 +2,7 @@
 // Two threads beside one.
 #include <benchmark/benchmark.h>
 
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
 

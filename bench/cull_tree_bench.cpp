@@ -2,6 +2,7 @@
 // One view of a tree: what a query costs, what its order of ids costs, and building.
 #include <benchmark/benchmark.h>
 
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
 
 #include "cull_inputs.hpp"

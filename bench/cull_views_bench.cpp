@@ -2,6 +2,7 @@
 // Several views in one pass beside one query each.
 #include <benchmark/benchmark.h>
 
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 

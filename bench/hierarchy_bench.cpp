@@ -7,8 +7,8 @@
 #include <cmath>
 #include <crofton/cull/classify.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/measure/criterion.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <crofton/study/bound_given_ancestors.hpp>
 #include <crofton/study/query_sample.hpp>

@@ -3,8 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <crofton/study/spatial_lines.hpp>

@@ -3,7 +3,8 @@
 // CROFTON_MASKED_OCCLUSION_CULLING names its sources.
 #include <algorithm>
 #include <chrono>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -3,8 +3,8 @@
 // occluders, 10 to 10,000, of which the best 256 are chosen; then with that of objects, 1,000 to LARGEST (10^7).
 #include <algorithm>
 #include <chrono>
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdio>
 #include <cstdlib>
 

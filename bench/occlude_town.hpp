@@ -4,8 +4,8 @@
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/occlude/occlusion_view.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/occlude/occlusion.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <vector>
 
 namespace crofton::bench {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdio>
 #include <ctime>
 #include <map>

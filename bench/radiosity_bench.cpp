@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <crofton/radiosity/bundle_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <memory>
 #include <string>
 #include <unordered_map>

@@ -2,7 +2,7 @@
 // Rays through Embree, where it is installed.
 #pragma once
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <memory>
 #include <span>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Frames of bench_world in which bounds move. By hand what moves is known beforehand.
 #include <cmath>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/crofton.hpp>
-#include <crofton/cull/moving_boxes.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <random>
 #include <vector>
 

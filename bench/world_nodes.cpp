@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Frames of bench_world in which nodes move, with a cube on each.
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/crofton.hpp>
-#include <crofton/cull/moving_boxes.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/scene/scene.hpp>
 #include <vector>
 

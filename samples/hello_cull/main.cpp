@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A thousand boxes on a plane: which of them does the camera see, and what did the answer cost?
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
 #include <cstdio>
 #include <vector>

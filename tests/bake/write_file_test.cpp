@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/bake/write_file.hpp>
 
 #include <algorithm>
 #include <csignal>

@@ -2,7 +2,7 @@
 #include <crofton/capi/crofton.h>
 
 #include <atomic>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <cstdlib>
 #include <map>

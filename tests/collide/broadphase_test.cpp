@@ -3,7 +3,7 @@
 #include <gmpxx.h>
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/executor.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>

@@ -3,8 +3,9 @@
 // that have lived.
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <oracle/aged_tree.hpp>
 #include <oracle/edges.hpp>

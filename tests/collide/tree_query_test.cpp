@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <limits>
 #include <vector>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A program outside the project that links the package: it must compile, link and answer, from every module.
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/version.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/scene/scene.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <cstdio>

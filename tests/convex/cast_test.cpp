@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <crofton/convex/cast.hpp>
+#include <crofton/convex/query.hpp>
 #include <limits>
 #include <numbers>
 

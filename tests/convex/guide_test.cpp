@@ -2,8 +2,7 @@
 // The example of docs/convex.md, compiled and run.
 #include <doctest/doctest.h>
 
-#include <crofton/convex/cast.hpp>
-#include <crofton/convex/manifold.hpp>
+#include <crofton/convex/query.hpp>
 #include <cstdio>
 #include <vector>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/convex/cast.hpp>
-#include <crofton/convex/manifold.hpp>
+#include <crofton/convex/query.hpp>
 #include <limits>
 #include <set>
 

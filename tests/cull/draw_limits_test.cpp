@@ -4,8 +4,9 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/moving_boxes.hpp>
 #include <oracle/aged_tree.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>

@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <counting_memory.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>

@@ -7,7 +7,7 @@
 #include <counting_memory.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/classify.hpp>
-#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/lights.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <oracle/exact_bounds.hpp>

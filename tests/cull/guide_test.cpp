@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/froxels.hpp>
-#include <crofton/cull/shadow_casters.hpp>
+#include <crofton/cull/lights.hpp>
 #include <cstdio>
 #include <limits>
 #include <vector>

@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <bit>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <oracle/near_misses.hpp>

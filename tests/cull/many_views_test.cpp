@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
 #include <map>
 #include <oracle/random_boxes.hpp>

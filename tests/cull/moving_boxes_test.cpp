@@ -3,8 +3,9 @@
 #include <hwy/targets.h>
 #include <algorithm>
 #include <counting_memory.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
-#include <crofton/cull/moving_boxes.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <limits>
 #include <map>
 #include <oracle/random_boxes.hpp>

@@ -6,7 +6,7 @@
 #include <counting_memory.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/shadow_casters.hpp>
+#include <crofton/cull/lights.hpp>
 #include <glm/geometric.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What touches what, in the same bits everywhere.
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <oracle/exact_boxes.hpp>
 
 #include "crowd.hpp"

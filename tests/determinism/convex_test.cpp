@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Hulls, distances, depths, manifolds and casts, in the same bits everywhere.
-#include <crofton/convex/cast.hpp>
-#include <crofton/convex/manifold.hpp>
+#include <crofton/convex/query.hpp>
 #include <oracle/exact_convex.hpp>
 
 #include "crowd.hpp"

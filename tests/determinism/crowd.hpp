@@ -7,7 +7,7 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a camera sees, in the same bits everywhere.
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <oracle/exact_frustum.hpp>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Measures and random motions in the same bits everywhere.
-#include <crofton/measure/criterion.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/global_lines.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>

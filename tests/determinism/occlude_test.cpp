@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Depth buffers, what is hidden, which occluders are found and chosen, in the same bits everywhere.
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
 #include <oracle/witness_rays.hpp>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lines and light in the same bits everywhere.
-#include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <atomic>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>

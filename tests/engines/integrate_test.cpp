@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/moving_boxes.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdio>
 #include <cstdlib>

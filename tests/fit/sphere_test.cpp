@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/fit/sphere.hpp>
+#include <crofton/fit/fit.hpp>
 #include <glm/geometric.hpp>
 #include <random>
 #include <vector>

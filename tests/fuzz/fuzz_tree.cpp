@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stored trees, trusted in nothing; of those with sound links but contents of any kind, queries stay within bounds.
+#include <crofton/boxtree/box_tree.hpp>
 #include <span>
 
 #include "use_tree.hpp"

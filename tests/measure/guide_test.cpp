@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The example of docs/measure.md, compiled and run.
 #include <doctest/doctest.h>
-#include <crofton/measure/criterion.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <cstdio>
 
 namespace {

@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/measure/criterion.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <numbers>
 #include <oracle/code_of.hpp>
 #include <vector>

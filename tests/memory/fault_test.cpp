@@ -7,9 +7,9 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <crofton/scene/scene.hpp>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <vector>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <cstdio>
 #include <fstream>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is called hidden has a proof in rational numbers.
 #include <doctest/doctest.h>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <oracle/hidden_certificate.hpp>
 
 #include "scenes.hpp"

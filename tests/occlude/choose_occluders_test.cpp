@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <counting_memory.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/occlude/choose_occluders.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>

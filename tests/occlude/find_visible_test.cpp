@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "scenes.hpp"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The examples of docs/notes/occluder_finding.md.
 #include <doctest/doctest.h>
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_occluders.hpp>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occluder.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <vector>
 
 #include "occlude/found_bodies.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pictures of what each pixel's ray meets first, with all objects and with those alone that are not hidden.
 #include <doctest/doctest.h>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <numbers>

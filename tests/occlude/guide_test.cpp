@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The example of docs/occlude.md, compiled and run.
 #include <doctest/doctest.h>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdio>
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <crofton/core/executor.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "scenes.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "scenes.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/geometry/box.hpp>
-#include <crofton/occlude/occlusion_worth.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>

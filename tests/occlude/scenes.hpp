@@ -4,8 +4,8 @@
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/occlude/occlusion_buffer.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/occlude/occlusion.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <oracle/witness_rays.hpp>

@@ -2,9 +2,8 @@
 // Occluders of the generated town: found in all its meshes, chosen at street level, against full information.
 #include <doctest/doctest.h>
 #include <crofton/cull/classify.hpp>
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_occluders.hpp>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occluder.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <map>
 
 #include "assets/scene_source.hpp"

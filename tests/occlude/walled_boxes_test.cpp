@@ -2,7 +2,7 @@
 // Boxes behind walls, against exact rays.
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "occlude/found_bodies.hpp"

@@ -2,8 +2,8 @@
 // Frames that allocate nothing, and occluders that come and go.
 #include <doctest/doctest.h>
 #include <counting_memory.hpp>
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "scenes.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/lights.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <vector>
 

@@ -6,7 +6,7 @@
 
 #include <array>
 #include <crofton/geometry/box.hpp>
-#include <crofton/occlude/occlusion_view.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <oracle/exact_boxes.hpp>
 #include <oracle/witness_rays.hpp>
 #include <span>

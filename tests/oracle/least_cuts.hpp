@@ -3,7 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <cstdint>
 #include <limits>
 #include <vector>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/executor.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

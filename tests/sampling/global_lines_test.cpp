@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

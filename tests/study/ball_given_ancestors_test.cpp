@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/ball_given_ancestors.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <glm/geometric.hpp>

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <oracle/code_of.hpp>
 #include <oracle/random_boxes.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <crofton/study/diameter.hpp>
 #include <glm/geometric.hpp>

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/radiosity/patches.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/mutual_information.hpp>
 #include <crofton/study/other_lines.hpp>
 #include <glm/geometric.hpp>

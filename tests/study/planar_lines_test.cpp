@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

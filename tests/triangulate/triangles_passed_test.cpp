@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <glm/geometric.hpp>
 #include <oracle/triangulation_check.hpp>

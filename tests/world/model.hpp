@@ -3,7 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <glm/geometric.hpp>

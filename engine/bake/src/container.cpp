@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <crofton/bake/checksum.hpp>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
 #include <string>
 

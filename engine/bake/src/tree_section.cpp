@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tree_section.hpp"
+#include <crofton/boxtree/box_tree.hpp>
 
 namespace crofton::bake {
 

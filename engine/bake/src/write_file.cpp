@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/bake/write_file.hpp>
+#include <crofton/bake/baked_scene.hpp>
 
 #include <cerrno>
 #include <cstdio>

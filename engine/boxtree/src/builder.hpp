@@ -5,7 +5,7 @@
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <span>
 
 #include "partition.hpp"

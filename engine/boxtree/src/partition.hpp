@@ -5,7 +5,7 @@
 #include <bit>
 #include <crofton/boxtree/layout.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <limits>
 #include <numbers>
 #include <span>

@@ -2,7 +2,7 @@
 #include "refit.hpp"
 
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 
 #include "bounds.hpp"
 #include "leaf_extents.hpp"

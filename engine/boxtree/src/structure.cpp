@@ -4,7 +4,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <limits>
 
 #include <crofton/boxtree/radius_range.hpp>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/bake.h>
+#include <crofton/capi/modules.h>
 
 #include <crofton/bake/baked_scene.hpp>
-#include <crofton/bake/write_file.hpp>
 
 #include "call.hpp"
 #include "convert.hpp"

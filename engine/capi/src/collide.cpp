@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/collide.h>
+#include <crofton/capi/modules.h>
+#include <crofton/mesh/mesh_tree.hpp>
 
 #include <crofton/collide/broadphase.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 
 #include "collider.hpp"

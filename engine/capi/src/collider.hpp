@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What collides, as the functions of several headers see it: boxes, and meshes made ready.
 #pragma once
-#include <crofton/capi/collide.h>
+#include <crofton/capi/modules.h>
 
 #include <algorithm>
 #include <crofton/geometry/shapes.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/contacts.h>
+#include <crofton/capi/modules.h>
 
-#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 
 #include "collider.hpp"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The C structs and the C++ ones, which say the same: arrays of them are read in place.
 #pragma once
-#include <crofton/capi/geometry.h>
-#include <crofton/capi/hooks.h>
+#include <crofton/capi/base.h>
 
 #include <crofton/core/executor.hpp>
 #include <crofton/geometry/box.hpp>

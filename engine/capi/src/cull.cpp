@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/cull.h>
+#include <crofton/capi/modules.h>
+#include <crofton/boxtree/box_tree.hpp>
 
 #include <crofton/cull/cull.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/fit.h>
+#include <crofton/capi/modules.h>
 
 #include <crofton/fit/fit.hpp>
 

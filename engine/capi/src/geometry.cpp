@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/geometry.h>
+#include <crofton/capi/base.h>
 
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 
 #include "call.hpp"
 #include "convert.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/hooks.h>
+#include <crofton/capi/base.h>
 
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <mutex>
 #include <string>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Meshes as C gives them.
 #pragma once
-#include <crofton/capi/scene.h>
+#include <crofton/capi/modules.h>
 
 #include <crofton/geometry/mesh.hpp>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What queries are asked with, checked: views, rays and bodies.
 #pragma once
-#include <crofton/capi/cull.h>
-#include <crofton/capi/rays.h>
+#include <crofton/capi/modules.h>
 
 #include <cmath>
 #include <crofton/cull/cull.hpp>

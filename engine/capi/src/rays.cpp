@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/rays.h>
+#include <crofton/capi/modules.h>
 
 #include <algorithm>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/collide/broadphase.hpp>
 #include <limits>
 
 #include "collider.hpp"

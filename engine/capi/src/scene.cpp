@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/scene.h>
+#include <crofton/capi/modules.h>
 
 #include "convert.hpp"
 #include "mesh.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/triangulate.h>
+#include <crofton/capi/modules.h>
 
 #include <crofton/triangulate/triangulate.hpp>
 

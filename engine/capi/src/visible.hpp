@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What views of a World have found, as the functions of several headers see it.
 #pragma once
-#include <crofton/capi/world_queries.h>
+#include <crofton/capi/crofton.h>
 
 #include <array>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A World, as the functions of several headers see it.
 #pragma once
-#include <crofton/capi/world.h>
-#include <crofton/capi/world_queries.h>
+#include <crofton/capi/crofton.h>
 
 #include <crofton/world/world.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/world_occlusion.h>
+#include <crofton/capi/crofton.h>
 
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
 
 #include "convert.hpp"
 #include "growing.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/capi/world_queries.h>
+#include <crofton/capi/crofton.h>
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,7 @@
 // features near the answer are tried one by one.
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <glm/geometric.hpp>
 #include <initializer_list>
 #include <limits>

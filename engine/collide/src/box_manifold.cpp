@@ -2,8 +2,7 @@
 // Where two boxes touch. Everything is reckoned about the centre of one of them.
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <glm/geometric.hpp>
 
 #include "box_penetration.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "box_penetration.hpp"
 
-#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 
 #include "float_pair.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The answer for two boxes that float cannot tell apart, or need not be asked about.
 #pragma once
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <cstdint>
 
 namespace crofton::collide {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <span>

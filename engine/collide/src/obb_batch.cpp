@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <crofton/collide/obb_obb.hpp>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/core/error.hpp>
 
 #include "block_filter.hpp"
 #include "box_lanes.hpp"

@@ -2,7 +2,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/geometry/expansion.hpp>
 #include <cstdint>
 #include <glm/geometric.hpp>

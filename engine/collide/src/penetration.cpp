@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

@@ -3,9 +3,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

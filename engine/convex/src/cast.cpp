@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/cast.hpp>
+#include <crofton/convex/query.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 
 #include "core_query.hpp"

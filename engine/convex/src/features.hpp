@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The part of a body's surface that looks along a direction: a polygon, a segment or a point, with ids.
 #pragma once
-#include <crofton/convex/manifold.hpp>
+#include <crofton/convex/query.hpp>
 
 namespace crofton::convex {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/hull.hpp>
+#include <crofton/convex/body.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/convex/hull.hpp>
+#include <crofton/convex/body.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::convex {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/convex/manifold.hpp>
+#include <crofton/convex/query.hpp>
 
 #include "clip.hpp"
 #include "core_query.hpp"

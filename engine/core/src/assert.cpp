@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <atomic>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <cstdio>
 #include <mutex>
 

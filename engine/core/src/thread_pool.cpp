@@ -3,7 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <mutex>
 #include <thread>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/cull/cull.hpp>
 
 #include "tree/query.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/cull/cull.hpp>
 
 #include "id_bits_kernel.hpp"

@@ -5,7 +5,7 @@
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>

@@ -4,7 +4,7 @@
 #include <crofton/core/recovery.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/fit/sphere.hpp>
+#include <crofton/fit/fit.hpp>
 #include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

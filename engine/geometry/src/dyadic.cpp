@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/geometry/dyadic.hpp>
 
 namespace crofton {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/recovery.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::measure {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <numbers>
 
 namespace crofton::measure {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

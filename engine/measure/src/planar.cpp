@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/recovery.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <limits>

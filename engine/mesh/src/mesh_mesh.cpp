@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
@@ -153,7 +154,8 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
     MeshDistance result;
     ClosestPoints best;
     best.squared = limit * limit;
-    Nearest nearest = towards(center_of(a.parts().root_box), transform(b_to_a, center_of(b.parts().root_box)), best.squared);
+    Nearest nearest =
+        towards(center_of(a.parts().root_box), transform(b_to_a, center_of(b.parts().root_box)), best.squared);
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t) {
         const mesh::MeshLeaf &in_a = a.parts().leaves[of_a.leaf], &in_b = b.parts().leaves[of_b.leaf];
         const Triangle first = triangle_of(in_a, of_a.lane), second = triangle_of(in_b, of_b.lane, b_to_a);

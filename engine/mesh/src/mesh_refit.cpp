@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/core/recovery.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
 

@@ -6,6 +6,7 @@
 #include <crofton/geometry/plane_filter.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 
 #include <crofton/mesh/ray_box.hpp>

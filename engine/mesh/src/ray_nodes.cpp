@@ -4,6 +4,7 @@
 #include <crofton/core/recovery.hpp>
 #include <crofton/mesh/box_hierarchy.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <utility>
 
 namespace crofton::mesh {

@@ -2,7 +2,7 @@
 // The buffer's memory: tiles of 8 × 8 pixels, the least nearness of each, and of blocks of tiles.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdint>
 
 #include "pixel_map.hpp"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <bit>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/core/diagnostics.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "query_view.hpp"
 

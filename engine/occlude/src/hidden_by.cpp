@@ -2,7 +2,7 @@
 // Which occluders hide a box: each is drawn again, alone, where the box is.
 #include <algorithm>
 #include <cmath>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occlusion.hpp>
 
 #include "buffer_data.hpp"
 #include "draw_kernel.hpp"

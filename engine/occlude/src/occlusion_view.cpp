@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/occlude/occlusion_view.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

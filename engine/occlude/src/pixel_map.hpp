@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A view in pixels: the map that both occluders and questions go through.
 #pragma once
-#include <crofton/occlude/occlusion_view.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdint>
 
 namespace crofton::occlude {

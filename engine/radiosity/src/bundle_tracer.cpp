@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
-#include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/radiosity/lines.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 

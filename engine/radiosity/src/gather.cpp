@@ -2,7 +2,7 @@
 // What arrives on every patch along one set of lines.
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <numeric>
 
 #include "local_lines.hpp"

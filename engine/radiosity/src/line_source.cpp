@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

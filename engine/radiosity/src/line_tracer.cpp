@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/core/recovery.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <glm/geometric.hpp>
 
 #include "trace_kernels.hpp"

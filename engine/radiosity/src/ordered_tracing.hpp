@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/core/executor.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <cstdint>
 
 namespace crofton::radiosity {

@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/render/clip_space.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -2,7 +2,7 @@
 #include "instance.hpp"
 
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <cstring>
 
 namespace crofton::render {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/render/rasterizer.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 
 namespace crofton::sampling {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <numbers>
 
 namespace crofton::sampling {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <cstring>
 #include <string>
 #include <utility>

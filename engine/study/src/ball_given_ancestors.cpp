@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/core/memory.hpp>
-#include <crofton/fit/sphere.hpp>
+#include <crofton/fit/fit.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/study/ball_given_ancestors.hpp>
 #include <glm/geometric.hpp>

@@ -4,7 +4,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/study/diameter.hpp>
 #include <glm/geometric.hpp>
 #include <string>

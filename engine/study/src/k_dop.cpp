@@ -3,7 +3,7 @@
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/k_dop.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

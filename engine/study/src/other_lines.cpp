@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/other_lines.hpp>
 #include <glm/geometric.hpp>
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/study/planar_support.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

@@ -5,7 +5,7 @@
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_distribution.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <glm/geometric.hpp>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/geometry/trigonometry.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <numbers>
 
 #include "direction_cells.hpp"

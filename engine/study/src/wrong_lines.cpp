@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>
 

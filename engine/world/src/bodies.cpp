@@ -2,8 +2,9 @@
 #include "bodies.hpp"
 
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>

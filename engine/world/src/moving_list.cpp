@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moving_list.hpp"
+#include <crofton/boxtree/box_tree.hpp>
 
 #include <algorithm>
 #include <utility>

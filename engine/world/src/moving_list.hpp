@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The objects that move: their boxes of the last update, and a second array of those that the next one brings.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/cull/moving_boxes.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

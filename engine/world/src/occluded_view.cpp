@@ -2,7 +2,7 @@
 #include "occluded_view.hpp"
 
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <new>
 
 namespace crofton {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A view's depth buffer, the occluders that were drawn, and what was found.
 #pragma once
-#include <crofton/occlude/choose_occluders.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <crofton/world/answers.hpp>
 #include <optional>
 

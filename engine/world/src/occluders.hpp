@@ -2,7 +2,7 @@
 // What of a World's objects hides other things: the occluders of meshes, placed with each object.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/occlude/choose_occluders.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <crofton/scene/scene.hpp>
 #include <span>
 

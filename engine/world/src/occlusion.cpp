@@ -4,8 +4,8 @@
 #include <array>
 #include <bit>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/core/diagnostics.hpp>
-#include <crofton/cull/draw_limits.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/cull/classify.hpp>
 #include <optional>
 
 #include "occluded_view.hpp"

@@ -2,9 +2,10 @@
 // What is asked between updates.
 #include <algorithm>
 #include <cmath>
-#include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

@@ -2,7 +2,8 @@
 #include "spatial_index.hpp"
 
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/error.hpp>
 #include <utility>
 
 namespace crofton::world {

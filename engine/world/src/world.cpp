@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <new>
 

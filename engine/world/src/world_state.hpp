@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a World keeps.
 #pragma once
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/collide/broadphase.hpp>
 #include <crofton/world/world.hpp>
 
 #include "contact_finder.hpp"

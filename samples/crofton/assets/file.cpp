@@ -6,7 +6,7 @@
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
-#include <crofton/bake/write_file.hpp>
+#include <crofton/bake/baked_scene.hpp>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>

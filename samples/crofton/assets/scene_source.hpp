@@ -2,7 +2,7 @@
 // Where scenes come from: files of several formats, and the town we make ourselves.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The town's vocabulary: every kind of thing once, as meshes and planar polygons of one scene.
 #pragma once
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/scene/scene.hpp>
 #include <map>
 #include <string>

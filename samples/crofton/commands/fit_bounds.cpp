@@ -6,9 +6,8 @@
 #include <cmath>
 #include <crofton/cull/classify.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/fit/sphere.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/k_dop.hpp>
 #include <cstdio>
 #include <functional>

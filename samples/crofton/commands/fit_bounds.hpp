@@ -2,7 +2,7 @@
 // `crofton fit --bounds`: spheres, boxes and k-DOPs around each mesh, and which of them costs least.
 #pragma once
 #include <crofton/core/error.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <string>
 #include <vector>
 

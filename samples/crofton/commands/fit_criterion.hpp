@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A criterion as the user writes it.
 #pragma once
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <string>
 
 #include "read_options.hpp"

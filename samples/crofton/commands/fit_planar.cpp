@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <numbers>

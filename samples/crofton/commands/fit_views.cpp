@@ -5,7 +5,7 @@
 #include <cmath>
 #include <crofton/cull/classify.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/k_dop.hpp>
 #include <crofton/study/query_distribution.hpp>
 #include <cstdio>

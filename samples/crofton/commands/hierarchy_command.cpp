@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <cstdio>

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/radiosity/lines.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>

@@ -6,10 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/render/clip_space.hpp>
 #include <crofton/render/rasterizer.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 

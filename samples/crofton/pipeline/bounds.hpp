@@ -4,7 +4,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <string>

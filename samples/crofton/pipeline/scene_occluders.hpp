@@ -2,7 +2,7 @@
 // What hides other objects in a scene that does not say so itself.
 #pragma once
 #include <crofton/core/executor.hpp>
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstdint>
 #include <vector>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <crofton/geometry/box.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 
 namespace crofton::cli {
 

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
-#include <crofton/measure/criterion.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

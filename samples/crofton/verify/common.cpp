@@ -3,8 +3,8 @@
 // directions.
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <functional>

@@ -2,10 +2,8 @@
 // Space: which criterion ranks bounds right for which query, minimal boxes, planes and lines through all, formula (6).
 #include <algorithm>
 #include <crofton/fit/fit.hpp>
-#include <crofton/measure/criterion.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/spatial_lines.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <cstdio>

@@ -2,7 +2,7 @@
 // Form factors by global lines against known values, and the paper's other ways to draw lines.
 #include <algorithm>
 #include <cmath>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/other_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

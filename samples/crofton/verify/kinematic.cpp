@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The kinematic formula (1) and its likes: predicted measures of motions against counted ones.
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <numbers>
 
 #include "bodies.hpp"

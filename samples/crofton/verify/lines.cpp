@@ -2,8 +2,7 @@
 // Global lines: the right densities pass a test of uniformity, the wrong ones fail it; what a patch expects of N lines.
 #include <algorithm>
 #include <cmath>
-#include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/wrong_lines.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <crofton/occlude/find_visible.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/occlude/occlusion.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

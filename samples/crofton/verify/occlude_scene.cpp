@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <crofton/crofton.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

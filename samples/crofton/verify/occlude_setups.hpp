@@ -3,8 +3,8 @@
 #pragma once
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/occlude/occlusion_buffer.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/occlude/occlusion.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <vector>
 
 namespace crofton::cli {

@@ -2,8 +2,8 @@
 // The paper's plane: measures of lines (3), (7), (8), (9), Theorems 1 and 2, bounds given ancestors, minimal
 // rectangles.
 #include <algorithm>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>
 #include <glm/geometric.hpp>

@@ -2,8 +2,8 @@
 // Section 5 of theory.md: formula (6) on real triangulations, and the minimum weight itself.
 #include <algorithm>
 #include <cmath>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/triangulate/triangulate.hpp>
 #include <functional>
 #include <glm/geometric.hpp>

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/criterion.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
-#include <crofton/sampling/global_lines.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/measure/measure.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <crofton/study/convex_body.hpp>
 #include <crofton/study/diameter.hpp>
 #include <crofton/study/planar_support.hpp>

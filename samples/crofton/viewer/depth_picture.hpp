@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A depth buffer of occluders as a picture: near is bright, far is dark, what is open is blue.
 #pragma once
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <cstdint>
 #include <vector>
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 
 namespace crofton::viewer {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is drawn over the scene as lines: bounds, frusta, contacts.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/crofton.hpp>
 #include <optional>
 

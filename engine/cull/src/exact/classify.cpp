@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
 
 #include "exact/box_constraints.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Spot light against convex volume, exactly.
 #pragma once
-#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/lights.hpp>
 #include <crofton/geometry/camera.hpp>
 
 namespace crofton::cull {

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/cull/classify.hpp>
-#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/lights.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/cull/froxels.hpp>
+#include <crofton/cull/lights.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <numbers>
 

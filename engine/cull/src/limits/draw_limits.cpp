@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <crofton/cull/draw_limits.hpp>
+#include <crofton/cull/classify.hpp>
 #include <crofton/geometry/dyadic.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 

@@ -2,7 +2,7 @@
 // What queries ask of draw limits.
 #pragma once
 #include <algorithm>
-#include <crofton/cull/draw_limits.hpp>
+#include <crofton/cull/classify.hpp>
 #include <crofton/geometry/box.hpp>
 
 #include "limits/kernel_limits.hpp"

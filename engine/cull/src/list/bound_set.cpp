@@ -3,7 +3,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/list_layout.hpp>
 

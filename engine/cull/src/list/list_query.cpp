@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Queries of lists: chunks through the kernels, and what those leave undecided.
 #include <algorithm>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <mutex>
 

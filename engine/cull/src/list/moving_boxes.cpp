@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/cull/moving_boxes.hpp>
+#include <crofton/cull/bound_set.hpp>
 
 #include "tree/query.hpp"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <crofton/cull/shadow_casters.hpp>
+#include <crofton/cull/lights.hpp>
 #include <glm/geometric.hpp>
 
 #include "lights/power.hpp"

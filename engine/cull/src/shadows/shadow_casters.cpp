@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <crofton/cull/shadow_casters.hpp>
+#include <crofton/cull/lights.hpp>
 #include <glm/geometric.hpp>
 
 #include "exact/box_constraints.hpp"

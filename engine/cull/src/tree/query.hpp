@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // One query at work in a VisibleSet's buffers.
 #pragma once
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/moving_boxes.hpp>
 
 #include "limits/limits.hpp"
 #include "list/list_kernel.hpp"

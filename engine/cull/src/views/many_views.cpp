@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/core/diagnostics.hpp>
+#include <crofton/core/error.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/moving_boxes.hpp>
 #include <cstring>
 
 #include "exact/box_constraints.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A criterion's weights for boxes in normalised coordinates.
 #pragma once
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <numbers>
 
 namespace crofton::fit {

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/occlude/choose_occluders.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/occlude/occlusion_worth.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>

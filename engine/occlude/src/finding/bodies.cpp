@@ -4,7 +4,7 @@
 #include <cmath>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/predicates.hpp>
-#include <crofton/measure/intrinsic_volumes.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 

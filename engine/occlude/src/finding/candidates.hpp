@@ -2,7 +2,7 @@
 // What may become an occluder of a mesh: bodies in its closed pieces, flat parts of its surface.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
 
 #include "finding/inscribed_box.hpp"
 #include "finding/pieces.hpp"

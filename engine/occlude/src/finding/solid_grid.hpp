@@ -2,7 +2,7 @@
 // The inside of a piece as cells of a grid, and the box of cells that hides most.
 #pragma once
 #include <crofton/core/memory.hpp>
-#include <crofton/occlude/find_occluders.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <cstdint>
 
 #include "finding/inscribed_box.hpp"

@@ -4,7 +4,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

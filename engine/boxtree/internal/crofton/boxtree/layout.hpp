@@ -2,7 +2,7 @@
 // How nodes and leaves of a BoxTree lie in memory: plain arrays that vector kernels read as they are (no GLM here, see
 // DESIGN section 3).
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstdint>
 
 namespace crofton::boxtree {

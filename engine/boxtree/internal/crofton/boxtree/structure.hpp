@@ -5,7 +5,7 @@
 #include <crofton/boxtree/change_marks.hpp>
 #include <crofton/boxtree/items.hpp>
 #include <crofton/boxtree/layout.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <span>
 
 namespace crofton::boxtree {

@@ -11,18 +11,448 @@
  */
 #ifndef CROFTON_CAPI_CROFTON_H
 #define CROFTON_CAPI_CROFTON_H
-#include <crofton/capi/bake.h>
 #include <crofton/capi/base.h>
-#include <crofton/capi/collide.h>
-#include <crofton/capi/contacts.h>
-#include <crofton/capi/cull.h>
-#include <crofton/capi/fit.h>
-#include <crofton/capi/geometry.h>
-#include <crofton/capi/hooks.h>
-#include <crofton/capi/rays.h>
-#include <crofton/capi/scene.h>
-#include <crofton/capi/triangulate.h>
-#include <crofton/capi/world.h>
-#include <crofton/capi/world_occlusion.h>
-#include <crofton/capi/world_queries.h>
+#include <crofton/capi/modules.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The front door: an engine's objects, what they are and where. world_queries.h asks; docs/world.md is the guide. */
+
+/* Owns nodes, meshes and objects. Changes take effect in crofton_world_update. */
+typedef struct crofton_world crofton_world;
+
+/* An index that is used again and a generation that tells its users apart; index CROFTON_NONE: none. A call that takes
+ * the handle of what has been removed returns CROFTON_STALE_HANDLE. */
+typedef struct crofton_object {
+    uint32_t index, generation;
+} crofton_object;
+typedef struct crofton_node {
+    uint32_t index, generation;
+} crofton_node;
+typedef struct crofton_world_mesh {
+    uint32_t index, generation;
+} crofton_world_mesh;
+
+/* The structs of this header and of world_queries.h that begin with `size` may grow. An older, smaller one is taken:
+ * members that it lacks are 0, the default of every member, and results are written as far as it goes. A larger one is
+ * CROFTON_WRONG_SIZE. */
+
+typedef struct crofton_world_options {
+    size_t size;
+    uint32_t without_pairs;       /* 1: neither pairs nor contacts are looked for */
+    uint32_t without_contacts;    /* 1: pairs alone */
+    uint32_t without_containment; /* 1: a closed mesh around another object does not touch it */
+    uint32_t with_mesh_depth;     /* 1: contacts between meshes have a way out, which costs more */
+    uint64_t max_pairs;           /* more are an error; 0: 2^24 */
+    uint64_t rebuild_budget;      /* items' worth of work on the tree an update; 0: a 128th of the objects and 512 */
+    uint32_t without_rebuild;     /* 1: no such work, and no allocation for it */
+    uint32_t updates_to_rest;     /* without moving, until an object counts as resting again; 0: 16 */
+} crofton_world_options;
+
+/* As of the last update. */
+typedef struct crofton_world_statistics {
+    size_t size;
+    uint64_t objects, resting, moving; /* the latter two: shown ones */
+    uint64_t box_pairs_tested, contact_pairs_tested;
+    uint32_t boxes_changed, nodes_updated;
+    uint32_t out_of_range; /* objects that the product of transforms has put beyond it: hidden until they return */
+    uint32_t tree_built;   /* 1: all at once, because much has come to rest, or come and gone */
+} crofton_world_statistics;
+
+/* A mesh in its own frame, in the caller's arrays; World copies what it needs. Three indices a triangle,
+ * counter-clockwise seen from outside; without indices three positions are one. */
+typedef struct crofton_mesh_data {
+    size_t size;
+    const void* positions; /* x y z; of any alignment */
+    size_t position_count;
+    size_t position_stride; /* in bytes; 0: packed */
+    const void* indices;    /* packed */
+    size_t index_count;
+    uint32_t is_double;         /* 1: positions are double, rounded to float; 0: float */
+    uint32_t is_short;          /* 1: indices are uint16_t; 0: uint32_t */
+    uint32_t without_triangles; /* 1: the mesh's box stands for it in rays and contacts */
+} crofton_mesh_data;
+
+typedef enum crofton_bound_kind {
+    CROFTON_BOUND_NONE = 0,
+    CROFTON_BOUND_BOX = 1,
+    CROFTON_BOUND_ALIGNED_BOX = 2,
+    CROFTON_BOUND_BALL = 3
+} crofton_bound_kind;
+
+/* The shape of an object without a mesh, in the world's coordinates. */
+typedef struct crofton_bound {
+    uint32_t kind;            /* a crofton_bound_kind: which members below count */
+    crofton_box box;          /* of a box */
+    double min[3], max[3];    /* of an aligned box */
+    double center[3], radius; /* of a ball */
+} crofton_bound;
+
+/* Either a mesh, which `transform` places under `node` or in the world, or a bound. */
+typedef struct crofton_object_description {
+    size_t size;
+    uint64_t user;                      /* given back with every answer */
+    const crofton_bound* bound;         /* or NULL, of a mesh */
+    const crofton_transform* transform; /* or NULL: the node's own */
+    uint32_t has_mesh, has_node;        /* 1: the next two count */
+    crofton_world_mesh mesh;
+    crofton_node node;
+    uint32_t hidden_layers;  /* layers that the object is not in; 0: it is in all */
+    uint32_t ignored_layers; /* layers that the object does not collide with; 0: it does with all */
+    uint32_t transparent;    /* 1: of an object with a mesh; it hides nothing (world_occlusion.h) */
+    uint32_t only_occludes;  /* 1: of an object with a mesh; it is in no answer, and hides what its occluders hide */
+} crofton_object_description;
+
+/* `options` or NULL: all defaults. */
+CROFTON_API crofton_status crofton_world_create(const crofton_world_options* options, crofton_world** world);
+CROFTON_API crofton_status crofton_world_destroy(crofton_world* world);
+
+CROFTON_API crofton_status crofton_world_add_mesh(crofton_world* world, const crofton_mesh_data* data,
+                                                  crofton_world_mesh* mesh);
+CROFTON_API crofton_status crofton_world_replace_mesh(crofton_world* world, crofton_world_mesh mesh,
+                                                      const crofton_mesh_data* data);
+/* For a mesh that deforms: as many positions as before. The other members of `data` are not looked at. */
+CROFTON_API crofton_status crofton_world_set_vertices(crofton_world* world, crofton_world_mesh mesh,
+                                                      const crofton_mesh_data* data);
+/* An error while objects use it. */
+CROFTON_API crofton_status crofton_world_remove_mesh(crofton_world* world, crofton_world_mesh mesh);
+
+/* `parent` or NULL: none; `transform` or NULL: the identity. `layers` limits those of all objects below. */
+CROFTON_API crofton_status crofton_world_add_node(crofton_world* world, const crofton_node* parent,
+                                                  const crofton_transform* transform, uint32_t layers,
+                                                  crofton_node* node);
+/* With all nodes and objects below it. */
+CROFTON_API crofton_status crofton_world_remove_node(crofton_world* world, crofton_node node);
+/* `parent` or NULL: none. An error where it is the node itself or one below it. */
+CROFTON_API crofton_status crofton_world_set_parent(crofton_world* world, crofton_node node,
+                                                    const crofton_node* parent);
+CROFTON_API crofton_status crofton_world_set_node_layers(crofton_world* world, crofton_node node, uint32_t layers);
+
+/* The calls with strides read members of the caller's structs: `stride` bytes apart, 0: packed. A stride is a multiple
+ * of the type's alignment and no less than its size. Items that are refused stay as they are and all others change;
+ * crofton_last_error_item is the place of the first that was refused. */
+
+CROFTON_API crofton_status crofton_world_set_node_transforms(crofton_world* world, const crofton_node* nodes,
+                                                             size_t node_stride, const crofton_transform* transforms,
+                                                             size_t transform_stride, size_t count);
+
+CROFTON_API crofton_status crofton_world_add(crofton_world* world, const crofton_object_description* description,
+                                             crofton_object* object);
+CROFTON_API crofton_status crofton_world_remove(crofton_world* world, crofton_object object);
+/* Of objects that were added with a transform. */
+CROFTON_API crofton_status crofton_world_set_transforms(crofton_world* world, const crofton_object* objects,
+                                                        size_t object_stride, const crofton_transform* transforms,
+                                                        size_t transform_stride, size_t count);
+/* Of objects that were added with a bound, which becomes a box. */
+CROFTON_API crofton_status crofton_world_set_boxes(crofton_world* world, const crofton_object* objects,
+                                                   size_t object_stride, const crofton_box* boxes, size_t box_stride,
+                                                   size_t count);
+CROFTON_API crofton_status crofton_world_set_bound(crofton_world* world, crofton_object object,
+                                                   const crofton_bound* bound);
+/* Of an object that has one. */
+CROFTON_API crofton_status crofton_world_set_mesh(crofton_world* world, crofton_object object, crofton_world_mesh mesh);
+/* A hidden object (1) is in no answer until it is shown again (0). */
+CROFTON_API crofton_status crofton_world_set_hidden(crofton_world* world, crofton_object object, int hidden);
+CROFTON_API crofton_status crofton_world_set_layers(crofton_world* world, crofton_object object, uint32_t layers);
+CROFTON_API crofton_status crofton_world_set_collides_with(crofton_world* world, crofton_object object,
+                                                           uint32_t layers);
+CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user);
+
+/* Makes the changes take effect; once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more than max_pairs pairs;
+ * then there are none, and all else is as it should be. */
+CROFTON_API crofton_status crofton_world_update(crofton_world* world, const crofton_jobs* jobs);
+CROFTON_API crofton_status crofton_world_get_statistics(const crofton_world* world,
+                                                        crofton_world_statistics* statistics);
+
+/* What a World answers: what is seen, what rays and shapes meet, what touches. All as of its last update. */
+
+typedef struct crofton_visible_objects crofton_visible_objects;   /* what one view sees, in memory that is kept */
+typedef struct crofton_visible_in_views crofton_visible_in_views; /* what up to 32 views see, likewise */
+typedef struct crofton_found crofton_found;                       /* a list of objects or of hits, likewise */
+
+typedef struct crofton_object_ref {
+    crofton_object object;
+    uint64_t user;
+} crofton_object_ref;
+
+typedef struct crofton_object_hit {
+    crofton_object object; /* index CROFTON_NONE: no hit, and t is infinite */
+    uint64_t user;
+    double t; /* the ray's */
+    double point[3];
+    uint32_t triangle; /* of the object's mesh, or CROFTON_NONE */
+} crofton_object_hit;
+
+typedef struct crofton_closest_object {
+    size_t size;
+    crofton_object object; /* index CROFTON_NONE: none within the distance, which is infinite then */
+    uint64_t user;
+    double distance;
+    double on_shape[3], on_object[3]; /* a nearest point of each; any where they meet */
+} crofton_closest_object;
+
+typedef struct crofton_object_pair {
+    crofton_object_ref first, second; /* first.object.index < second.object.index */
+} crofton_object_pair;
+
+typedef enum crofton_contact_phase {
+    CROFTON_CONTACT_BEGAN = 0,
+    CROFTON_CONTACT_STAYED = 1,
+    CROFTON_CONTACT_ENDED = 2
+} crofton_contact_phase;
+
+/* Two objects that touch, or that did in the update before. What ended has no more than its objects, whose handles are
+ * stale where they have been removed. */
+typedef struct crofton_object_contact {
+    size_t size;
+    crofton_object_ref first, second;      /* ordered as in crofton_object_pair */
+    uint32_t phase;                        /* a crofton_contact_phase */
+    uint32_t inside;                       /* a crofton_containment of first (a) and second (b) */
+    double normal[3];                      /* unit, from first to second; 0 where no direction is known */
+    double depth;                          /* 0 between meshes unless options ask for it */
+    const crofton_contact_point* points;   /* at most four, in the world; valid until the next update */
+    const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
+    size_t point_count, triangle_count;
+} crofton_object_contact;
+
+CROFTON_API crofton_status crofton_world_object_count(const crofton_world* world, size_t* count);
+/* *contains is 1 or 0. */
+CROFTON_API crofton_status crofton_world_contains(const crofton_world* world, crofton_object object, int* contains);
+CROFTON_API crofton_status crofton_world_contains_node(const crofton_world* world, crofton_node node, int* contains);
+CROFTON_API crofton_status crofton_world_contains_mesh(const crofton_world* world, crofton_world_mesh mesh,
+                                                       int* contains);
+CROFTON_API crofton_status crofton_world_get_user(const crofton_world* world, crofton_object object, uint64_t* user);
+/* CROFTON_EMPTY before the first update after the object was added. */
+CROFTON_API crofton_status crofton_world_get_box(const crofton_world* world, crofton_object object, crofton_box* box);
+/* To the world's coordinates. Of an object with a mesh. */
+CROFTON_API crofton_status crofton_world_get_transform(const crofton_world* world, crofton_object object,
+                                                       crofton_transform* transform);
+
+CROFTON_API crofton_status crofton_visible_objects_create(crofton_visible_objects** visible);
+CROFTON_API crofton_status crofton_visible_objects_destroy(crofton_visible_objects* visible);
+/* What a view sees, by the objects' boxes; `options`, `jobs` or NULL. Allocates nothing once `visible` has grown to the
+ * largest answer. */
+CROFTON_API crofton_status crofton_world_view(const crofton_world* world, const crofton_view* view,
+                                              const crofton_cull_options* options, const crofton_jobs* jobs,
+                                              crofton_visible_objects* visible);
+/* The same for a camera, which sees all layers. */
+CROFTON_API crofton_status crofton_world_view_camera(const crofton_world* world, const crofton_camera* camera,
+                                                     const crofton_cull_options* options, const crofton_jobs* jobs,
+                                                     crofton_visible_objects* visible);
+/* The objects' indices; valid until the next view. In tree order the first *inside_count (or NULL) lie inside the view.
+ * In ascending order *verdicts (or NULL) are a crofton_verdict each; in tree order they are NULL. */
+CROFTON_API crofton_status crofton_visible_objects_ids(const crofton_visible_objects* visible, const uint32_t** ids,
+                                                       size_t* count, const uint8_t** verdicts, size_t* inside_count);
+/* Writes the objects from place `first` on, at most `capacity`. `world` is the one that was viewed; ask before it next
+ * changes. */
+CROFTON_API crofton_status crofton_visible_objects_list(const crofton_visible_objects* visible,
+                                                        const crofton_world* world, size_t first,
+                                                        crofton_object_ref* objects, size_t capacity);
+CROFTON_API crofton_status crofton_visible_objects_get_statistics(const crofton_visible_objects* visible,
+                                                                  crofton_cull_statistics* statistics);
+
+CROFTON_API crofton_status crofton_visible_in_views_create(crofton_visible_in_views** visible);
+CROFTON_API crofton_status crofton_visible_in_views_destroy(crofton_visible_in_views* visible);
+/* What up to 32 views see, each object once, in the order of the tree; `options` or NULL. */
+CROFTON_API crofton_status crofton_world_views(const crofton_world* world, const crofton_view* views, size_t count,
+                                               const crofton_cull_options* options, crofton_visible_in_views* visible);
+CROFTON_API crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visible, const uint32_t** ids,
+                                                        size_t* count);
+/* As crofton_visible_objects_list; bit v of view_masks[i] (or NULL): view v sees objects[i]. */
+CROFTON_API crofton_status crofton_visible_in_views_list(const crofton_visible_in_views* visible,
+                                                         const crofton_world* world, size_t first,
+                                                         crofton_object_ref* objects, uint32_t* view_masks,
+                                                         size_t capacity);
+
+/* Rays meet triangles of meshes, boxes and balls. hits[i] is the nearest of rays[i]. */
+CROFTON_API crofton_status crofton_world_raycast(const crofton_world* world, const crofton_ray* rays, size_t count,
+                                                 uint32_t layer_mask, crofton_object_hit* hits);
+/* *hit is 1 where the ray hits anything, else 0. */
+CROFTON_API crofton_status crofton_world_raycast_any(const crofton_world* world, const crofton_ray* ray,
+                                                     uint32_t layer_mask, int* hit);
+
+CROFTON_API crofton_status crofton_found_create(crofton_found** found);
+CROFTON_API crofton_status crofton_found_destroy(crofton_found* found);
+/* What the last query into `found` has found, of its kind; valid until the next. */
+CROFTON_API crofton_status crofton_found_objects(const crofton_found* found, const crofton_object_ref** objects,
+                                                 size_t* count);
+CROFTON_API crofton_status crofton_found_hits(const crofton_found* found, const crofton_object_hit** hits,
+                                              size_t* count);
+
+/* Finds the nearest hit of every object that the ray meets, by t, then by index: hits. */
+CROFTON_API crofton_status crofton_world_raycast_all(const crofton_world* world, const crofton_ray* ray,
+                                                     uint32_t layer_mask, crofton_found* found);
+/* Find whose box or ball meets the shape, by index: objects. A mesh's box stands for it. */
+CROFTON_API crofton_status crofton_world_overlap_box(const crofton_world* world, const crofton_box* box,
+                                                     uint32_t layer_mask, crofton_found* found);
+CROFTON_API crofton_status crofton_world_overlap_ball(const crofton_world* world, const double center[3], double radius,
+                                                      uint32_t layer_mask, crofton_found* found);
+CROFTON_API crofton_status crofton_world_overlap_capsule(const crofton_world* world, const double begin[3],
+                                                         const double end[3], double radius, uint32_t layer_mask,
+                                                         crofton_found* found);
+/* Fill a struct whose `size` is set: the box or ball nearest to the shape, no farther than max_distance, which may be
+ * infinite; of several the lowest index. */
+CROFTON_API crofton_status crofton_world_closest_to_box(const crofton_world* world, const crofton_box* box,
+                                                        double max_distance, uint32_t layer_mask,
+                                                        crofton_closest_object* closest);
+CROFTON_API crofton_status crofton_world_closest_to_ball(const crofton_world* world, const double center[3],
+                                                         double radius, double max_distance, uint32_t layer_mask,
+                                                         crofton_closest_object* closest);
+CROFTON_API crofton_status crofton_world_closest_to_capsule(const crofton_world* world, const double begin[3],
+                                                            const double end[3], double radius, double max_distance,
+                                                            uint32_t layer_mask, crofton_closest_object* closest);
+
+/* Objects whose boxes or balls meet, in order; valid until the next update. */
+CROFTON_API crofton_status crofton_world_pairs(const crofton_world* world, const crofton_object_pair** pairs,
+                                               size_t* count);
+CROFTON_API crofton_status crofton_world_contact_count(const crofton_world* world, size_t* count);
+/* Fills a struct whose `size` is set: contact number `contact`, in order of the pairs. */
+CROFTON_API crofton_status crofton_world_contact(const crofton_world* world, size_t contact,
+                                                 crofton_object_contact* result);
+
+/* Views of a World that leave out what is hidden: occluders in, what is seen out. docs/occlude.md is the guide. */
+
+/* The structs of this header may grow, as those of world.h. */
+
+typedef enum crofton_occluder_kind {
+    CROFTON_OCCLUDER_BOX = 0,    /* inside a closed piece of the mesh */
+    CROFTON_OCCLUDER_WALLED = 1, /* a box behind walls of the mesh, that may be open on some sides */
+    CROFTON_OCCLUDER_CONVEX = 2, /* the convex hull of the positions */
+    CROFTON_OCCLUDER_PATCH = 3   /* any triangles */
+} crofton_occluder_kind;
+
+/* In the mesh's frame: within what is drawn of it, and opaque. */
+typedef struct crofton_occluder {
+    size_t size;
+    uint32_t kind;          /* a crofton_occluder_kind */
+    uint32_t is_one_sided;  /* of a patch, 1: it hides only from where its triangles are counter-clockwise */
+    const float* positions; /* x y z, packed; of a box that is given they may be missing */
+    size_t position_count;
+    const uint32_t* indices; /* of a convex hull that is given they may be missing */
+    size_t index_count;
+    crofton_box box;                   /* of a box, walled or not */
+    uint32_t edges;                    /* what it costs; 0: estimated */
+    uint32_t has_piece, has_eyes;      /* 1: the next members count */
+    double piece_min[3], piece_max[3]; /* an eye in here does not use it */
+    double eyes_min[3], eyes_max[3];   /* an eye must be in here; may be infinite */
+    double mean_shadow, gain;          /* of what was found: how much it covers, and adds to those before it */
+} crofton_occluder;
+
+/* 0 is the default of every member. */
+typedef struct crofton_find_options {
+    size_t size;
+    uint32_t is_two_sided; /* 1: back faces are drawn as well */
+    uint32_t max_occluders, max_edges, max_boxes_a_piece, grid;
+    double least_gain, flatness;
+} crofton_find_options;
+
+/* What is not worth drawing: too small or too far; docs/lights.md. */
+typedef struct crofton_draw_limits {
+    size_t size;
+    double eye[3];
+    double radii;                 /* farther than so many times its radius; 0: no limit */
+    double least_radius;          /* smaller than this */
+    const float* layer_distances; /* 32, or NULL */
+    const float* item_distances;  /* by object index, or NULL */
+    size_t item_count;
+    const uint64_t* drawn_before; /* bit i % 64 of word i / 64 for object i, or NULL */
+    size_t drawn_word_count;
+    double longer; /* times as long are the limits of what was drawn before; 0: 1 */
+} crofton_draw_limits;
+
+typedef struct crofton_occlusion_options {
+    size_t size;
+    uint32_t disabled;      /* 1: without occlusion, for comparison */
+    uint32_t width, height; /* of the depth buffer; 0: 480 and 270 */
+    uint32_t max_occluders; /* drawn; 0: 256 */
+    uint32_t list_occluded; /* 1: also list what is hidden */
+    float least_cover;      /* of the sphere of directions; 0: 2e-5 */
+} crofton_occlusion_options;
+
+/* From a camera or from an engine's own matrix. */
+typedef struct crofton_occluding_view {
+    size_t size;
+    const crofton_camera* camera; /* or NULL: then */
+    const double* to_clip;        /* 16 numbers, as crofton_frustum_from_matrix takes them, relative to `origin` */
+    double origin[3];
+    uint32_t depth;                    /* a crofton_depth_range */
+    uint32_t hidden_layers;            /* not drawn; 0: all are */
+    const crofton_draw_limits* limits; /* or NULL */
+} crofton_occluding_view;
+
+typedef struct crofton_occlusion_statistics {
+    size_t size;
+    uint64_t occluders_drawn, pieces_drawn, triangles_drawn;
+    uint64_t nodes_tested, nodes_outside, nodes_hidden; /* of the tree; nothing below the latter was looked at */
+    uint64_t items_tested, items_hidden;
+} crofton_occlusion_statistics;
+
+typedef struct crofton_occluder_ref {
+    crofton_object object;
+    uint64_t user;
+    uint32_t place; /* among the occluders of the object's mesh */
+    uint32_t unused;
+} crofton_occluder_ref;
+
+/* Looks for occluders in a mesh; `options` or NULL. They take effect in the next update. Takes a second or more for
+ * 100,000 triangles. */
+CROFTON_API crofton_status crofton_world_find_occluders(crofton_world* world, crofton_world_mesh mesh,
+                                                        const crofton_find_options* options);
+/* Gives a mesh its occluders: those stored of an earlier search, or the caller's own; none: count 0. All have the same
+ * `size` and lie so far apart. crofton_last_error_item is the place of one that is refused; then all is as before. */
+CROFTON_API crofton_status crofton_world_set_occluders(crofton_world* world, crofton_world_mesh mesh,
+                                                       const crofton_occluder* occluders, size_t count);
+CROFTON_API crofton_status crofton_world_occluder_count(const crofton_world* world, crofton_world_mesh mesh,
+                                                        size_t* count);
+/* Fills a struct whose `size` is set; its arrays are valid until the mesh's occluders change. */
+CROFTON_API crofton_status crofton_world_get_occluder(const crofton_world* world, crofton_world_mesh mesh, size_t place,
+                                                      crofton_occluder* occluder);
+/* Whether an object with a mesh hides others (1, as at first) or not (0), as where it is drawn transparent. */
+CROFTON_API crofton_status crofton_world_set_occludes(crofton_world* world, crofton_object object, int occludes);
+
+/* As crofton_world_view, ascending, without what is hidden; `occlusion`, `options`, `jobs` or NULL. */
+CROFTON_API crofton_status crofton_world_view_occluding(const crofton_world* world, const crofton_occluding_view* view,
+                                                        const crofton_occlusion_options* occlusion,
+                                                        const crofton_cull_options* options, const crofton_jobs* jobs,
+                                                        crofton_visible_objects* visible);
+/* Up to 32 views of one `size`, which lie so far apart. The limits of the first count for all. */
+CROFTON_API crofton_status crofton_world_views_occluding(const crofton_world* world,
+                                                         const crofton_occluding_view* views, size_t count,
+                                                         const crofton_occlusion_options* occlusion,
+                                                         const crofton_cull_options* options, const crofton_jobs* jobs,
+                                                         crofton_visible_in_views* visible);
+
+/* Indices of what is in the view's frustum and hidden, ascending; none unless list_occluded asked for it. */
+CROFTON_API crofton_status crofton_visible_objects_occluded_ids(const crofton_visible_objects* visible,
+                                                                const uint32_t** ids, size_t* count);
+/* All 0 after a view without occlusion. */
+CROFTON_API crofton_status crofton_visible_objects_get_occlusion_statistics(const crofton_visible_objects* visible,
+                                                                            crofton_occlusion_statistics* statistics);
+/* Of a view; CROFTON_OUT_OF_RANGE where there are fewer with occlusion. */
+CROFTON_API crofton_status crofton_visible_in_views_get_occlusion_statistics(const crofton_visible_in_views* visible,
+                                                                             size_t view,
+                                                                             crofton_occlusion_statistics* statistics);
+/* The depth buffer: its size, and where `nearness` is not NULL and has room for width * height numbers, row by row from
+ * the bottom, 1 / w (parallel views: minus the distance) of the occluders; below -1e38 where there are none.
+ * CROFTON_EMPTY after a view without occlusion. */
+CROFTON_API crofton_status crofton_visible_objects_depth(const crofton_visible_objects* visible, uint32_t* width,
+                                                         uint32_t* height, float* nearness, size_t capacity);
+CROFTON_API crofton_status crofton_visible_in_views_depth(const crofton_visible_in_views* visible, size_t view,
+                                                          uint32_t* width, uint32_t* height, float* nearness,
+                                                          size_t capacity);
+/* Both write at most `capacity` occluders, and how many there are to *count. `world` is the one that was viewed; ask
+ * before its next update. The first names those that hide an object, none where it is not hidden, and is slow. */
+CROFTON_API crofton_status crofton_world_hidden_by(const crofton_world* world, crofton_object object,
+                                                   const crofton_visible_objects* visible,
+                                                   crofton_occluder_ref* occluders, size_t capacity, size_t* count);
+CROFTON_API crofton_status crofton_world_drawn_occluders(const crofton_world* world,
+                                                         const crofton_visible_objects* visible,
+                                                         crofton_occluder_ref* occluders, size_t capacity,
+                                                         size_t* count);
+
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sixteen boxes side by side: plain arrays, which kernel files may read without any other header.
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstddef>
 #include <cstdint>
 

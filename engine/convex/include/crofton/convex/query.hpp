@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Do two convex bodies meet, how far apart are they, how deep do they overlap?
+// Questions asked of two convex bodies: meet, distance, depth, contacts, casts.
 #pragma once
+#include <compare>
 #include <crofton/convex/body.hpp>
 #include <cstdint>
 
 namespace crofton::convex {
+
+// Do two convex bodies meet, how far apart are they, how deep do they overlap?
 
 // A body where it stands: the image of its stored points under the stored pose, all taken as reals. Poses are valid
 // and without reflection, as validate_pose tells. Alive for the call only.
@@ -59,5 +62,86 @@ struct Penetration {
 
 // From a point (in the world) to the body: a is the point.
 [[nodiscard]] Distance closest_point(const Placed& body, const glm::dvec3& point);
+
+// Where two convex bodies touch: points a physics step can hold on to from frame to frame.
+
+// A vertex, edge or face of a body. Of hulls the indices are the hull's. Of boxes: a vertex is a corner number; edge 4k
+// + j runs along axis k; face 2k + s is across axis k, on the + side for s = 1. Of a triangle: edge k leads from corner
+// k to the next, the face is 0. Of capsules: the ends are vertices 0 and 1, the side is edge 0. Of cylinders and cones:
+// face 0 is the lower disc, 1 the upper; a disc's rim is edges 0 to 7 (lower) and 8 to 15, an eighth of a turn each,
+// its vertices alike; 16 is the edge of the side, and its ends are vertices 16 (lower) and 17. Half-spaces: face 0.
+enum class FeatureKind : std::uint8_t { vertex, edge, face };
+struct Feature {
+    FeatureKind kind;
+    std::uint16_t index;
+    auto operator<=>(const Feature&) const = default;
+};
+
+struct ContactPoint {
+    glm::dvec3 position{0.0};  // midway between the surfaces, in the world
+    double depth = 0.0;        // along the normal; negative: a gap
+    Feature on_a{}, on_b{};    // the same for as long as the same features touch: the point's id
+};
+
+struct Manifold {
+    glm::dvec3 normal{0.0};  // unit, from a to b
+    double depth = 0.0;      // of the deepest point
+    int count = 0;           // 0 when the bodies are farther apart than the margin
+    ContactPoint points[8];
+};
+
+struct ManifoldOptions {
+    double margin = 0.0;  // ≥ 0: points with a gap of up to this are told, too, with negative depth
+    int max_points = 4;   // in [1, 8]: the deepest, and those that keep most of the area
+};
+
+// The normal is that of `penetration` or `distance`, and the manifold as deep. The faces that look along it are clipped
+// against each other (Sutherland, Hodgman); the deepest point is among the points. Bodies that meet, as `intersects`
+// tells, have one point at least. With a cache the face of the frame before stays the contact's while its normal is
+// proven to be the least deep within 1e-4 of the pair's size; normal and depth are then those of that face.
+// Points are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions).
+[[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
+                                        PairCache* cache = nullptr);
+
+// When will two moving bodies first touch?
+
+// What a body does from its pose on: its `pivot` (in the body's frame: the center of mass) moves by velocity · t, and
+// the body turns about it by |spin| · t radians around `spin` (world axes). Zero: it rests. Any number of turns.
+struct Motion {
+    glm::dvec3 velocity{0.0};
+    glm::dvec3 spin{0.0};
+    glm::dvec3 pivot{0.0};
+};
+
+// Where the body is at time t: the pose whose stored numbers the cast asks about. Angles beyond 1e5 radians are
+// refused.
+[[nodiscard]] RigidTransform moved(const RigidTransform& pose, const Motion& motion, double time);
+
+struct CastOptions {
+    double duration = 1.0;    // ≥ 0, finite
+    double tolerance = 1e-6;  // > 0, in lengths: bodies this close have hit
+    int max_steps = 500;      // ≥ 1
+};
+
+enum class CastResult : std::uint8_t {
+    miss,        // proven: the bodies do not touch in [0, duration]
+    hit,         // at `time` they are within the tolerance, and at no time before do they touch
+    unresolved,  // max_steps were not enough: before `time` they do not touch; later is not known
+};
+struct Impact {
+    CastResult result = CastResult::miss;
+    double time = 0.0;       // of a miss: the duration
+    glm::dvec3 normal{0.0};  // unit, from a to b, at that time; 0 where they overlap from the start
+    glm::dvec3 on_a{0.0}, on_b{0.0};
+    double distance = 0.0;
+    int steps = 0;
+};
+
+// Conservative advancement (Mirtich 1996) by a bound of second order: each step ends before any vertex can have crossed
+// the plane that parts the bodies, by its velocity across the plane and a bound of its acceleration. So no wall is too
+// thin. "Touch" is said of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a radian, which the
+// bounds include. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
+[[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+                                  const CastOptions& options = {}, PairCache* cache = nullptr);
 
 }  // namespace crofton::convex

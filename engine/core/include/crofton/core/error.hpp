@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// How bad data is reported: a value that names the item, never an exception.
+// Errors as values; the log; assertions.
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
 
 namespace crofton {
+
+// How bad data is reported: a value that names the item, never an exception.
 
 enum class ErrorCode : std::uint8_t {
     invalid_argument,  // a parameter outside its documented range
@@ -45,4 +48,35 @@ using Result = tl::expected<T, Error>;
     return tl::unexpected<Error>(Error{code, item, std::move(message)});
 }
 
+// What the engine tells its host: messages for a person, and a caller's mistakes.
+
+// Messages for a person, to the host's own log.
+
+enum class LogLevel : std::uint8_t { debug, info, warning, error };
+
+using LogHandler = void (*)(void* user, LogLevel level, std::string_view message);
+
+// Installs a handler with its user pointer; nullptr restores the default: warnings and errors to stderr. Thread-safe.
+void set_log_handler(LogHandler handler, void* user);
+
+void log(LogLevel level, std::string_view message);
+
+// A caller's mistake (as opposed to bad data) goes to a hook; the host decides whether to stop.
+
+using AssertHandler = void (*)(const char* condition, const char* message, const char* file, int line);
+
+// Installs a handler; nullptr restores the default, which prints to stderr and aborts. Thread-safe.
+void set_assert_handler(AssertHandler handler);
+
+namespace detail {
+void assert_failed(const char* condition, const char* message, const char* file, int line);
+}
+
 }  // namespace crofton
+
+#if defined(CROFTON_ASSERTS)
+#define CROFTON_ASSERT(condition, message) \
+    ((condition) ? (void)0 : ::crofton::detail::assert_failed(#condition, message, __FILE__, __LINE__))
+#else
+#define CROFTON_ASSERT(condition, message) ((void)sizeof(!(condition)))
+#endif

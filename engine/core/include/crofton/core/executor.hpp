@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Work handed to the host's threads: callables by reference, the hook, and a pool for hosts without a job system.
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstddef>
 #include <memory>
 #include <type_traits>

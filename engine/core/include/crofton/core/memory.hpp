@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where the engine's containers get their memory: the host's allocator, when it gives one.
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstddef>
 #include <vector>
 

@@ -1,8 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Which Crofton the headers are of (macros), and which is linked (functions).
-#pragma once
-#include <crofton/core/requirements.hpp>
+// What Crofton asks of the compiler and of GLM. Every public header includes this one, itself or through another, so
+// that a build that lacks something says so first.
+#ifndef CROFTON_CORE_VERSION_HPP
+#define CROFTON_CORE_VERSION_HPP
 
+#if defined(_MSVC_LANG)
+#define CROFTON_CPLUSPLUS _MSVC_LANG  // __cplusplus says 1997 there, unless /Zc:__cplusplus
+#else
+#define CROFTON_CPLUSPLUS __cplusplus
+#endif
+
+#if CROFTON_CPLUSPLUS < 202002L
+#error "Crofton needs C++20: compile with -std=c++20 (g++ 12, clang 14 or newer) or /std:c++20"
+#include <stop_after_the_error_above>  // fatal, so that no errors of C++17 bury the one that matters
+#endif
+#undef CROFTON_CPLUSPLUS
+
+// The library is compiled with quaternions stored as x, y, z, w: with another order objects turn the wrong way.
+// Macros of GLM that pad its types are caught in geometry/box.hpp. All others change nothing that crosses the API.
+#if defined(GLM_FORCE_QUAT_DATA_WXYZ)
+#error "Crofton is compiled without GLM_FORCE_QUAT_DATA_WXYZ, which changes the layout of quaternions: undefine it"
+#endif
+
+// Which Crofton the headers are of (macros), and which is linked (functions).
 #define CROFTON_VERSION_MAJOR 0
 #define CROFTON_VERSION_MINOR 2
 #define CROFTON_VERSION_PATCH 0
@@ -21,3 +41,5 @@ struct Version {
 [[nodiscard]] const char* version_string();  // "major.minor.patch"
 
 }  // namespace crofton
+
+#endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a query cost, and what of it was in vain.
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstdint>
 
 namespace crofton::cull {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How lists of bounds lie in memory: plain arrays that vector kernels read as they are (no GLM here).
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstddef>
 #include <cstdint>
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <array>
 #include <crofton/core/error.hpp>
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

@@ -2,7 +2,7 @@
 // Signs of determinants, exactly: a filter with Shewchuk's proven bounds first, expansions where it cannot tell.
 #pragma once
 #include <cmath>
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 

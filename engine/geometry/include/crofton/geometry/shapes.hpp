@@ -4,7 +4,7 @@
 #include <array>
 #include <compare>
 #include <crofton/core/error.hpp>
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How a mesh tree lies in memory: plain arrays, which kernel files may read without any other header.
 #pragma once
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <cstdint>
 
 namespace crofton::mesh {

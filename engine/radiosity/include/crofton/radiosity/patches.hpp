@@ -5,7 +5,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>

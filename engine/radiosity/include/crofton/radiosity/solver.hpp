@@ -2,8 +2,7 @@
 // Light in a scene of patches, by random walks along global lines: usable at any time, better with every run.
 #pragma once
 #include <crofton/core/executor.hpp>
-#include <crofton/radiosity/bundle_tracer.hpp>
-#include <crofton/radiosity/line_tracer.hpp>
+#include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <cstddef>
 #include <cstdint>

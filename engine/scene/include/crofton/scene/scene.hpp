@@ -7,7 +7,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/scene/transform.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>

@@ -7,7 +7,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <cstdint>
 #include <span>

@@ -3,7 +3,7 @@
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/geometry/box.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <cstdint>
 #include <span>

@@ -4,7 +4,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/classify.hpp>
-#include <crofton/measure/criterion.hpp>
+#include <crofton/measure/measure.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

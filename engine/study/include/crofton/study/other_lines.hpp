@@ -6,7 +6,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/vec2.hpp>
 
 namespace crofton::study {

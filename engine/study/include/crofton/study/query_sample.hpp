@@ -7,7 +7,7 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
-#include <crofton/sampling/global_lines.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <cstdint>
 #include <span>
 

@@ -3,7 +3,7 @@
 // these.
 #pragma once
 #include <array>
-#include <crofton/sampling/global_lines.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/vec2.hpp>
 
 namespace crofton::study::wrong {

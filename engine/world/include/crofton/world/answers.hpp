@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What a World answers.
 #pragma once
-#include <crofton/collide/convex_query.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/mesh/mesh_query.hpp>
-#include <crofton/occlude/find_visible.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <crofton/world/inputs.hpp>
 #include <cstdint>
 #include <memory>

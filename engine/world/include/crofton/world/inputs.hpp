@@ -3,11 +3,11 @@
 #pragma once
 #include <array>
 #include <compare>
-#include <crofton/core/requirements.hpp>
+#include <crofton/core/version.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <crofton/occlude/find_occluders.hpp>
-#include <crofton/occlude/occlusion_buffer.hpp>
+#include <crofton/occlude/occluder.hpp>
+#include <crofton/occlude/occlusion.hpp>
 #include <crofton/scene/transform.hpp>
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,7 @@
 // The front door: objects in, what is seen and what touches out.
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
-#include <crofton/collide/convex_query.hpp>
-#include <crofton/collide/obb_obb.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/shapes.hpp>
