@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <fstream>
 #include <glm/common.hpp>

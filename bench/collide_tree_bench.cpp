@@ -5,6 +5,7 @@
 
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <random>
 
 #include "cull_crowd.hpp"

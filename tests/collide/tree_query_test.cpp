@@ -6,6 +6,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <limits>
 #include <vector>
 

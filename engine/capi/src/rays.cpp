@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <crofton/collide/broadphase.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <limits>
 
 #include "collider.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/capi/crofton.h>
+#include <crofton/mesh/mesh_query.hpp>
 
 #include <algorithm>
 #include <array>

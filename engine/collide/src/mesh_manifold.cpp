@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/ray_box.hpp>
 #include "tree_lanes.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "contact_finder.hpp"
+#include <crofton/mesh/mesh_query.hpp>
 
 #include <algorithm>
 #include <glm/geometric.hpp>

@@ -5,6 +5,7 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
