@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
@@ -127,7 +128,8 @@ Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, cons
     if (contacts.empty()) return manifold;
     const Curve curve = curve_of(contacts);
     manifold.normal =
-        normal_of(contacts, curve, transform(b_to_a, vector_of(b.root_box().center)) - vector_of(a.root_box().center));
+        normal_of(contacts, curve,
+                  transform(b_to_a, vector_of(b.parts().root_box.center)) - vector_of(a.parts().root_box.center));
     const Overlap overlap(a, b, b_to_a, manifold.normal);
     const double apart = 1e-6 * curve.length;
     for (const glm::dvec3& outer : outermost(contacts, manifold.normal)) {

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Statuses, their text, and versions. */
+/* Statuses, their text, and versions; the host's hooks; boxes, cameras and views. */
 #ifndef CROFTON_CAPI_BASE_H
 #define CROFTON_CAPI_BASE_H
 #include <stddef.h>
 #include <stdint.h>
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 #if defined(_WIN32) && defined(CROFTON_SHARED)
 #define CROFTON_API __declspec(dllimport)

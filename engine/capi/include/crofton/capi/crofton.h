@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-/* The front door: an engine's objects, what they are and where. world_queries.h asks; docs/world.md is the guide. */
+/* The front door: an engine's objects, what they are and where. docs/world.md is the guide. */
 
 /* Owns nodes, meshes and objects. Changes take effect in crofton_world_update. */
 typedef struct crofton_world crofton_world;
@@ -35,7 +35,7 @@ typedef struct crofton_world_mesh {
     uint32_t index, generation;
 } crofton_world_mesh;
 
-/* The structs of this header and of world_queries.h that begin with `size` may grow. An older, smaller one is taken:
+/* The structs of this header that begin with `size` may grow. An older, smaller one is taken:
  * members that it lacks are 0, the default of every member, and results are written as far as it goes. A larger one is
  * CROFTON_WRONG_SIZE. */
 
@@ -101,7 +101,7 @@ typedef struct crofton_object_description {
     crofton_node node;
     uint32_t hidden_layers;  /* layers that the object is not in; 0: it is in all */
     uint32_t ignored_layers; /* layers that the object does not collide with; 0: it does with all */
-    uint32_t transparent;    /* 1: of an object with a mesh; it hides nothing (world_occlusion.h) */
+    uint32_t transparent;    /* 1: of an object with a mesh; it hides nothing */
     uint32_t only_occludes;  /* 1: of an object with a mesh; it is in no answer, and hides what its occluders hide */
 } crofton_object_description;
 
