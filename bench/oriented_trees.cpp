@@ -3,6 +3,7 @@
 // saves in bounds and boxes tested, and in time. usage: bench_oriented [--target=NAME] [COUNT]
 #include <algorithm>
 #include <chrono>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <cstdio>
 #include <cstdlib>

@@ -2,6 +2,7 @@
 // Trees whose inner bounds lie along turned axes.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <oracle/aged_tree.hpp>

@@ -2,9 +2,10 @@
 // Rays and bodies against trees whose inner bounds lie along turned axes.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/collide/obb_obb.hpp>
-#include <crofton/collide/tree_query.hpp>
+#include <crofton/collide/broadphase.hpp>
+#include <crofton/collide/narrow_phase.hpp>
 #include <glm/geometric.hpp>
 #include <oracle/turned_crowd.hpp>
 

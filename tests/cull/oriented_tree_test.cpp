@@ -2,10 +2,11 @@
 // Views of trees whose inner bounds lie along turned axes: classify's verdicts, box by box.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
-#include <crofton/cull/draw_limits.hpp>
 #include <oracle/aged_tree.hpp>
 #include <oracle/turned_crowd.hpp>
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
-#include <crofton/sampling/random.hpp>
+#include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
 
 #include "topics.hpp"
