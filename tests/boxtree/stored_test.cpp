@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stored trees with one fault each, refused for that fault. The layout is written down here a second time.
 #include <doctest/doctest.h>
+#include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/radius_range.hpp>
 #include <crofton/boxtree/structure.hpp>
@@ -21,11 +22,11 @@ namespace {
 
 struct StoredHeader {
     char magic[8];
-    std::uint32_t version, byte_order, node_bytes, leaf_bytes, box_bytes, height;
-    std::uint64_t boxes, free_items, nodes, leaves;
+    std::uint32_t version, byte_order, node_bytes, leaf_bytes, box_bytes, height, orientation, unused;
+    std::uint64_t boxes, free_items, axes, nodes, leaves;
     double criterion[3];
 };
-static_assert(sizeof(StoredHeader) == 88);
+static_assert(sizeof(StoredHeader) == 104);
 
 // The parts of a stored tree, to be changed and put together again.
 struct Stored {
@@ -33,6 +34,7 @@ struct Stored {
     std::vector<Obb> boxes;
     std::vector<std::uint32_t> layer_masks;
     std::vector<ItemId> free_items;
+    std::vector<boxtree::Axes> axes;
     std::vector<Node> nodes;
     std::vector<LeafRange> ranges;
     std::vector<NodeRadii> node_radii;
@@ -56,6 +58,7 @@ struct Stored {
         take_all(boxes, header.boxes);
         take_all(layer_masks, header.boxes);
         take_all(free_items, header.free_items);
+        take_all(axes, header.axes);
         take_all(nodes, header.nodes);
         take_all(ranges, header.nodes);
         take_all(node_radii, header.nodes);
@@ -70,6 +73,7 @@ struct Stored {
     [[nodiscard]] std::vector<std::byte> bytes() {
         header.boxes = boxes.size();
         header.free_items = free_items.size();
+        header.axes = axes.size();
         header.nodes = nodes.size();
         header.leaves = leaves.size();
         std::vector<std::byte> result;
@@ -82,6 +86,7 @@ struct Stored {
         put_all(boxes);
         put_all(layer_masks);
         put_all(free_items);
+        put_all(axes);
         put_all(nodes);
         put_all(ranges);
         put_all(node_radii);
@@ -121,6 +126,23 @@ void check_refused_after(Change change, std::string_view why) {
 }  // namespace
 
 TEST_SUITE("boxtree/stored") {
+    TEST_CASE("axes that are none, and nodes that name none, are refused") {
+        check_refused_after([](Stored& s) { s.axes.clear(); }, "the first axes are not the world's");
+        check_refused_after([](Stored& s) { std::swap(s.axes[0].rows[0], s.axes[0].rows[1]); }, "not the world's");
+        check_refused_after([](Stored& s) { s.nodes[0].axes = 1; }, "a node's axes do not exist");
+        const auto skewed = [](double by, double rounding) {
+            return [=](Stored& s) {
+                s.axes.push_back({{{0.6, 0.8, by}, {-0.8, 0.6, 0.0}, {0.0, 0.0, 1.0}}, rounding});
+            };
+        };
+        check_refused_after(skewed(1e-9, 0x1p-44), "axes are not orthonormal");
+        check_refused_after(skewed(0.0, 0.0), "axes are not orthonormal");
+        check_refused_after(skewed(std::nan(""), 0x1p-44), "axes are not orthonormal");
+        Stored sound = good_tree();
+        skewed(0.0, 0x1p-44)(sound);
+        CHECK(BoxTree::deserialise(sound.bytes()).has_value());
+    }
+
     TEST_CASE("what is taken apart and put together is the same tree") {
         Stored stored = good_tree();
         const auto back = BoxTree::deserialise(stored.bytes());
@@ -132,7 +154,7 @@ TEST_SUITE("boxtree/stored") {
     TEST_CASE("bytes too many or too few, other versions, byte orders and element sizes are refused") {
         Stored stored = good_tree();
         std::vector<std::byte> bytes = stored.bytes();
-        for (const std::size_t size : {bytes.size() - 1, bytes.size() + 1, bytes.size() + 64, std::size_t{87}}) {
+        for (const std::size_t size : {bytes.size() - 1, bytes.size() + 1, bytes.size() + 64, std::size_t{103}}) {
             std::vector<std::byte> other = bytes;
             other.resize(size);
             const auto tree = BoxTree::deserialise(other);
@@ -147,6 +169,7 @@ TEST_SUITE("boxtree/stored") {
         check_refused_after([](Stored& s) { s.header.box_bytes += 8; }, why);
         check_refused_after([](Stored& s) { s.header.magic[7] = 'E'; }, "not a box tree");
         check_refused_after([](Stored& s) { s.header.height = 0; }, "sizes out of range");
+        check_refused_after([](Stored& s) { s.header.orientation = 3; }, "sizes out of range");
         check_refused_after([](Stored& s) { s.header.height = 65; }, "sizes out of range");
         check_refused_after([](Stored& s) { s.header.criterion[1] = -1.0; }, "criterion");
     }

@@ -18,8 +18,9 @@ struct AgedTree {
     std::vector<Place> places;
     double spread;
 
-    explicit AgedTree(const Crowd& crowd, double spread_of_new = 40.0)
-        : tree(*boxtree::BoxTree::build(crowd.boxes, crowd.layers)),
+    explicit AgedTree(const Crowd& crowd, double spread_of_new = 40.0,
+                      boxtree::Orientation orientation = boxtree::Orientation::aligned)
+        : tree(*boxtree::BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation})),
           boxes(crowd.boxes),
           layers(crowd.layers),
           places(crowd.boxes.size(), Place::in_tree),

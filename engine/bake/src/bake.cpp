@@ -68,7 +68,7 @@ void add_arrays(const Arrays& arrays, Writer& writer) {
 
 }  // namespace
 
-Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor) {
+Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, boxtree::Orientation tree) {
     return detail::recover([&]() -> Result<Vector<std::byte>> {
         Arrays arrays;
         for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) append_mesh(arrays, scene, mesh);
@@ -84,7 +84,7 @@ Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor) {
         for (scene::NodeId node = 0; node < scene.node_count(); ++node)
             nodes.push_back({scene.world(node), scene.parent_of(node)});
         writer.add("nodes", std::span<const NodeRecord>(nodes));
-        if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor); !added)
+        if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor, tree); !added)
             return tl::unexpected(added.error());
         return writer.finish();
     });

@@ -5,8 +5,8 @@
 namespace crofton::bake {
 
 Result<void> add_tree(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, Writer& writer,
-                      Executor& executor) {
-    const auto tree = boxtree::BoxTree::build(boxes, layer_masks, {}, executor);
+                      Executor& executor, boxtree::Orientation orientation) {
+    const auto tree = boxtree::BoxTree::build(boxes, layer_masks, {.orientation = orientation}, executor);
     if (!tree) return tl::unexpected(tree.error());
     const Vector<std::byte> bytes = tree->serialise();
     writer.add("tree", std::span<const std::byte>(bytes));

@@ -37,6 +37,7 @@ int edge_shift_of(const Leaf& leaf) {
 void clear(Node& node) {
     node = {};
     node.parent = kNone;
+    node.layers_every = ~std::uint32_t{0};
     for (unsigned lane = 0; lane < kWidth; ++lane) clear_lane(node, lane);
 }
 
@@ -53,7 +54,7 @@ void clear_lane(Leaf& leaf, unsigned lane) {
 }
 
 void clear_lane(Node& node, unsigned lane) {
-    (void)write_lane(node, lane, Aabb{});
+    (void)write_lane(node, lane, Aabb{}, Axes{});
     node.child[lane] = kNone;
     node.layers_any[lane] = node.layers_all[lane] = 0;
 }
@@ -130,11 +131,28 @@ void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std
     node.layers_all[lane] = every;
 }
 
-void fit_frame(Node& node, const Aabb& whole) {
+namespace {
+
+double size_of(const double* vector) {
+    return std::fabs(vector[0]) + std::fabs(vector[1]) + std::fabs(vector[2]);
+}
+
+// What bounds along the axes may be off by, seen from the node's origin.
+double slack_of(const Axes& axes, const Node& node, const Aabb& bounds) {
+    return axes.rounding * (size_of(node.origin) + size_of(&bounds.min.x) + size_of(&bounds.max.x));
+}
+
+}  // namespace
+
+void fit_frame(Node& node, const Aabb& whole, const Axes& axes) {
     double farthest = 0.0;
-    for (int j = 0; j < 3; ++j) {
-        node.origin[j] = whole.is_empty() ? 0.0 : whole.center()[j];
-        if (!whole.is_empty()) farthest = std::max(farthest, whole.half_extents()[j]);
+    for (int j = 0; j < 3; ++j) node.origin[j] = 0.0;
+    if (!whole.is_empty()) {
+        const glm::dvec3 center = whole.center();
+        for (unsigned k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j) node.origin[j] += axes.rows[k][j] * center[static_cast<int>(k)];
+        for (int j = 0; j < 3; ++j) farthest = std::max(farthest, whole.half_extents()[j]);
+        farthest += 2.0 * slack_of(axes, node, whole);
     }
     node.unit = unit_for(farthest * (1.0 + 0x1p-10), 14);
     node.per_quantum = 0x1p14f / node.unit;
@@ -146,13 +164,14 @@ bool is_frame(const Node& node) {
     return is_unit(node.unit) && node.per_quantum == 0x1p14f / node.unit && node.rounding == rounding_of(node);
 }
 
-bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
+bool write_lane(Node& node, unsigned lane, const Aabb& bounds, const Axes& axes) {
     int middle[3] = {}, half[3] = {-32767, -32767, -32767}, reach = 0;
     if (!bounds.is_empty()) {
-        const double per_unit = 1.0 / double{node.unit};
+        const double per_unit = 1.0 / double{node.unit}, slack = slack_of(axes, node, bounds);
         for (int j = 0; j < 3; ++j) {
-            const double from = (bounds.min[j] - node.origin[j]) * per_unit,
-                         to = (bounds.max[j] - node.origin[j]) * per_unit;
+            const double origin = along(axes, static_cast<unsigned>(j), node.origin);
+            const double from = (bounds.min[j] - origin - slack) * per_unit,
+                         to = (bounds.max[j] - origin + slack) * per_unit;
             // Half a unit outward, then to the nearest; the 0.01 is for the roundings, 2^-38 units at most.
             const double low = nearest(from - 0.51), high = nearest(to + 0.51);
             if (!(std::fabs(low) < kMost && std::fabs(high) < kMost)) return false;
@@ -170,32 +189,30 @@ bool write_lane(Node& node, unsigned lane, const Aabb& bounds) {
     return true;
 }
 
-namespace {
-
-// Relative to the origin, exact numbers; grown by the rounding of the sums.
-Aabb around(const double* origin, const double (&low)[3], const double (&high)[3]) {
+// Relative to the origin; grown by the rounding of the sums.
+Aabb around(const Axes& axes, const double* origin, const double (&low)[3], const double (&high)[3], double rounding) {
+    const double off = rounding * (size_of(origin) + size_of(low) + size_of(high));
     Aabb result;
     for (int j = 0; j < 3; ++j) {
-        const double slack = (std::fabs(origin[j]) + std::fabs(low[j]) + std::fabs(high[j])) * 0x1p-52;
-        result.min[j] = origin[j] + low[j] - slack;
-        result.max[j] = origin[j] + high[j] + slack;
+        const double middle = along(axes, static_cast<unsigned>(j), origin);
+        const double slack = (std::fabs(middle) + std::fabs(low[j]) + std::fabs(high[j])) * 0x1p-52 + off;
+        result.min[j] = middle + low[j] - slack;
+        result.max[j] = middle + high[j] + slack;
     }
     return result;
 }
 
-}  // namespace
-
-Aabb bounds_of_lane(const Node& node, unsigned lane) {
+Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes) {
     if (half_of(node, lane, 0) < 0) return {};
     double low[3], high[3];
     for (unsigned j = 0; j < 3; ++j) {
         low[j] = double{node.unit} * low_of(node, lane, j);
         high[j] = double{node.unit} * high_of(node, lane, j);
     }
-    return around(node.origin, low, high);
+    return around(axes, node.origin, low, high, axes.rounding);
 }
 
-Aabb bounds_of(const Node& node) {
+Aabb bounds_of(const Node& node, const Axes& axes) {
     double low[3], high[3];
     for (unsigned j = 0; j < 3; ++j) {
         // Empty lanes do not count: theirs are the largest low and the least high.
@@ -208,7 +225,7 @@ Aabb bounds_of(const Node& node) {
         low[j] = double{node.unit} * least;
         high[j] = double{node.unit} * most;
     }
-    return around(node.origin, low, high);
+    return around(axes, node.origin, low, high, axes.rounding);
 }
 
 Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent) {
@@ -221,7 +238,7 @@ Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent) {
         low[j] = double{extent.low[j]} - std::fabs(double{extent.low[j]}) * 0x1p-23 - slack;
         high[j] = double{extent.high[j]} + std::fabs(double{extent.high[j]}) * 0x1p-23 + slack;
     }
-    return around(leaf.origin, low, high);
+    return around(Axes{}, leaf.origin, low, high, 0.0);
 }
 
 Aabb bounds_of(const Leaf& leaf) {

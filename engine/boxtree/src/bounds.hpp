@@ -24,21 +24,29 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest_edge);
 void write_layers(Leaf& leaf, unsigned lane, std::uint32_t layers);
 void clear_lane(Leaf& leaf, unsigned lane);
 
+// Bounds of nodes and children are in coordinates along the node's axes, which count from the world's origin.
+
 // A node's origin and unit for children that lie in `whole`, with room to move; all lanes must be written anew.
-void fit_frame(Node& node, const Aabb& whole);
+void fit_frame(Node& node, const Aabb& whole, const Axes& axes);
 [[nodiscard]] bool is_frame(const Node& node);
 
 // Puts a child's bound into a lane; the node's frame stays, its reach grows where needed. False, and nothing is
 // written, if it does not fit.
-[[nodiscard]] bool write_lane(Node& node, unsigned lane, const Aabb& bounds);
+[[nodiscard]] bool write_lane(Node& node, unsigned lane, const Aabb& bounds, const Axes& axes);
 void clear_lane(Node& node, unsigned lane);
 
 // OR and AND of `count` masks each.
 void write_layers(Node& node, unsigned lane, const std::uint32_t* any, const std::uint32_t* all, std::uint32_t count);
 
+// Along the world's axes.
 [[nodiscard]] Aabb bounds_of(const Leaf& leaf);
 [[nodiscard]] Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent);
-[[nodiscard]] Aabb bounds_of(const Node& node);
-[[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane);
+
+[[nodiscard]] Aabb bounds_of(const Node& node, const Axes& axes);
+[[nodiscard]] Aabb bounds_of_lane(const Node& node, unsigned lane, const Axes& axes);
+
+// A box around a point of the world, from ends relative to it; moved outward by `rounding` times the sizes.
+[[nodiscard]] Aabb around(const Axes& axes, const double* origin, const double (&low)[3], const double (&high)[3],
+                          double rounding);
 
 }  // namespace crofton::boxtree

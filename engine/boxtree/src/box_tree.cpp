@@ -13,9 +13,9 @@
 
 namespace crofton::boxtree {
 
-BoxTree::BoxTree(const measure::Criterion& criterion)
+BoxTree::BoxTree(const measure::Criterion& criterion, Orientation orientation)
     : items_(std::make_unique<Items>()),
-      structure_(std::make_unique<Structure>(*items_, criterion)),
+      structure_(std::make_unique<Structure>(*items_, criterion, orientation)),
       rebuilder_(std::make_unique<Rebuilder>()) {}
 BoxTree::~BoxTree() = default;
 BoxTree::BoxTree(BoxTree&&) noexcept = default;

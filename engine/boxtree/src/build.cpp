@@ -67,7 +67,7 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
         const auto moves = [](const void* bits, ItemId item) {
             return (static_cast<const std::uint64_t*>(bits)[item / 64] >> item % 64 & 1) != 0;
         };
-        BoxTree tree(options.criterion);
+        BoxTree tree(options.criterion, options.orientation);
         Items& items = *tree.items_;
         Aabb centers;
         if (auto taken = items.assign(boxes, layer_masks, centers); !taken) return tl::unexpected(taken.error());
@@ -76,7 +76,7 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
                 return fail(ErrorCode::out_of_range, item, "box tree: no box for an item to detach");
             if (!items.is_detached(item)) items.set_detached(item, true);
         }
-        Builder builder(centers, items.count_in_leaves(), options.criterion);
+        Builder builder(centers, items.count_in_leaves(), options.criterion, options.orientation);
         for (ItemId item = 0; item < boxes.size(); ++item)
             if (!items.is_detached(item)) builder.add(item, items.boxes()[item]);
         while (!builder.prepare(~std::size_t{0} / 8, items.boxes(), {moves, moving.data()})) {

@@ -37,8 +37,8 @@ std::uint64_t z_order(const std::array<std::uint32_t, 3>& cell, unsigned shift) 
 
 }  // namespace
 
-Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion)
-    : cost_(criterion), middle_(scene.is_empty() ? glm::dvec3(0.0) : scene.center()) {
+Builder::Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion, Orientation orientation)
+    : cost_(criterion), orientation_(orientation), middle_(scene.is_empty() ? glm::dvec3(0.0) : scene.center()) {
     if (!scene.is_empty())
         for (int j = 0; j < 3; ++j) half_size_ = std::max(half_size_, scene.half_extents()[j]);
     // One scale for all axes, so that cells are cubes.
@@ -84,7 +84,7 @@ bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers&
             continue;
         }
         if (!std::exchange(building_, true)) subtree_builder_.start(subtrees_[next_], boxes, middle_, result_);
-        if (!subtree_builder_.step(budget, cost_, result_)) return false;
+        if (!subtree_builder_.step(budget, cost_, orientation_, boxes, result_)) return false;
         building_ = false;
         ++next_;
     }
@@ -94,7 +94,7 @@ bool Builder::step(std::size_t budget, std::span<const Obb> boxes, const Movers&
 void Builder::build(std::size_t subtree, SubtreeBuilder& with, std::span<const Obb> boxes) {
     with.start(subtrees_[subtree], boxes, middle_, result_);
     std::size_t budget = ~std::size_t{0};
-    (void)with.step(budget, cost_, result_);
+    (void)with.step(budget, cost_, orientation_, boxes, result_);
 }
 
 bool Builder::prepare(std::size_t budget, std::span<const Obb> boxes, const Movers& movers) {
@@ -291,6 +291,7 @@ void Builder::place_subtrees() {
         leaf += subtree.leaves;
     }
     result_.nodes.resize(node);
+    if (orientation_ != Orientation::aligned) result_.axes.resize(std::size_t{node} + 1);
     result_.leaves.resize(leaf);
     for (const Subtree& subtree : subtrees_)
         if (!subtree.is_leaf()) result_.nodes[subtree.first_node].leaves = {subtree.first_leaf, subtree.leaves};

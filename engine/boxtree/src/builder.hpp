@@ -25,7 +25,8 @@ struct Movers {
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.
-    Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion);
+    Builder(const Aabb& scene, std::size_t items, const measure::Criterion& criterion,
+            Orientation orientation = Orientation::aligned);
 
     // Notes where the item is.
     void add(ItemId id, const Obb& box);
@@ -65,6 +66,7 @@ class Builder {
     void place_subtrees();
 
     Cost cost_;
+    Orientation orientation_;
     glm::dvec3 middle_;
     double half_size_ = 0.0, cells_per_unit_ = 0.0;
     float cell_ = 0.0f;

@@ -15,4 +15,7 @@ struct LeafExtent {
 // extents[i] is that of leaves[ids[i]]; low > high for a leaf without items.
 void leaf_extents(const Leaf* leaves, std::span<const LeafId> ids, LeafExtent* extents);
 
+// The same along other axes, of a leaf with items: rounded in float (bounds_along).
+void turned_leaf_extent(const Leaf& leaf, const Axes& axes, LeafExtent& extent);
+
 }  // namespace crofton::boxtree

@@ -117,6 +117,12 @@ void Splitter::cut(Range range, const Cut& cut) {
     }
 }
 
+void Splitter::take(Range range, const Splitter& from, std::span<const std::uint32_t> indices) {
+    for (unsigned axis = 0; axis < 3; ++axis)
+        for (std::uint32_t i = 0; i < range.size(); ++i)
+            sorted_[axis][range.begin + i] = indices[from.sorted_[axis][i]];
+}
+
 Children Splitter::divide(Range range, std::uint32_t unit, const Cost& cost) {
     Children children;
     if (range.size() == 0) return children;

@@ -71,6 +71,9 @@ class Splitter {
     // items(part), what a uniformly random query pays below here.
     [[nodiscard]] Children divide(Range range, std::uint32_t unit, const Cost& cost);
 
+    // order()[range] becomes that of another splitter's items, whose item i is indices[i] here, in all three orders.
+    void take(Range range, const Splitter& from, std::span<const std::uint32_t> indices);
+
     // Indices into the items.
     [[nodiscard]] std::span<const std::uint32_t> order() const { return sorted_[0]; }
 

@@ -4,9 +4,11 @@
 #include <array>
 #include <crofton/boxtree/radius_range.hpp>
 #include <limits>
+#include <utility>
 
 #include "bounds.hpp"
 #include "partition.hpp"
+#include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
 
@@ -32,9 +34,8 @@ void Placement::vacate(ItemId item) {
 }
 
 void Placement::place(ItemId item) {
-    const Aabb bounds = aabb_of(structure_.items_.boxes()[item]);
     if (nodes_[0].count == 0) add_child(0, add_leaf() | kLeafBit);
-    LeafId l = best_leaf(bounds);
+    LeafId l = best_leaf(structure_.items_.boxes()[item]);
     if (leaves_[l].count == kWidth) split_leaf(l);  // half of its lanes are free then
     Leaf& leaf = leaves_[l];
     const std::uint32_t slot = l * kWidth + leaf.count++;
@@ -63,18 +64,21 @@ LeafId Placement::add_leaf() {
 }
 
 // Down from the root into the child whose criterion grows least.
-LeafId Placement::best_leaf(const Aabb& bounds) const {
+LeafId Placement::best_leaf(const Obb& box) const {
     const Cost cost(structure_.criterion_);
     const auto of = [&](const Aabb& b) {
         return b.is_empty() ? 0.0 : cost.of(b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z);
     };
     NodeId n = 0;
+    std::uint32_t axes = nodes_[0].axes;
+    Aabb bounds = bounds_along(structure_.axes_of(nodes_[0]), box);
     for (;;) {
         const Node& node = nodes_[n];
+        if (std::exchange(axes, node.axes) != node.axes) bounds = bounds_along(structure_.axes_of(node), box);
         unsigned best = 0;
         double best_growth = std::numeric_limits<double>::infinity(), best_size = best_growth;
         for (unsigned lane = 0; lane < node.count; ++lane) {
-            const Aabb old = bounds_of_lane(node, lane);
+            const Aabb old = bounds_of_lane(node, lane, structure_.axes_of(node));
             Aabb grown = bounds;
             if (!old.is_empty()) grown.include(old);
             const double size = of(old), growth = of(grown) - size;
@@ -177,6 +181,7 @@ NodeId Placement::split_node(NodeId n) {
         return std::span<const std::uint32_t>(children).subspan(halves.ranges[side].begin, halves.ranges[side].size());
     };
     const auto fresh = static_cast<NodeId>(nodes_.size());
+    const std::uint32_t axes = nodes_[n].axes;
     make_room_for(nodes_, 2);
     make_room_for(structure_.ranges_, 2);
     make_room_for(structure_.node_radii_, 2);
@@ -184,10 +189,10 @@ NodeId Placement::split_node(NodeId n) {
         nodes_.resize(fresh + 2);
         structure_.ranges_.resize(fresh + 2);
         structure_.node_radii_.resize(fresh + 2);
-        make_node(fresh, half(0), 0, 0);
-        make_node(fresh + 1, half(1), 0, 1);
+        make_node(fresh, half(0), 0, 0, axes);
+        make_node(fresh + 1, half(1), 0, 1, axes);
         const std::uint32_t both[2] = {fresh, fresh + 1};
-        make_node(0, both, kNone, 0);
+        make_node(0, both, kNone, 0, axes);
         ++structure_.height_;
         structure_.refresh_node(fresh);
         structure_.refresh_node(fresh + 1);
@@ -198,8 +203,8 @@ NodeId Placement::split_node(NodeId n) {
     structure_.ranges_.emplace_back();
     structure_.node_radii_.emplace_back();
     const NodeId parent = nodes_[n].parent;
-    make_node(n, half(0), parent, nodes_[n].lane_in_parent);
-    make_node(fresh, half(1), parent, 0);
+    make_node(n, half(0), parent, nodes_[n].lane_in_parent, axes);
+    make_node(fresh, half(1), parent, 0, axes);
     structure_.refresh_node(n);
     structure_.refresh_node(fresh);
     add_child(parent, fresh);
@@ -208,8 +213,10 @@ NodeId Placement::split_node(NodeId n) {
     return n;
 }
 
-void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent) {
+void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,
+                          std::uint32_t axes) {
     clear(nodes_[n]);
+    nodes_[n].axes = axes;
     structure_.ranges_[n] = {};
     nodes_[n].parent = parent;
     nodes_[n].lane_in_parent = lane_in_parent;
@@ -217,8 +224,17 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
     for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
 }
 
+// All lanes of the node; above it, where bounding a child along other axes is dear, only those on the path.
 void Placement::refresh_path(NodeId n) {
-    for (; n != kNone; n = nodes_[n].parent) structure_.refresh_node(n);
+    structure_.refresh_node(n);
+    for (NodeId child = n; (n = nodes_[child].parent) != kNone; child = n) {
+        const unsigned lane = nodes_[child].lane_in_parent;
+        if (structure_.axes_.size() > 1 &&
+            write_lane(nodes_[n], lane, structure_.bounds_below(child, nodes_[n].axes), structure_.axes_of(nodes_[n])))
+            structure_.refresh_contents(n, lane);
+        else
+            structure_.refresh_node(n);
+    }
 }
 
 // The items of a leaf below here are no longer as many as they were.

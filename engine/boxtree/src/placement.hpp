@@ -16,14 +16,15 @@ class Placement {
     void vacate(ItemId item);
 
   private:
-    [[nodiscard]] LeafId best_leaf(const Aabb& bounds) const;
+    [[nodiscard]] LeafId best_leaf(const Obb& box) const;
     LeafId add_leaf();
     void split_leaf(LeafId l);
     void make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent);
     void add_child(NodeId parent, std::uint32_t child);
     void link(NodeId parent, unsigned lane, std::uint32_t child);
     NodeId split_node(NodeId n);
-    void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent);
+    void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,
+                   std::uint32_t axes);
     void refresh_path(NodeId n);
     void invalidate_item_count(NodeId n);
 

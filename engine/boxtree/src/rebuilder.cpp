@@ -9,6 +9,7 @@
 #include "builder.hpp"
 #include "placement.hpp"
 #include "refit.hpp"
+#include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
 namespace {
@@ -28,6 +29,12 @@ bool moves_often(const void* context, ItemId item) {
     return current.contains(item) && current.marks().moves_often(current.slot_of(item));
 }
 
+Aabb scene_of(const Structure& current) {
+    const Node& root = current.nodes()[0];
+    const Aabb bounds = bounds_of(root, current.axes_of(root));
+    return root.axes == 0 ? bounds : bounds_along(current.axes()[0], bounds, current.axes_of(root));
+}
+
 }  // namespace
 
 struct Rebuilder::Work {
@@ -36,8 +43,8 @@ struct Rebuilder::Work {
 
     Work(const Structure& current, Items& all)
         : items(all),
-          builder(bounds_of(current.nodes()[0]), all.count_in_leaves(), current.criterion()),
-          next(std::make_unique<Structure>(all, current.criterion())),
+          builder(scene_of(current), all.count_in_leaves(), current.criterion(), current.orientation()),
+          next(std::make_unique<Structure>(all, current.criterion(), current.orientation())),
           changed((all.size() + 63) / 64, 0),
           placed(changed.size(), 0) {}
     void enter(Stage next_stage, std::size_t from = 0) {

@@ -7,6 +7,7 @@
 #include "bounds.hpp"
 #include "leaf_extents.hpp"
 #include "leaf_writer.hpp"
+#include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
 namespace {
@@ -49,6 +50,8 @@ void Refit::refit_leaves() {
                 structure_.rewrite_leaf(leaves[i]);
                 bounds = bounds_of(leaf);
             }
+            if (const Node& parent = nodes_[leaf.parent]; parent.axes != 0)
+                bounds = bounds_along(structure_.axes_of(parent), leaf);
             set_child(leaf.parent, leaf.lane_in_parent, bounds, work_.nodes);
         }
     }
@@ -71,20 +74,23 @@ void Refit::write_dirty_leaves(std::span<const LeafId> leaves) {
 
 // A node whose lanes are up to date, into its parent's lane.
 void Refit::refit_node(NodeId n) {
-    Aabb bounds = bounds_of(nodes_[n]);
+    const Node& node = nodes_[n];
+    Aabb bounds = bounds_of(node, structure_.axes_of(node));
     const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
-    if (double{nodes_[n].reach} > 8.0 * (size.x + size.y + size.z)) {
+    if (double{node.reach} > 8.0 * (size.x + size.y + size.z)) {
         structure_.refresh_node(n);
-        bounds = bounds_of(nodes_[n]);
+        bounds = bounds_of(node, structure_.axes_of(node));
     }
-    const NodeId parent = nodes_[n].parent;
-    if (parent != kNone) set_child(parent, nodes_[n].lane_in_parent, bounds, work_.parents);
+    if (node.parent == kNone) return;
+    const std::uint32_t above = nodes_[node.parent].axes;
+    if (above != node.axes) bounds = structure_.bounds_below(n, above);
+    set_child(node.parent, node.lane_in_parent, bounds, work_.parents);
 }
 
 // A child's bound, and layers and radii if any have changed, into its lane; the node then is to be refitted. All lanes
 // anew if its frame does not take the bound.
 void Refit::set_child(NodeId n, unsigned lane, const Aabb& bounds, Vector<NodeId>& dirty) {
-    if (!write_lane(nodes_[n], lane, bounds)) structure_.refresh_node(n);
+    if (!write_lane(nodes_[n], lane, bounds, structure_.axes_of(nodes_[n]))) structure_.refresh_node(n);
     if (structure_.contents_changed_) structure_.refresh_contents(n, lane);
     std::uint64_t& word = work_.node_bits[n / 64];
     const std::uint64_t bit = std::uint64_t{1} << (n % 64);

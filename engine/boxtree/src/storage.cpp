@@ -11,14 +11,14 @@ namespace {
 
 struct Header {
     char magic[8] = {'c', 'r', 'o', 'f', 't', 'r', 'e', 'e'};
-    std::uint32_t version = 5;
+    std::uint32_t version = 6;
     std::uint32_t byte_order = 0x01020304;
     std::uint32_t node_bytes = sizeof(Node), leaf_bytes = sizeof(Leaf), box_bytes = sizeof(Obb);
-    std::uint32_t height = 0;
-    std::uint64_t boxes = 0, free_items = 0, nodes = 0, leaves = 0;
+    std::uint32_t height = 0, orientation = 0, unused = 0;
+    std::uint64_t boxes = 0, free_items = 0, axes = 0, nodes = 0, leaves = 0;
     double criterion[3] = {};
 };
-static_assert(sizeof(Header) == 88);
+static_assert(sizeof(Header) == 104);
 
 // What is in no leaf, and whose id is not free.
 void find_detached(Items& items, const Structure& structure) {
@@ -39,6 +39,7 @@ struct TreeStorage {
         visit(items.boxes_, h.boxes);
         visit(items.layer_masks_, h.boxes);
         visit(items.free_ids_, h.free_items);
+        visit(structure.axes_, h.axes);
         visit(structure.nodes_, h.nodes);
         visit(structure.ranges_, h.nodes);
         visit(structure.node_radii_, h.nodes);
@@ -57,6 +58,8 @@ Vector<std::byte> BoxTree::serialise() const {
     header.height = structure.height();
     header.boxes = items_->size();
     header.free_items = items_->free_ids().size();
+    header.orientation = static_cast<std::uint32_t>(structure.orientation());
+    header.axes = structure.axes().size();
     header.nodes = structure.nodes().size();
     header.leaves = structure.leaves().size();
     header.criterion[0] = structure.criterion().volume_weight;
@@ -89,10 +92,11 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
             header.box_bytes != expected.box_bytes)
             return damaged("written by another version or on another kind of machine");
         if (header.boxes > (1u << 30) || header.free_items > header.boxes || header.nodes > (1u << 30) ||
-            header.leaves > (1u << 30) || header.height == 0 || header.height > 64)
+            header.leaves > (1u << 30) || header.axes > (1u << 30) || header.orientation > 2 || header.height == 0 ||
+            header.height > 64)
             return damaged("sizes out of range");
         const measure::Criterion criterion{header.criterion[0], header.criterion[1], header.criterion[2]};
-        BoxTree tree(criterion);
+        BoxTree tree(criterion, static_cast<Orientation>(header.orientation));
         Items& items = *tree.items_;
         Structure& structure = *tree.structure_;
         TreeStorage::set_height(structure, header.height);

@@ -11,16 +11,31 @@
 #include "bounds.hpp"
 #include "leaf_writer.hpp"
 #include "subtree.hpp"
+#include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
 
 Aabb Structure::child_bounds(NodeId node, unsigned lane) const {
     CROFTON_ASSERT(node < nodes_.size() && lane < nodes_[node].count, "no such child");
-    return bounds_of_lane(nodes_[node], lane);
+    const Axes& axes = axes_of(nodes_[node]);
+    const Aabb bounds = bounds_of_lane(nodes_[node], lane, axes);
+    return nodes_[node].axes == 0 ? bounds : bounds_along(axes_[0], bounds, axes);
+}
+
+// Where the axes are others, from the leaves: boxes around turned boxes would be larger.
+Aabb Structure::bounds_below(std::uint32_t child, std::uint32_t axes) const {
+    if (child & kLeafBit) return bounds_along(axes_[axes], leaves_[child & ~kLeafBit]);
+    const Node& node = nodes_[child];
+    if (node.axes == axes) return bounds_of(node, axes_[axes]);
+    Aabb bounds;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane)
+        if (const Aabb below = bounds_below(node.child[lane], axes); !below.is_empty()) bounds.include(below);
+    return bounds;
 }
 
 void Structure::make_room(const Topology& topology) {
     height_ = topology.height;
+    axes_.resize(std::max(axes_.size(), topology.axes.size()));
     nodes_.resize(topology.nodes.size());
     ranges_.resize(topology.nodes.size());
     node_radii_.resize(topology.nodes.size());
@@ -49,6 +64,8 @@ void Structure::init_node(NodeId n, const Topology& topology) {
     node.count = record.count;
     node.parent = record.parent;
     node.lane_in_parent = record.lane_in_parent;
+    node.axes = record.axes;
+    if (record.axes == n + 1) axes_[n + 1] = topology.axes[n + 1];
     node.only_leaves = 1;
     for (std::uint32_t lane = 0; lane < record.count; ++lane) {
         node.child[lane] = record.child[lane];
@@ -96,6 +113,7 @@ void Structure::bound_nodes(NodeId begin, NodeId end) {
 
 void Structure::begin_steps(const Topology& topology) {
     height_ = topology.height;
+    axes_.resize(std::max(axes_.size(), topology.axes.size()));
     item_slots_.reserve(items_.size());
     nodes_.reserve(topology.nodes.size());
     ranges_.reserve(topology.nodes.size());
@@ -180,13 +198,12 @@ void Structure::refresh_node(NodeId n) {
     Node& node = nodes_[n];
     Aabb bounds[kWidth], whole;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-        const std::uint32_t child = node.child[lane];
-        bounds[lane] = child & kLeafBit ? bounds_of(leaves_[child & ~kLeafBit]) : bounds_of(nodes_[child]);
+        bounds[lane] = bounds_below(node.child[lane], node.axes);
         if (!bounds[lane].is_empty()) whole.include(bounds[lane]);
     }
-    fit_frame(node, whole);
+    fit_frame(node, whole, axes_of(node));
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-        [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane]);
+        [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane], axes_of(node));
         CROFTON_ASSERT(fits, "a frame around bounds must take them");
         refresh_contents(n, lane);
     }

@@ -48,6 +48,7 @@ Subtree::Subtree(Range range) : items(range) {
 
 void SubtreeBuilder::start(const Subtree& subtree, std::span<const Obb> boxes, const glm::dvec3& middle,
                            const Topology& topology) {
+    middle_ = middle;
     first_item_ = subtree.items.begin;
     next_node_ = subtree.first_node;
     next_leaf_ = subtree.first_leaf;
@@ -68,12 +69,18 @@ void SubtreeBuilder::start(const Subtree& subtree, std::span<const Obb> boxes, c
     tasks_.push_back({{0, subtree.items.size()}, subtree.parent, subtree.lane_in_parent});
 }
 
-bool SubtreeBuilder::step(std::size_t& budget, const Cost& cost, Topology& topology) {
+bool SubtreeBuilder::step(std::size_t& budget, const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
+                          Topology& topology) {
     while (!tasks_.empty()) {
         if (budget == 0) return false;
+        const std::size_t size = tasks_.back().range.size();
+        if (orientation != Orientation::aligned && size > kWidth) {
+            budget -= std::min(budget, 10 * size);
+            if (!choose_axes(cost, orientation, boxes, topology)) continue;
+        }
         const Task task = tasks_.back();
         tasks_.pop_back();
-        if (task.parent != kNone && task.range.size() <= kWidth) {
+        if (task.parent != kNone && size <= kWidth) {
             add_leaf(task, topology);
             budget -= std::min<std::size_t>(budget, kWidth);
             continue;
@@ -82,14 +89,34 @@ bool SubtreeBuilder::step(std::size_t& budget, const Cost& cost, Topology& topol
         Topology::NodeRecord& record = topology.nodes[node];
         record.parent = task.parent;
         record.lane_in_parent = task.lane;
+        record.axes = task.axes;
         record.leaves = {next_leaf_, (task.range.size() + kWidth - 1) / kWidth};
         if (task.parent != kNone) topology.nodes[task.parent].child[task.lane] = node;
         const Children children = splitter_.divide(task.range, kWidth, cost);
         record.count = children.count;
-        budget -= std::min(budget, 4 * std::size_t{task.range.size()});
+        budget -= std::min(budget, 4 * size);
         // Last in, first out: leaves come out in the order of the lanes.
-        for (std::uint32_t lane = record.count; lane-- > 0;) tasks_.push_back({children.ranges[lane], node, lane});
+        for (std::uint32_t lane = record.count; lane-- > 0;)
+            tasks_.push_back({children.ranges[lane], node, lane, record.axes});
     }
+    return true;
+}
+
+// For the last of the tasks, which is the next node; true when they are chosen. The items' coordinates and their three
+// orders are along them then.
+bool SubtreeBuilder::choose_axes(const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
+                                 Topology& topology) {
+    Task& task = tasks_.back();
+    if (!chooser_.is_busy())
+        chooser_.begin(items_, splitter_.order().subspan(task.range.begin, task.range.size()),
+                       topology.axes[task.axes]);
+    if (!chooser_.step(boxes, middle_, cost, orientation)) return false;
+    if (!chooser_.has_found()) return true;
+    const std::span<const std::uint32_t> indices = chooser_.indices();
+    for (std::size_t i = 0; i < indices.size(); ++i) items_[indices[i]] = chooser_.items()[i];
+    splitter_.take(task.range, chooser_.splitter(), indices);
+    task.axes = chooser_.axes().rounding == 0.0 ? 0 : next_node_ + 1;
+    if (task.axes != 0) topology.axes[task.axes] = chooser_.axes();
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include <crofton/geometry/box.hpp>
 #include <span>
 
+#include "axes_choice.hpp"
 #include "partition.hpp"
 
 namespace crofton::boxtree {
@@ -16,6 +17,7 @@ struct Topology {
         std::uint32_t count = 0;
         NodeId parent = kNone;
         std::uint32_t lane_in_parent = 0;
+        std::uint32_t axes = 0;  // of `axes`
         LeafRange leaves;
     };
     struct LeafRecord {
@@ -26,6 +28,8 @@ struct Topology {
     Vector<NodeRecord> nodes;   // parents before children, [0] the root
     Vector<LeafRecord> leaves;  // in the order of a walk from the root
     Vector<ItemId> order;       // the items; a leaf's lie next to each other
+    // The world's, and those of node n at n + 1 where it has others than its parent; empty where none is turned.
+    Vector<Axes> axes;
     unsigned height = 1;
 };
 
@@ -54,21 +58,27 @@ class SubtreeBuilder {
     void start(const Subtree& subtree, std::span<const Obb> boxes, const glm::dvec3& middle, const Topology& topology);
 
     // Works on, about `budget` items' worth, which is lessened by what was spent; true when the subtree is complete.
-    bool step(std::size_t& budget, const Cost& cost, Topology& topology);
+    bool step(std::size_t& budget, const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
+              Topology& topology);
 
   private:
     struct Task {
         Range range;  // of the items
         NodeId parent;
         std::uint32_t lane;
+        std::uint32_t axes = 0;  // that its items lie along
     };
     void add_leaf(const Task& task, Topology& topology);
+    [[nodiscard]] bool choose_axes(const Cost& cost, Orientation orientation, std::span<const Obb> boxes,
+                                   Topology& topology);
 
     std::uint32_t first_item_ = 0;
     NodeId next_node_ = 0;
     LeafId next_leaf_ = 0;
     Vector<BuildItem> items_;
     Splitter splitter_;
+    AxesChooser chooser_;
+    glm::dvec3 middle_{0.0};
     Vector<Task> tasks_;
 };
 

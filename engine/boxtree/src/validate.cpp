@@ -7,6 +7,7 @@
 
 #include <crofton/boxtree/radius_range.hpp>
 #include "bounds.hpp"
+#include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
 namespace {
@@ -30,9 +31,9 @@ std::uint32_t items_without_gaps(LeafRange range, std::span<const std::uint8_t> 
     return (range.count - 1) * kWidth + leaf_counts[last];
 }
 
-bool holds(const Node& node, unsigned lane, const Aabb& child) {
+bool holds(const Node& node, const Axes& axes, unsigned lane, const Aabb& child) {
     if (child.is_empty()) return true;
-    const Aabb bounds = bounds_of_lane(node, lane);
+    const Aabb bounds = bounds_of_lane(node, lane, axes);
     double reach = 0.0;
     for (unsigned axis = 0; axis < 3; ++axis) {
         const int j = static_cast<int>(axis), far = std::abs(middle_of(node, lane, axis)) + half_of(node, lane, axis);
@@ -56,6 +57,16 @@ bool reaches_root(const Structure& structure, NodeId n, bool& too_deep) {
     return n == 0;
 }
 
+Result<void> validate_axes(const Structure& structure) {
+    const std::span<const Axes> axes = structure.axes();
+    if (axes.empty() || !are_the_worlds(axes[0])) return broken(kNoItem, "the first axes are not the world's");
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        if (!are_valid(axes[i])) return broken(i, "axes are not orthonormal");
+    for (NodeId n = 0; n < structure.nodes().size(); ++n)
+        if (structure.nodes()[n].axes >= axes.size()) return broken(n, "a node's axes do not exist");
+    return {};
+}
+
 Result<void> validate_child(const Structure& structure, NodeId n, unsigned lane, Trust trust) {
     const std::span<const Node> nodes = structure.nodes();
     const std::span<const Leaf> leaves = structure.leaves();
@@ -66,7 +77,7 @@ Result<void> validate_child(const Structure& structure, NodeId n, unsigned lane,
     const std::uint32_t at = is_leaf ? leaves[id].lane_in_parent : nodes[id].lane_in_parent;
     if (parent != n || at != lane || child == 0) return broken(n, "a child does not know its parent");
     if (trust == Trust::contents) return {};
-    if (!holds(nodes[n], lane, is_leaf ? bounds_of(leaves[id]) : bounds_of(nodes[id])))
+    if (!holds(nodes[n], structure.axes_of(nodes[n]), lane, structure.bounds_below(child, nodes[n].axes)))
         return broken(n, "a bound does not contain what lies below it");
     Node layers;
     if (is_leaf)
@@ -159,6 +170,7 @@ Result<void> validate(const Structure& structure, Trust trust) {
         if (leaves[l].count > kWidth) return broken(l, "a leaf has more than 16 items");
     for (NodeId n = 0; n < nodes.size(); ++n)
         if (nodes[n].count > kWidth) return broken(n, "a node has more than 16 children");
+    if (auto valid = validate_axes(structure); !valid) return valid;
     std::size_t reached = 1, in_leaves = 0;
     for (NodeId n = 0; n < nodes.size(); ++n) {
         if (auto valid = validate_node(structure, n, trust); !valid) return valid;

@@ -81,6 +81,29 @@ LaneBox box_for(const Block& block, const Aabb& bounds) {
     return box;
 }
 
+// The least box along a node's axes around `bounds`; what products round by is far below `rounding`.
+LaneBox box_for(const boxtree::Node& node, const boxtree::Axes& axes, const Aabb& bounds) {
+    if (axes.rounding == 0.0) return box_for(node, bounds);
+    double low[3], high[3], size = 0.0;
+    for (int j = 0; j < 3; ++j) {
+        low[j] = bounds.min[j] - node.origin[j];
+        high[j] = bounds.max[j] - node.origin[j];
+        size += std::abs(low[j]) + std::abs(high[j]);
+    }
+    LaneBox box;
+    for (unsigned k = 0; k < 3; ++k) {
+        double least = 0.0, most = 0.0;
+        for (unsigned j = 0; j < 3; ++j) {
+            const double a = axes.rows[k][j] * low[j], b = axes.rows[k][j] * high[j];
+            least += std::min(a, b);
+            most += std::max(a, b);
+        }
+        box.low[k] = round_down(least - axes.rounding * size);
+        box.high[k] = round_up(most + axes.rounding * size);
+    }
+    return box;
+}
+
 template <class Body>
 void collect(const boxtree::BoxTree& tree, const Body& body, const Aabb& bounds, std::uint32_t layers,
              Vector<boxtree::ItemId>& items) {
@@ -112,16 +135,26 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& reach) {
 // moves across before it leaves the filter's range is below the filter's slop.
 class Traveller {
   public:
-    explicit Traveller(const Ray& ray) : origin_(ray.origin), length_(glm::length(ray.direction)) {
-        for (int k = 0; k < 3; ++k) {
-            const double speed = ray.direction[k] / length_;
-            inverse_[static_cast<std::size_t>(k)] =
-                static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
-        }
+    explicit Traveller(const Ray& ray)
+        : origin_(ray.origin), length_(glm::length(ray.direction)), speed_(ray.direction / length_) {
+        for (int k = 0; k < 3; ++k) inverse_[static_cast<std::size_t>(k)] = inverse_of(speed_[k]);
     }
     // In the filter's distances, rounded up.
     [[nodiscard]] float distance(double t) const {
         return static_cast<float>(std::min(t * length_ * (1.0 + 1e-6), static_cast<double>(kFar)));
+    }
+    // Along a node's axes where they are not the world's: what turning rounds is below the filter's slop as well.
+    [[nodiscard]] LaneRay seen_from(const boxtree::Node& node, const boxtree::Axes& axes, float limit) const {
+        if (axes.rounding == 0.0) return seen_from(node, limit);
+        double offset[3];
+        for (int k = 0; k < 3; ++k) offset[k] = origin_[k] - node.origin[k];
+        LaneRay ray;
+        for (unsigned k = 0; k < 3; ++k) {
+            ray.origin[k] = static_cast<float>(boxtree::along(axes, k, offset));
+            ray.inverse[k] = inverse_of(boxtree::along(axes, k, &speed_.x));
+        }
+        ray.limit = limit;
+        return ray;
     }
     template <class Block>
     [[nodiscard]] LaneRay seen_from(const Block& block, float limit) const {
@@ -135,8 +168,13 @@ class Traveller {
     }
 
   private:
+    [[nodiscard]] static float inverse_of(double speed) {
+        return static_cast<float>(std::abs(speed) < 1e-18 ? std::copysign(1e18, speed) : 1.0 / speed);
+    }
+
     glm::dvec3 origin_;
     double length_;
+    glm::dvec3 speed_;
     std::array<float, 3> inverse_;
 };
 
@@ -167,7 +205,7 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
             continue;
         }
         const boxtree::Node& node = structure.nodes()[child];
-        for_each_lane(lanes_within(node, box_for(node, near)), [&](unsigned lane) {
+        for_each_lane(lanes_within(node, box_for(node, structure.axes_of(node), near)), [&](unsigned lane) {
             if (node.layers_any[lane] & layers) stack.push(node.child[lane]);
         });
     }
@@ -219,14 +257,16 @@ void visit_along(const Ray& ray, const boxtree::BoxTree& tree, RayVisitor visit,
         }
         const boxtree::Node& node = structure.nodes()[step.child];
         const std::size_t base = stack.size();
-        for_each_lane(lanes_along(node, traveller.seen_from(node, limit), entry.data()), [&](unsigned lane) {
-            if ((node.layers_any[lane] & layers) == 0) return;
-            // The nearest child goes on top.
-            stack.push({});
-            std::size_t place = stack.size() - 1;
-            for (; place > base && stack[place - 1].entry < entry[lane]; --place) stack[place] = stack[place - 1];
-            stack[place] = {entry[lane], node.child[lane]};
-        });
+        for_each_lane(lanes_along(node, traveller.seen_from(node, structure.axes_of(node), limit), entry.data()),
+                      [&](unsigned lane) {
+                          if ((node.layers_any[lane] & layers) == 0) return;
+                          // The nearest child goes on top.
+                          stack.push({});
+                          std::size_t place = stack.size() - 1;
+                          for (; place > base && stack[place - 1].entry < entry[lane]; --place)
+                              stack[place] = stack[place - 1];
+                          stack[place] = {entry[lane], node.child[lane]};
+                      });
     }
 }
 

@@ -42,16 +42,8 @@ void set_lengths(KernelView& view) {
 KernelView kernel_view_of(const View& view) {
     KernelView result;  // planes beyond the last are not read
     static_cast<void>(set_planes(view, result));
-    for (std::uint32_t i = 0; i < result.plane_count; ++i) {
-        // To the nearest, without the C library's function.
-        int n[3];
-        for (int j = 0; j < 3; ++j) {
-            const double scaled = result.planes[i].normal[j] * 0x1p14;
-            n[j] = std::fabs(scaled) < 0x1p16 ? static_cast<int>(scaled + std::copysign(0.5, scaled)) : 0;
-        }
-        result.pair_planes[i] = {boxtree::pair_of(n[0], n[1]), boxtree::pair_of(n[2], 0),
-                                 boxtree::pair_of(std::abs(n[0]), std::abs(n[1])), boxtree::pair_of(0, std::abs(n[2]))};
-    }
+    for (std::uint32_t i = 0; i < result.plane_count; ++i)
+        result.pair_planes[i] = pair_plane_of(result.planes[i].normal);
     return result;
 }
 

@@ -2,7 +2,9 @@
 // A view as the vector kernels read it: plain numbers, no GLM.
 #pragma once
 #include <cmath>
+#include <crofton/boxtree/layout.hpp>
 #include <cstdint>
+#include <cstdlib>
 
 namespace crofton::cull {
 
@@ -19,12 +21,23 @@ struct PairPlane {
     std::uint32_t size_xy, size_z;  // the absolute values; the lower half of size_z is 0
 };
 
+// To the nearest, without the C library's function.
+inline PairPlane pair_plane_of(const double* normal) {
+    int n[3];
+    for (int j = 0; j < 3; ++j) {
+        const double scaled = normal[j] * 0x1p14;
+        n[j] = std::fabs(scaled) < 0x1p16 ? static_cast<int>(scaled + std::copysign(0.5, scaled)) : 0;
+    }
+    return {boxtree::pair_of(n[0], n[1]), boxtree::pair_of(n[2], 0), boxtree::pair_of(std::abs(n[0]), std::abs(n[1])),
+            boxtree::pair_of(0, std::abs(n[2]))};
+}
+
 struct KernelView {
     static constexpr unsigned kMaxPlanes = 12;
     double origin[3];
     KernelPlane planes[kMaxPlanes];
     PairPlane pair_planes[kMaxPlanes];  // where a tree is asked
-    double far[kMaxPlanes];  // what a plane's value at a block's origin may be off by (block_planes.hpp)
+    double far[kMaxPlanes];             // what a plane's value at a block's origin may be off by (block_planes.hpp)
     std::uint32_t plane_count;
     std::uint32_t layer_mask;
 };

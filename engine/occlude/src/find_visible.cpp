@@ -35,7 +35,7 @@ class VisibleQuery {
             if (child & boxtree::kLeafBit)
                 add_leaf(tree, child & ~boxtree::kLeafBit);
             else
-                add_children(tree.structure().nodes()[child]);
+                add_children(tree.structure(), tree.structure().nodes()[child]);
         }
     }
 
@@ -94,8 +94,8 @@ class VisibleQuery {
     }
 
   private:
-    void add_children(const boxtree::Node& node) {
-        const ChildBits bits = query_children_kernel(view_, node);
+    void add_children(const boxtree::Structure& structure, const boxtree::Node& node) {
+        const ChildBits bits = query_children_kernel(view_, node, structure.axes_of(node));
         std::uint32_t open = 0;
         for (std::uint32_t l = 0; l < node.count; ++l)
             open |= static_cast<std::uint32_t>((node.layers_any[l] & options_.layer_mask) != 0) << l;

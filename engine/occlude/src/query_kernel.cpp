@@ -97,7 +97,7 @@ QueryBits query_boxes(const QueryView& view, const unsigned char* boxes, const s
     return result;
 }
 
-ChildBits query_children(const QueryView& view, const boxtree::Node& node) {
+ChildBits query_children(const QueryView& view, const boxtree::Node& node, const boxtree::Axes& axes) {
     const DF d;
     const Depths depths(view);
     Projection projected;
@@ -105,20 +105,29 @@ ChildBits query_children(const QueryView& view, const boxtree::Node& node) {
     double origin[3];
     for (std::size_t j = 0; j < 3; ++j) origin[j] = node.origin[j] - view.origin[j];
     for (unsigned first = 0; first < node.count; first += kLanes) {
-        alignas(32) float center[3][kLanes], half[3][kLanes];
-        for (unsigned i = 0; i < kLanes; ++i)
-            for (unsigned j = 0; j < 3; ++j) {
-                const double middle = static_cast<double>(node.unit) * boxtree::middle_of(node, first + i, j);
-                center[j][i] = static_cast<float>(origin[j] + middle);
-                half[j][i] = node.unit * static_cast<float>(boxtree::half_of(node, first + i, j));
+        alignas(32) float center[3][kLanes], edge[3][3][kLanes];
+        for (unsigned i = 0; i < kLanes; ++i) {
+            double at[3] = {origin[0], origin[1], origin[2]};
+            for (unsigned k = 0; k < 3; ++k) {
+                const double middle = static_cast<double>(node.unit) * boxtree::middle_of(node, first + i, k),
+                             half = static_cast<double>(node.unit) * boxtree::half_of(node, first + i, k);
+                for (unsigned j = 0; j < 3; ++j) {
+                    at[j] += axes.rows[k][j] * middle;
+                    edge[k][j][i] = static_cast<float>(axes.rows[k][j] * half);
+                }
             }
+            for (unsigned j = 0; j < 3; ++j) center[j][i] = static_cast<float>(at[j]);
+        }
         LaneBits bits{0, 0, 0};
         for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
             VF c[3], e[3][3], reach = hn::Zero(d);
             for (std::size_t j = 0; j < 3; ++j) {
                 c[j] = hn::Load(d, center[j] + l);
-                for (std::size_t k = 0; k < 3; ++k) e[k][j] = k == j ? hn::Load(d, half[j] + l) : hn::Zero(d);
-                reach = hn::Add(reach, hn::Add(hn::Abs(c[j]), hn::Abs(e[j][j])));
+                reach = hn::Add(reach, hn::Abs(c[j]));
+                for (std::size_t k = 0; k < 3; ++k) {
+                    e[k][j] = hn::Load(d, edge[k][j] + l);
+                    reach = hn::Add(reach, hn::Abs(e[k][j]));
+                }
             }
             bits.add(projected.project(view, depths, c, e, reach, l), l);
         }
@@ -149,8 +158,8 @@ QueryBits query_boxes_kernel(const QueryView& view, const unsigned char* boxes, 
 
 HWY_EXPORT(query_children);
 
-ChildBits query_children_kernel(const QueryView& view, const boxtree::Node& node) {
-    return HWY_DYNAMIC_DISPATCH(query_children)(view, node);
+ChildBits query_children_kernel(const QueryView& view, const boxtree::Node& node, const boxtree::Axes& axes) {
+    return HWY_DYNAMIC_DISPATCH(query_children)(view, node, axes);
 }
 
 }  // namespace crofton::occlude

@@ -34,6 +34,7 @@ struct QueryBits {
 struct ChildBits {
     std::uint32_t hidden, beside;
 };
-[[nodiscard]] ChildBits query_children_kernel(const QueryView& view, const boxtree::Node& node);
+[[nodiscard]] ChildBits query_children_kernel(const QueryView& view, const boxtree::Node& node,
+                                              const boxtree::Axes& axes);
 
 }  // namespace crofton::occlude

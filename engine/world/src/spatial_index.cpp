@@ -29,7 +29,8 @@ void must([[maybe_unused]] const Result<void>& done) {
 
 }  // namespace
 
-SpatialIndex::SpatialIndex() : tree_(std::move(*boxtree::BoxTree::build({}))) {}
+SpatialIndex::SpatialIndex(boxtree::Orientation orientation)
+    : tree_(std::move(*boxtree::BoxTree::build({}, {.orientation = orientation}))) {}
 
 Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     auto item = tree_.insert_detached(layers);
@@ -257,7 +258,8 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
         detached.push_back(item);
         if (!tree_.is_detached(item) && !tree_.contains(item)) removed.push_back(item);
     }
-    auto built = boxtree::BoxTree::build(boxes, tree_.layer_masks(), {.detached = detached}, executor);
+    auto built = boxtree::BoxTree::build(
+        boxes, tree_.layer_masks(), {.detached = detached, .orientation = tree_.structure().orientation()}, executor);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;
     // The lowest ids are given first.

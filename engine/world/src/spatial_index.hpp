@@ -23,7 +23,7 @@ class SpatialIndex {
         bool members = false;  // some have come or gone, or have other layers
     };
 
-    SpatialIndex();
+    explicit SpatialIndex(boxtree::Orientation orientation);
 
     // A new item, shown, without a box: it is nowhere until it gets one.
     [[nodiscard]] Result<ItemId> add(std::uint32_t layers);

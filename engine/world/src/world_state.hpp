@@ -42,7 +42,7 @@ struct Generations {
 };
 
 struct World::State {
-    explicit State(const WorldOptions& chosen) : options(chosen), finder(chosen) {}
+    explicit State(const WorldOptions& chosen) : options(chosen), index(chosen.tree), finder(chosen) {}
 
     WorldOptions options;
     WorldStatistics statistics;

@@ -14,6 +14,7 @@
 #include "assets/scene_source.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
+#include "pipeline/pipeline.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct BakeOptions {
-    std::string scene, output, map, json;
+    std::string scene, output, map, json, tree = "aligned";
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
@@ -99,6 +100,8 @@ class BakeRun {
     }
 
     int write() {
+        const auto tree = pipeline::orientation_from(options_.tree);
+        if (!tree) return report_error("", tree.error());
         auto source = assets::load_scene(options_.scene, {.map = options_.map,
                                                           .seed = options_.seed,
                                                           .instances = options_.instances,
@@ -108,7 +111,7 @@ class BakeRun {
         print_warnings(source->warnings);
         source->scene.update(executor());
         const Stopwatch watch;
-        const auto file = bake::bake(source->scene, executor());
+        const auto file = bake::bake(source->scene, executor(), *tree);
         const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
         if (!file) return report_error(options_.scene, file.error());
         const std::string_view bytes(reinterpret_cast<const char*>(file->data()), file->size());
@@ -137,6 +140,7 @@ void add_bake_command(CommandLine& line) {
     command.option("--map", options->map, "Which level of a WAD");
     command.option("--instances", options->instances, "Size of the town, roughly");
     command.option("--seed", options->seed, "Of the town").show_default();
+    command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic").show_default();
     command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
     command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
         .writable_file();

@@ -32,7 +32,8 @@ using pipeline::FrameStatistics;
 using Clock = std::chrono::steady_clock;
 
 struct FramesOptions {
-    std::string scene = "town", map, camera = "orbit", size = "1280x720", bounds = "obb-perimeter", cull = "tree";
+    std::string scene = "town", map, camera = "orbit", size = "1280x720", bounds = "obb-perimeter", cull = "tree",
+                tree = "aligned";
     std::optional<std::uint32_t> frames;  // absent: pipeline::kBuiltInFrames, or all of a recorded path
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
@@ -106,6 +107,8 @@ class FramesRun {
         if (!bounds) return tl::unexpected(bounds.error());
         const auto mode = pipeline::cull_mode_from(options_.cull);
         if (!mode) return tl::unexpected(mode.error());
+        const auto tree = pipeline::orientation_from(options_.tree);
+        if (!tree) return tl::unexpected(tree.error());
         const double aspect = static_cast<double>(size->width) / size->height;
         if (options_.frames == 0u) return fail(ErrorCode::invalid_argument, kNoItem, "--frames must be at least 1");
         if (auto writable = check_writable(options_.output, options_.report); !writable) return writable;
@@ -142,6 +145,7 @@ class FramesRun {
             pipeline_options_.occlusion =
                 OcclusionOptions{.size = {buffer->width, buffer->height}, .max_occluders = options_.occluders};
         }
+        pipeline_options_.tree = *tree;
         auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
         if (!frames) return tl::unexpected(frames.error());
         pipeline_.emplace(std::move(*frames));
@@ -236,6 +240,7 @@ class FramesRun {
             {"size", options_.size},
             {"bounds", options_.bounds},
             {"cull", options_.cull},
+            {"tree", options_.tree},
             {"occlusion", options_.occlude ? std::to_string(options_.occluders) + " occluders at most, " +
                                                  options_.occlusion_size + " pixels"
                                            : ""},
@@ -305,6 +310,7 @@ void add_frames_command(CommandLine& line) {
         .option("--occlusion-size", options->occlusion_size, "Pixels of the occlusion buffer, WIDTHxHEIGHT, 8 to 4096")
         .show_default()
         .needs(occlude);
+    command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic").show_default();
     command.option("--map", options->map, "Which level of a .wad; the first where absent");
     command.option("--threads", options->threads, "Worker threads; 0: one per core")
         .whole_between(0, 256)

@@ -32,6 +32,14 @@ Result<CullMode> cull_mode_from(const std::string& name) {
     return fail(ErrorCode::invalid_argument, kNoItem, "cull: '" + name + "' is not one of none, flat, tree");
 }
 
+Result<boxtree::Orientation> orientation_from(const std::string& name) {
+    if (name == "aligned") return boxtree::Orientation::aligned;
+    if (name == "oriented") return boxtree::Orientation::oriented;
+    if (name == "automatic") return boxtree::Orientation::automatic;
+    return fail(ErrorCode::invalid_argument, kNoItem,
+                "tree: '" + name + "' is not one of aligned, oriented, automatic");
+}
+
 const char* to_string(CullMode mode) {
     return kModes[static_cast<std::size_t>(mode)].first;
 }
@@ -60,7 +68,7 @@ struct Pipeline::State {
           options(the_options),
           executor(the_executor),
           bounds(the_scene, the_options.bounds),
-          world({.pairs = the_options.collide}),
+          world({.pairs = the_options.collide, .tree = the_options.tree}),
           verdicts(the_scene.instance_count(), cull::Verdict::outside) {
         std::sort(movers.begin(), movers.end());
     }

@@ -19,6 +19,7 @@ enum class CullMode : std::uint8_t { none, flat, tree };
 
 [[nodiscard]] Result<CullMode> cull_mode_from(const std::string& name);
 [[nodiscard]] const char* to_string(CullMode mode);
+[[nodiscard]] Result<boxtree::Orientation> orientation_from(const std::string& name);
 
 struct PipelineOptions {
     BoundsKind bounds = BoundsKind::obb_perimeter;
@@ -28,6 +29,7 @@ struct PipelineOptions {
     bool collide = true;
     // Also asks what is not hidden, with occluders found in the scene's meshes: FrameStatistics::occlusion.
     std::optional<OcclusionOptions> occlusion = {};
+    boxtree::Orientation tree = boxtree::Orientation::aligned;
 };
 
 // The layer of the objects that stand for instances; views ask for it.

@@ -21,6 +21,7 @@ namespace crofton::cli {
 [[nodiscard]] std::vector<VerifyRow> common_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> bound_rows(const VerifyOptions& options);
 [[nodiscard]] std::vector<VerifyRow> triangulation_rows(const VerifyOptions& options);
+[[nodiscard]] std::vector<VerifyRow> tree_rows(const VerifyOptions& options);
 
 // Part of verify_lines.
 [[nodiscard]] std::vector<VerifyRow> factor_rows(const VerifyOptions& options);

@@ -93,6 +93,24 @@ void Overlay::draw_bounds(LineList& lines, const Settings& settings, const Loade
     }
 }
 
+namespace {
+
+// The bound of a node's child, along the node's axes.
+Obb bound_of(const boxtree::Structure& structure, boxtree::NodeId id, unsigned lane) {
+    const boxtree::Node& node = structure.nodes()[id];
+    const boxtree::Axes& axes = structure.axes_of(node);
+    Obb box{{node.origin[0], node.origin[1], node.origin[2]}, {}, {}};
+    for (unsigned k = 0; k < 3; ++k) {
+        const glm::dvec3 axis(axes.rows[k][0], axes.rows[k][1], axes.rows[k][2]);
+        box.center += double{node.unit} * boxtree::middle_of(node, lane, k) * axis;
+        box.axes[static_cast<int>(k)] = glm::vec3(axis);
+        box.half_extents[static_cast<int>(k)] = node.unit * static_cast<float>(boxtree::half_of(node, lane, k));
+    }
+    return box;
+}
+
+}  // namespace
+
 void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level) {
     if (tree.structure().nodes().empty()) return;
     legend_.push_back({"bounds of the tree's nodes", kTree});
@@ -111,10 +129,9 @@ void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int
         nodes.swap(next);
     }
     for (const boxtree::NodeId node : nodes)
-        for (unsigned lane = 0; lane < tree.structure().nodes()[node].count; ++lane) {
-            const Aabb bounds = tree.structure().child_bounds(node, lane);
-            if (!bounds.is_empty()) lines.box(obb_of(bounds), kTree);
-        }
+        for (unsigned lane = 0; lane < tree.structure().nodes()[node].count; ++lane)
+            if (boxtree::half_of(tree.structure().nodes()[node], lane, 0) >= 0)
+                lines.box(bound_of(tree.structure(), node, lane), kTree);
 }
 
 void Overlay::draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {

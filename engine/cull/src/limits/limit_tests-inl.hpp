@@ -33,9 +33,9 @@ class LimitTester {
 
     HWY_INLINE void prefetch(boxtree::NodeId node) const { hwy::Prefetch(limits_.radii_below + node); }
 
-    // Children l on of a node. A centre lies in its child's box. 2^-18 of the coordinates covers the roundings of a
-    // gap, 2^-10 those of squares and limits.
-    HWY_INLINE LimitTest test(const boxtree::Node& node, boxtree::NodeId id, std::size_t l) {
+    // Children l on of a node, along its axes. A centre lies in its child's box. 2^-18 of the coordinates covers the
+    // roundings of a gap, 2^-10 those of squares and limits.
+    HWY_INLINE LimitTest test(const boxtree::Node& node, const boxtree::Axes& axes, boxtree::NodeId id, std::size_t l) {
         const DF d;
         const DU du;
         const NodeRows rows(node, l);
@@ -43,8 +43,10 @@ class LimitTester {
         const VF middle[3] = {lower_half(rows.middle_xy), upper_half(rows.middle_xy), lower_half(rows.middle_half_z)};
         const VF half[3] = {lower_half(rows.half_xy), upper_half(rows.half_xy), upper_half(rows.middle_half_z)};
         VF nearest = zero, farthest = zero;
+        const double eye_to_origin[3] = {node.origin[0] - limits_.eye[0], node.origin[1] - limits_.eye[1],
+                                         node.origin[2] - limits_.eye[2]};
         for (unsigned j = 0; j < 3; ++j) {
-            const VF start = hn::Set(d, static_cast<float>(node.origin[j] - limits_.eye[j]));
+            const VF start = hn::Set(d, static_cast<float>(boxtree::along(axes, j, eye_to_origin)));
             const VF offset = hn::Mul(middle[j], unit), reach = hn::Mul(half[j], unit);
             const VF size = hn::Add(hn::Add(hn::Abs(start), hn::Abs(offset)), hn::Abs(reach));
             const VF away = hn::Abs(hn::Add(start, offset)), margin = hn::MulAdd(size, trifle, reach);

@@ -2,6 +2,7 @@
 // A view's planes in the integers of a tree's nodes and leaves.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <crofton/boxtree/layout.hpp>
 
 #include "kernel_view.hpp"
@@ -56,5 +57,38 @@ inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtr
     if (!(std::fabs(plane.offset) <= kMostOffset && plane.slack <= kMostOffset)) return {0, 0x7fffffff};
     return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.slack)};
 }
+
+// The view's normals along turned axes. A plane's value at o + Σ axis k · q[k] is its value at o plus (axis k ·
+// normal) q[k] for each k, whatever the axes: so only the normal is turned. Sums in double round by 2^-51, which the
+// rounding to 2^-14 has room for (boxtree::rounding_of).
+class TurnedPlanes {
+  public:
+    TurnedPlanes(const KernelView& view, const boxtree::Axes* axes) : view_(view), axes_(axes) {}
+
+    // Those of `planes`, as normals along the tree's axes of that index. Good until the next call.
+    const PairPlane* along(std::uint32_t axes, std::uint32_t planes) {
+        if (axes == 0) return view_.pair_planes;
+        if (axes != turned_to_) {
+            turned_to_ = axes;
+            turned_ = 0;
+        }
+        for (std::uint32_t rest = planes & ~turned_; rest; rest &= rest - 1)
+            turn(static_cast<std::uint32_t>(std::countr_zero(rest)));
+        return planes_;
+    }
+
+  private:
+    void turn(std::uint32_t i) {
+        double normal[3];
+        for (unsigned k = 0; k < 3; ++k) normal[k] = boxtree::along(axes_[turned_to_], k, view_.planes[i].normal);
+        planes_[i] = pair_plane_of(normal);
+        turned_ |= 1u << i;
+    }
+
+    const KernelView& view_;
+    const boxtree::Axes* axes_;
+    std::uint32_t turned_to_ = 0, turned_ = 0;
+    PairPlane planes_[KernelView::kMaxPlanes];
+};
 
 }  // namespace crofton::cull

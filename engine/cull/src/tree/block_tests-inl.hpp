@@ -59,7 +59,9 @@ struct NodeSide {
     }
 };
 
-HWY_INLINE NodeTest test_node(const KernelView& view, const boxtree::Node& node, std::uint32_t planes) {
+// `normals` are along the node's axes.
+HWY_INLINE NodeTest test_node(const KernelView& view, const PairPlane* normals, const boxtree::Node& node,
+                              std::uint32_t planes) {
     const DU du;
     NodeTest result;
     result.alive = result.inside = 0;
@@ -74,7 +76,7 @@ HWY_INLINE NodeTest test_node(const KernelView& view, const boxtree::Node& node,
         VU straddled = hn::Set(du, planes);
         for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
-            const NodeSide side(rows, view.pair_planes[i], before[i]);
+            const NodeSide side(rows, normals[i], before[i]);
             alive = hn::AndNot(side.outside, alive);
             const VU bit = hn::Set(du, 1u << i);
             straddled = hn::AndNot(hn::IfThenElseZero(hn::RebindMask(du, side.inside), bit), straddled);

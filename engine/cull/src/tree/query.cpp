@@ -167,9 +167,13 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     grow(visible_.undecided_, tree.boxes().size() + kPadding);
     KernelView view = kernel_view_of(view_);
     bring_before(structure.nodes()[0], view);
-    const TreeKernelInput input{structure.nodes().data(),        structure.leaves().data(),
-                                structure.leaf_ranges().data(),  structure.leaf_counts().data(),
-                                structure.slot_items().data(),   &view,
+    const TreeKernelInput input{structure.nodes().data(),
+                                structure.leaves().data(),
+                                structure.leaf_ranges().data(),
+                                structure.leaf_counts().data(),
+                                structure.slot_items().data(),
+                                structure.axes().data(),
+                                &view,
                                 options_.mode == CullMode::exact};
     const Tasks tasks(input, tree.item_count() >= kParallelItems);
     if (executor.concurrency() > 1 && tasks.count > 1 && !options_.limits)

@@ -88,6 +88,12 @@ class Walk {
         for (std::size_t i = 0; i < count; ++i) start(entries[i]);
         for (std::size_t head = 0; head < nodes_.count; ++head) {
             if (head + kNodesAhead < nodes_.count) prefetch_node(nodes_.children[head + kNodesAhead]);
+            if (head + 2 < nodes_.count) {
+                const char* const axes =
+                    reinterpret_cast<const char*>(in_.axes + in_.nodes[nodes_.children[head + 2]].axes);
+                hwy::Prefetch(axes);
+                hwy::Prefetch(axes + 64);
+            }
             const std::uint32_t planes = nodes_.planes[head];
             const boxtree::Node& node = in_.nodes[nodes_.children[head]];
             if (kCountStatistics) out_.nodes_tested += node.count;
@@ -121,8 +127,9 @@ class Walk {
         const DU du;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
         const BlockPlane plane = block_plane(*in_.view, i, node);
+        const PairPlane normal = turned_.along(node.axes, planes)[i];
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
-            const NodeSide side(NodeRows(node, l), in_.view->pair_planes[i], plane);
+            const NodeSide side(NodeRows(node, l), normal, plane);
             const MF alive =
                 hn::AndNot(side.outside, present(*in_.view, node.layers_every, node.layers_any, node.count, l));
             note<true>(node, l, alive, hn::IfThenZeroElse(hn::RebindMask(du, side.inside), hn::Set(du, planes)));
@@ -131,7 +138,7 @@ class Walk {
 
     HWY_INLINE void visit_crossed(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
-        const NodeTest test = test_node(*in_.view, node, planes);
+        const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
             note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
     }
@@ -139,9 +146,9 @@ class Walk {
     // Limits first: few nodes near one are left when all lanes are dropped.
     HWY_INLINE void visit_limited(const boxtree::Node& node, boxtree::NodeId id, std::uint32_t planes) {
         const DU du;
-        const NodeTest test = test_node(*in_.view, node, planes);
+        const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du)) {
-            const LimitTest limits = limits_.test(node, id, l);
+            const LimitTest limits = limits_.test(node, in_.axes[node.axes], id, l);
             const VU open = hn::IfThenZeroElse(hn::RebindMask(du, limits.kept), hn::Set(du, kLimited));
             note<false>(node, l, hn::AndNot(limits.dropped, hn::RebindMask(DF(), mask_of(test.alive >> l))),
                         hn::Or(hn::Load(du, test.planes + l), open));
@@ -328,6 +335,7 @@ class Walk {
 
     const TreeKernelInput& in_;
     TreeKernelOutput out_;
+    TurnedPlanes turned_{*in_.view, in_.axes};
     List nodes_{work(0), work(1)};     // open, from the first on
     List crossing_{work(2), work(3)};  // leaves that cross one plane
     List cornered_{work(4), work(5)};  // leaves that cross several, fewer and dearer
@@ -360,7 +368,8 @@ std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::
         return 1;
     }
     const boxtree::Node& node = input.nodes[child];
-    const NodeTest test = test_node(*input.view, node, planes);
+    TurnedPlanes turned(*input.view, input.axes);
+    const NodeTest test = test_node(*input.view, turned.along(node.axes, planes), node, planes);
     std::size_t count = 0;
     const std::uint32_t whole = seen(*input.view, node, test.alive & test.inside);
     for (std::uint32_t alive = test.alive; alive; alive &= alive - 1) {

@@ -14,6 +14,7 @@ struct TreeKernelInput {
     const boxtree::LeafRange* ranges;
     const std::uint8_t* leaf_counts;
     const boxtree::ItemId* slot_items;
+    const boxtree::Axes* axes;
     const KernelView* view;
     bool exact;  // boxes that straddle two planes or more may yet be outside: undecided
 };

@@ -57,6 +57,7 @@ class ManyViewsQuery {
                                    tree_.leaf_ranges().data(),
                                    tree_.leaf_counts().data(),
                                    tree_.slot_items().data(),
+                                   tree_.axes().data(),
                                    static_cast<std::uint32_t>(tree_.leaves().size()),
                                    kernel_views,
                                    static_cast<std::uint32_t>(views_.size()),

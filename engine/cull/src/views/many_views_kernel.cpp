@@ -55,6 +55,7 @@ class ManyWalk {
   private:
     HWY_INLINE void walk_nodes(std::uint32_t v) {
         const KernelView& view = in_.views[v];
+        TurnedPlanes turned(view, in_.axes);
         std::size_t size = 1;
         out_.stack[0] = (1u << view.plane_count) - 1;
         while (size > 0) {
@@ -65,13 +66,14 @@ class ManyWalk {
             if (child & boxtree::kLeafBit)
                 note_open(child & ~boxtree::kLeafBit, planes & ~kWhole, v);
             else
-                size = visit_node(v, child, planes & ~kWhole, size);
+                size = visit_node(v, child, planes & ~kWhole, size, turned);
         }
     }
 
-    HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size) {
+    HWY_INLINE std::size_t visit_node(std::uint32_t v, std::uint32_t id, std::uint32_t planes, std::size_t size,
+                                      TurnedPlanes& turned) {
         const boxtree::Node& node = in_.nodes[id];
-        const NodeTest test = test_node(in_.views[v], node, planes);
+        const NodeTest test = test_node(in_.views[v], turned.along(node.axes, planes), node, planes);
         const std::uint32_t whole = seen(in_.views[v], node, test.alive & test.inside);
         if (node.only_leaves) {
             note_leaves(node, test, whole, v);

@@ -13,6 +13,7 @@ struct ManyViewsInput {
     const boxtree::LeafRange* ranges;
     const std::uint8_t* leaf_counts;
     const boxtree::ItemId* slot_items;
+    const boxtree::Axes* axes;
     std::uint32_t leaf_count;
     const KernelView* views;
     std::uint32_t view_count;

@@ -72,7 +72,8 @@ struct PolygonRecord {
 static_assert(sizeof(MeshRecord) == 120 && sizeof(NodeRecord) == 104 && sizeof(PolygonRecord) == 96);
 
 // The scene as of its last update(). Deterministic. Errors: what BoxTree::build refuses; more than 2^32 − 1 name bytes.
-[[nodiscard]] Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor = serial_executor());
+[[nodiscard]] Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor = serial_executor(),
+                                             boxtree::Orientation tree = boxtree::Orientation::aligned);
 
 struct MeshView {
     std::string_view name;

@@ -17,12 +17,18 @@ class Rebuilder;
 class Structure;
 using ItemId = std::uint32_t;
 
+// Along which axes the tree's inner bounds lie: the world's; those along which the bounds below a node have the least
+// perimeters; or those only where the visits that are saved are worth more than turning a view's planes.
+enum class Orientation : std::uint8_t { aligned, oriented, automatic };
+
 struct BuildOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
     // What will move nearly every frame, if known: in a tree of more than 32,768 items it shares leaves with its like,
     // so that frames touch few leaves besides. rebuild_step() finds such items by itself.
     std::span<const ItemId> moving = {};
     std::span<const ItemId> detached = {};  // from the start: see BoxTree::detach
+    // The tree keeps it: rebuild_step() chooses axes anew, insert() takes those that are there.
+    Orientation orientation = Orientation::aligned;
 };
 
 // What deserialise() may take on trust. `contents`: a checksum has shown that serialise() wrote these bytes. Then only
@@ -87,7 +93,7 @@ class BoxTree {
     [[nodiscard]] const Rebuilder& rebuilder() const { return *rebuilder_; }
 
   private:
-    explicit BoxTree(const measure::Criterion& criterion);
+    BoxTree(const measure::Criterion& criterion, Orientation orientation);
     [[nodiscard]] Result<void> check_item(ItemId item) const;
     [[nodiscard]] Result<ItemId> new_item(const Obb& box, std::uint32_t layer_mask);
 

@@ -26,15 +26,30 @@ using Int16x2 = std::uint32_t;
 
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;  // in Node::child: the rest is a LeafId, otherwise a NodeId
 
-// Axis-aligned boxes of up to 16 children: origin + unit · [middle − half, middle + half], rounded outward; both ends
-// fit 16 bits. `unit` is a power of two, so that products with it are exact. An empty child has half = −32767. Layers
-// are read only where the view does not share one with everything below.
+// Axes that bounds are taken along: rows[k] are the world's coordinates of axis k. The world's own are the first of
+// every tree. Others are orthonormal to 2^-48; coordinates along them are known to `rounding` times the sizes of those
+// that they are made of (src/turned_bounds.hpp).
+struct Axes {
+    double rows[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    double rounding = 0.0;
+};
+
+// A vector's coordinate along axis k.
+[[nodiscard]] inline double along(const Axes& axes, unsigned k, const double* vector) {
+    const double* row = axes.rows[k];
+    return row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2];
+}
+
+// Boxes of up to 16 children: origin + Σ axis k · unit · [middle − half, middle + half] of k, rounded outward; both
+// ends fit 16 bits. The axes are the tree's with the index `axes`; the origin is in the world's coordinates. `unit` is
+// a power of two, so that products with it are exact. An empty child has half = −32767. Layers are read only where the
+// view does not share one with everything below.
 // `rounding` is what a plane's value on a child's box may be off by where the plane's normal is in units of 2^-14 (see
 // rounding_of); `per_quantum` units of 2^-14 of a unit are 1.
 struct alignas(64) Node {
     double origin[3];
     float unit;
-    float reach;  // ≥ the farthest |x| + |y| + |z|, relative to the origin, of every child
+    float reach;  // ≥ the farthest |x| + |y| + |z|, relative to the origin and along the axes, of every child
     std::uint32_t count;
     NodeId parent;  // kNone for the root
     std::uint32_t lane_in_parent;
@@ -42,6 +57,7 @@ struct alignas(64) Node {
     std::uint32_t layers_every;  // the AND of layers_all
     float per_quantum;
     float rounding;
+    std::uint32_t axes;
     alignas(64) Int16x2 middle_xy[kWidth];
     Int16x2 middle_half_z[kWidth];  // middle's z, half's z
     Int16x2 half_xy[kWidth];

@@ -15,15 +15,19 @@ struct Topology;
 class Structure {
   public:
     // Of the items that are placed in it, all of them among `items`.
-    Structure(Items& items, const measure::Criterion& criterion) : items_(items), criterion_(criterion) {}
+    Structure(Items& items, const measure::Criterion& criterion, Orientation orientation)
+        : items_(items), criterion_(criterion), orientation_(orientation) {}
     Structure(const Structure&) = delete;
     Structure& operator=(const Structure&) = delete;
 
     [[nodiscard]] const Items& items() const { return items_; }
     [[nodiscard]] const measure::Criterion& criterion() const { return criterion_; }
+    [[nodiscard]] Orientation orientation() const { return orientation_; }
 
     // The root is nodes()[0]; there always is one.
     [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+    [[nodiscard]] std::span<const Axes> axes() const { return axes_; }  // the world's, then others
+    [[nodiscard]] const Axes& axes_of(const Node& node) const { return axes_[node.axes]; }
     [[nodiscard]] std::span<const Leaf> leaves() const { return leaves_; }
     [[nodiscard]] std::span<const ItemId> slot_items() const { return slot_items_; }          // kNone in empty slots
     [[nodiscard]] std::span<const std::uint8_t> leaf_counts() const { return leaf_counts_; }  // leaves()[i].count
@@ -34,8 +38,10 @@ class Structure {
     [[nodiscard]] std::span<const std::uint32_t> item_slots() const { return item_slots_; }  // kNone: in no leaf
     [[nodiscard]] std::uint32_t slot_of(ItemId item) const { return item_slots_[item]; }
     [[nodiscard]] bool contains(ItemId item) const { return item < item_slots_.size() && item_slots_[item] != kNone; }
-    // The bound of child `lane` of a node, as the exact box that the stored numbers stand for, rounded outward.
+    // An axis-aligned box around the bound of child `lane` of a node, rounded outward.
     [[nodiscard]] Aabb child_bounds(NodeId node, unsigned lane) const;
+    // Around a node or leaf, as Node::child names it, along the axes of that index.
+    [[nodiscard]] Aabb bounds_below(std::uint32_t child, std::uint32_t axes) const;
     [[nodiscard]] const ChangeMarks& marks() const { return marks_; }
 
     // Making one: room, then leaves, then nodes, children before parents. Different leaves, and nodes that are not
@@ -91,6 +97,8 @@ class Structure {
 
     Items& items_;
     measure::Criterion criterion_;
+    Orientation orientation_;
+    Vector<Axes> axes_ = Vector<Axes>(1);
     Vector<Node> nodes_;
     Vector<LeafRange> ranges_;
     Vector<NodeRadii> node_radii_;

@@ -26,6 +26,7 @@ struct WorldOptions {
     // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
     std::size_t rebuild_budget = kAutomatic;
     std::uint32_t updates_to_rest = 16;  // without moving, until an object counts as resting again
+    boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree of what rests
 };
 
 // As of the last update.

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Trees whose inner bounds lie along turned axes.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/boxtree/structure.hpp>
+#include <crofton/core/executor.hpp>
+#include <oracle/aged_tree.hpp>
+#include <oracle/tree_contents.hpp>
+#include <oracle/turned_crowd.hpp>
+
+using namespace crofton;
+using boxtree::BoxTree;
+using boxtree::Orientation;
+
+namespace {
+
+std::size_t turned_nodes(const BoxTree& tree) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(tree.structure().nodes(), [](const boxtree::Node& node) { return node.axes != 0; }));
+}
+
+void check_sound(const BoxTree& tree) {
+    const auto valid = tree.validate();
+    INFO((valid ? std::string() : valid.error().message));
+    REQUIRE(valid.has_value());
+    REQUIRE(oracle::holds_all(tree));
+}
+
+// Edges of all children's bounds, along their axes.
+double perimeters(const BoxTree& tree) {
+    double sum = 0.0;
+    for (const boxtree::Node& node : tree.structure().nodes())
+        for (unsigned lane = 0; lane < node.count; ++lane)
+            for (unsigned k = 0; k < 3; ++k)
+                sum += 2.0 * static_cast<double>(node.unit) * boxtree::half_of(node, lane, k);
+    return sum;
+}
+
+BoxTree tree_of(const oracle::Crowd& crowd, Orientation orientation) {
+    auto tree = BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation});
+    REQUIRE(tree.has_value());
+    return std::move(*tree);
+}
+
+}  // namespace
+
+TEST_SUITE("boxtree/oriented") {
+    TEST_CASE("where boxes are turned in groups, turned bounds have less perimeter and hold the boxes exactly") {
+        for (const double offset : {0.0, 1e4, 1e7}) {
+            const oracle::Crowd crowd = oracle::turned_crowd(3000, offset, 1);
+            const BoxTree aligned = tree_of(crowd, Orientation::aligned);
+            for (const Orientation orientation : {Orientation::oriented, Orientation::automatic}) {
+                const BoxTree tree = tree_of(crowd, orientation);
+                CHECK(turned_nodes(tree) > tree.structure().nodes().size() / 2);
+                CHECK(perimeters(tree) < 0.9 * perimeters(aligned));
+                check_sound(tree);
+            }
+            CHECK(turned_nodes(aligned) == 0);
+        }
+    }
+
+    TEST_CASE("where boxes are turned every way, nothing is gained and the automatic kind turns next to nothing") {
+        const oracle::Crowd crowd = oracle::random_crowd(5000, 0.0, 2);
+        const BoxTree tree = tree_of(crowd, Orientation::automatic);
+        CHECK(turned_nodes(tree) * 20 < tree.structure().nodes().size());
+        check_sound(tree);
+    }
+
+    TEST_CASE("sizes from nothing to a galaxy, and places to match, are held") {
+        for (const double scale : {1e-20, 1e-6, 1e9, 1e27}) {
+            oracle::Crowd crowd = oracle::turned_crowd(600, 0.0, 3, scale);
+            crowd.boxes[7].half_extents = glm::vec3(0.0f);
+            check_sound(tree_of(crowd, Orientation::oriented));
+        }
+        oracle::Crowd far = oracle::turned_crowd(600, 1e17, 4);  // less than a step of double apart
+        check_sound(tree_of(far, Orientation::oriented));
+        far.boxes[5].center = glm::dvec3(1e30, -1e30, 1e30);
+        far.boxes[6].half_extents = glm::vec3(1e29f);
+        check_sound(tree_of(far, Orientation::oriented));
+        for (const std::size_t count : {0u, 1u, 16u, 17u, 300u}) {
+            const oracle::Crowd few = oracle::turned_crowd(count, 0.0, 5);
+            CHECK(BoxTree::deserialise(tree_of(few, Orientation::aligned).serialise()).has_value());
+            check_sound(tree_of(few, Orientation::oriented));
+            check_sound(tree_of(few, Orientation::automatic));
+        }
+    }
+
+    TEST_CASE("any sequence of changes and rebuilds leaves bounds that hold all") {
+        oracle::NearMisses random(6);
+        for (const Orientation orientation : {Orientation::oriented, Orientation::automatic}) {
+            oracle::AgedTree aged(oracle::turned_crowd(1500, 0.0, 7), 40.0, orientation);
+            REQUIRE(turned_nodes(aged.tree) > 0);
+            for (int frame = 0; frame < 120; ++frame) {
+                aged.live(random, 40);
+                if (frame % 10 == 0) check_sound(aged.tree);
+            }
+            check_sound(aged.tree);
+        }
+    }
+
+    TEST_CASE("a rebuild in the background chooses the axes that a build chooses, in bounded steps") {
+        const oracle::Crowd crowd = oracle::turned_crowd(6000, 0.0, 8);
+        std::vector<Obb> boxes(crowd.boxes.size());
+        BoxTree tree = *BoxTree::build(boxes, {.orientation = Orientation::oriented});
+        CHECK(turned_nodes(tree) == 0);
+        for (boxtree::ItemId item = 0; item < boxes.size(); ++item)
+            REQUIRE(tree.move(item, crowd.boxes[item]).has_value());
+        tree.refit();
+        int steps = 1;
+        while (!tree.rebuild_step(3000)) ++steps;
+        CHECK(steps > 20);
+        check_sound(tree);
+        CHECK(turned_nodes(tree) > 0);
+        CHECK(perimeters(tree) < 1.02 * perimeters(tree_of(crowd, Orientation::oriented)));
+    }
+
+    TEST_CASE("any number of threads makes the same bytes, and these the same tree") {
+        const oracle::Crowd crowd = oracle::turned_crowd(40000, 0.0, 9, 200.0);
+        const boxtree::BuildOptions options{.orientation = Orientation::automatic};
+        const Vector<std::byte> bytes = BoxTree::build(crowd.boxes, crowd.layers, options)->serialise();
+        for (const unsigned threads : {2u, 5u}) {
+            ThreadPool pool(threads);
+            CHECK(BoxTree::build(crowd.boxes, crowd.layers, options, pool)->serialise() == bytes);
+        }
+        auto back = BoxTree::deserialise(bytes);
+        REQUIRE(back.has_value());
+        CHECK(turned_nodes(*back) > 0);
+        CHECK(back->serialise() == bytes);
+        CHECK(back->structure().orientation() == Orientation::automatic);
+    }
+}
