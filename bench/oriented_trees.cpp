@@ -3,11 +3,7 @@
 // saves in bounds and boxes tested, and in time. usage: bench_oriented [--target=NAME] [COUNT]
 #include <algorithm>
 #include <chrono>
-<<<<<<< HEAD
 #include <crofton/boxtree/box_tree.hpp>
-    == == ==
-    =
->>>>>>> oriented
 #include <crofton/boxtree/structure.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -15,81 +11,81 @@
 #include "simd_target.hpp"
 #include "turned_scenes.hpp"
 
-        namespace {
+namespace {
 
-    using namespace crofton;
-    using boxtree::Orientation;
-    using Clock = std::chrono::steady_clock;
+using namespace crofton;
+using boxtree::Orientation;
+using Clock = std::chrono::steady_clock;
 
-    constexpr Orientation kKinds[3] = {Orientation::aligned, Orientation::oriented, Orientation::automatic};
-    constexpr int kViews = 60, kRepetitions = 60;
+constexpr Orientation kKinds[3] = {Orientation::aligned, Orientation::oriented, Orientation::automatic};
+constexpr int kViews = 60, kRepetitions = 60;
 
-    std::vector<cull::View> views_of(const std::vector<Obb>& boxes, double depth) {
-        Aabb scene;
-        for (const Obb& box : boxes) scene.include(box.center);
-        std::mt19937_64 random(7);
-        const auto number = [&](double low, double high) {
-            return std::uniform_real_distribution<double>(low, high)(random);
-        };
-        std::vector<cull::View> views;
-        for (int i = 0; i < kViews; ++i) {
-            Camera camera;
-            for (int j = 0; j < 3; ++j) camera.position[j] = number(scene.min[j], scene.max[j]);
-            for (int j = 0; j < 3; ++j) camera.forward[j] = j == 1 ? number(-0.3, 0.3) : number(-1, 1);
-            camera.far_distance = depth * glm::length(scene.max - scene.min);
-            views.push_back({*frustum_of(camera)});
+std::vector<cull::View> views_of(const std::vector<Obb>& boxes, double depth) {
+    Aabb scene;
+    for (const Obb& box : boxes) scene.include(box.center);
+    std::mt19937_64 random(7);
+    const auto number = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    std::vector<cull::View> views;
+    for (int i = 0; i < kViews; ++i) {
+        Camera camera;
+        for (int j = 0; j < 3; ++j) camera.position[j] = number(scene.min[j], scene.max[j]);
+        for (int j = 0; j < 3; ++j) camera.forward[j] = j == 1 ? number(-0.3, 0.3) : number(-1, 1);
+        camera.far_distance = depth * glm::length(scene.max - scene.min);
+        views.push_back({*frustum_of(camera)});
+    }
+    return views;
+}
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Tree {
+    boxtree::BoxTree tree;
+    double build_ms = 0.0;
+    double perimeters = 0.0;  // of all bounds: visits below the root, up to a factor
+    std::size_t turned = 0;
+
+    Tree(const std::vector<Obb>& boxes, Orientation orientation) : tree(*boxtree::BoxTree::build({})) {
+        const auto start = Clock::now();
+        tree = *boxtree::BoxTree::build(boxes, {.orientation = orientation});
+        build_ms = milliseconds_since(start);
+        for (const boxtree::Node& node : tree.structure().nodes()) {
+            turned += node.axes != 0;
+            for (unsigned lane = 0; lane < node.count; ++lane)
+                for (unsigned k = 0; k < 3; ++k) perimeters += double{node.unit} * boxtree::half_of(node, lane, k);
         }
-        return views;
     }
+};
 
-    double milliseconds_since(Clock::time_point start) {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    }
+struct Measured {
+    double microseconds = 0.0, tests = 0.0;
+};
 
-    struct Tree {
-        boxtree::BoxTree tree;
-        double build_ms = 0.0;
-        double perimeters = 0.0;  // of all bounds: visits below the root, up to a factor
-        std::size_t turned = 0;
-
-        Tree(const std::vector<Obb>& boxes, Orientation orientation) : tree(*boxtree::BoxTree::build({})) {
-            const auto start = Clock::now();
-            tree = *boxtree::BoxTree::build(boxes, {.orientation = orientation});
-            build_ms = milliseconds_since(start);
-            for (const boxtree::Node& node : tree.structure().nodes()) {
-                turned += node.axes != 0;
-                for (unsigned lane = 0; lane < node.count; ++lane)
-                    for (unsigned k = 0; k < 3; ++k) perimeters += double{node.unit} * boxtree::half_of(node, lane, k);
+// Each tree asks all views in turn, so that none profits from what another has left in the caches.
+void time_views(std::vector<Tree>& trees, const std::vector<cull::View>& views, Measured (&result)[3]) {
+    std::vector<double> least[3];
+    for (auto& times : least) times.assign(views.size(), 1e30);
+    cull::VisibleSet visible;
+    for (int repetition = 0; repetition < kRepetitions; ++repetition)
+        for (int turn = 0; turn < 3; ++turn) {
+            const int k = (turn + repetition) % 3;
+            for (std::size_t v = 0; v < views.size(); ++v) {
+                const auto start = Clock::now();
+                cull::find_visible(trees[static_cast<std::size_t>(k)].tree, views[v], visible,
+                                   {cull::CullMode::exact, cull::ResultOrder::tree});
+                least[k][v] = std::min(least[k][v], 1e3 * milliseconds_since(start));
+                if (repetition == 0)
+                    result[k].tests +=
+                        static_cast<double>(visible.statistics().nodes_tested + visible.statistics().boxes_tested) /
+                        kViews;
             }
         }
-    };
-
-    struct Measured {
-        double microseconds = 0.0, tests = 0.0;
-    };
-
-    // Each tree asks all views in turn, so that none profits from what another has left in the caches.
-    void time_views(std::vector<Tree> & trees, const std::vector<cull::View>& views, Measured(&result)[3]) {
-        std::vector<double> least[3];
-        for (auto& times : least) times.assign(views.size(), 1e30);
-        cull::VisibleSet visible;
-        for (int repetition = 0; repetition < kRepetitions; ++repetition)
-            for (int turn = 0; turn < 3; ++turn) {
-                const int k = (turn + repetition) % 3;
-                for (std::size_t v = 0; v < views.size(); ++v) {
-                    const auto start = Clock::now();
-                    cull::find_visible(trees[static_cast<std::size_t>(k)].tree, views[v], visible,
-                                       {cull::CullMode::exact, cull::ResultOrder::tree});
-                    least[k][v] = std::min(least[k][v], 1e3 * milliseconds_since(start));
-                    if (repetition == 0)
-                        result[k].tests +=
-                            static_cast<double>(visible.statistics().nodes_tested + visible.statistics().boxes_tested) /
-                            kViews;
-                }
-            }
-        for (int k = 0; k < 3; ++k)
-            for (const double time : least[k]) result[k].microseconds += time / kViews;
-    }
+    for (int k = 0; k < 3; ++k)
+        for (const double time : least[k]) result[k].microseconds += time / kViews;
+}
 
 }  // namespace
 

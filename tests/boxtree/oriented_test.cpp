@@ -2,18 +2,14 @@
 // Trees whose inner bounds lie along turned axes.
 #include <doctest/doctest.h>
 #include <algorithm>
-<<<<<<< HEAD
 #include <crofton/boxtree/box_tree.hpp>
-    == == ==
-    =
->>>>>>> oriented
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <oracle/aged_tree.hpp>
 #include <oracle/tree_contents.hpp>
 #include <oracle/turned_crowd.hpp>
 
-        using namespace crofton;
+using namespace crofton;
 using boxtree::BoxTree;
 using boxtree::Orientation;
 

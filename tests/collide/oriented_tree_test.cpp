@@ -2,18 +2,14 @@
 // Rays and bodies against trees whose inner bounds lie along turned axes.
 #include <doctest/doctest.h>
 #include <algorithm>
-<<<<<<< HEAD
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
-    == == ==
-    =
->>>>>>> oriented
 #include <glm/geometric.hpp>
 #include <oracle/turned_crowd.hpp>
 
-        using namespace crofton;
+using namespace crofton;
 using boxtree::Orientation;
 
 TEST_SUITE("collide/oriented trees") {

@@ -2,19 +2,15 @@
 // Views of trees whose inner bounds lie along turned axes: classify's verdicts, box by box.
 #include <doctest/doctest.h>
 #include <algorithm>
-<<<<<<< HEAD
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
-    == == ==
-    =
->>>>>>> oriented
 #include <oracle/aged_tree.hpp>
 #include <oracle/turned_crowd.hpp>
 
-        using namespace crofton;
+using namespace crofton;
 using boxtree::Orientation;
 using cull::CullMode;
 using cull::Verdict;

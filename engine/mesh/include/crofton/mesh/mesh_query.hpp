@@ -4,8 +4,8 @@
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
-#include <glm/vec3.hpp>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <span>
@@ -51,8 +51,9 @@ using TrianglePair = IdPair;
 void intersecting_triangles(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                             Vector<TrianglePair>& pairs, MeshStatistics* statistics = nullptr);
 
-// Where two triangles meet, in a's frame. `normal` is the unit normal of b's triangle, or of a's where b's has none. The
-// segment runs along the cross product of a's and b's normals: counter-clockwise around what lies in both, seen from b.
+// Where two triangles meet, in a's frame. `normal` is the unit normal of b's triangle, or of a's where b's has none.
+// The segment runs along the cross product of a's and b's normals: counter-clockwise around what lies in both, seen
+// from b.
 struct MeshContact {
     TrianglePair triangles;
     SegmentOfContact segment;
