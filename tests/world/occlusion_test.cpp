@@ -164,7 +164,7 @@ TEST_SUITE("world/occlusion") {
         CHECK_FALSE(s.hides());
     }
 
-    TEST_CASE("occluders are given, listed and given again; bad ones are refused by name") {
+    TEST_CASE("occluders are given, listed and given again, and bad ones are refused by name") {
         BehindAWall s;
         const auto found = s.world.occluders_of(s.mesh);
         REQUIRE(found.size() == 1);
