@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How much a file may ask for: what a reader refuses before it takes the memory or the time.
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <crofton/core/error.hpp>
 #include <cstdint>
@@ -31,7 +32,7 @@ class Deadline {
     [[nodiscard]] Result<void> check() const {
         const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
         if (passed.count() <= seconds_) return {};
-        return over_limit("seconds", static_cast<std::uint64_t>(seconds_));
+        return over_limit("seconds", static_cast<std::uint64_t>(std::max(seconds_, 0.0)));
     }
 
   private:
