@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: MIT
+import gc
+import threading
+
+import numpy as np
+import pytest
+
+import crofton
+
+
+def at(x, y, z):
+    matrix = np.eye(4)
+    matrix[:3, 3] = (x, y, z)
+    return matrix
+
+
+@pytest.fixture
+def world():
+    return crofton.World()
+
+
+def test_a_mesh_is_seen_hit_and_touched(world, cube):
+    mesh = world.add_mesh(*cube)
+    near = world.add(mesh=mesh, transform=at(0, 0, -5), user=7)
+    far = world.add(mesh=mesh, transform=at(0.5, 0, -6.5), user=8)
+    world.update()
+    seen = world.view(crofton.Camera())
+    assert seen.users.tolist() == [7, 8] and len(seen) == 2
+    hit = world.raycast((0, 0, 0), (0, 0, -1))
+    assert hit.object == near and hit.user == 7 and hit.t == 4 and hit.point == (0, 0, -4)
+    assert hit.triangle in range(12)
+    assert [h.user for h in world.raycast_all((0, 0, 0), (0, 0, -1))] == [7, 8]
+    (contact,) = world.contacts
+    assert (contact.first.object, contact.second.object) == (near, far)
+    assert contact.phase == "began"
+    world.update()
+    assert world.contacts[0].phase == "stayed"
+    world.remove(far)
+    world.update()
+    assert world.contacts[0].phase == "ended"
+    world.update()
+    assert world.contacts == []
+
+
+@pytest.mark.parametrize("dtype", ["u2", "u4", "i8"])
+@pytest.mark.parametrize("points", ["f4", "f8"])
+def test_meshes_of_any_number_type(world, cube, dtype, points):
+    mesh = world.add_mesh(cube[0].astype(points), cube[1].astype(dtype).reshape(-1, 3))
+    world.add(mesh=mesh)
+    world.update()
+    assert world.raycast((0.2, 0.1, 9), (0, 0, -1)).t == pytest.approx(8)
+
+
+def test_a_mesh_without_indices(world, cube):
+    world.add(mesh=world.add_mesh(cube[0][cube[1]]))
+    world.update()
+    assert world.raycast((0.2, 0.1, 9), (0, 0, -1)).t == pytest.approx(8)
+
+
+def test_vertices_can_move(world, cube):
+    mesh = world.add_mesh(*cube)
+    world.add(mesh=mesh)
+    world.set_vertices(mesh, 2 * cube[0])
+    world.update()
+    assert world.raycast((0.2, 0.1, 9), (0, 0, -1)).t == pytest.approx(7)
+    with pytest.raises(crofton.Error):
+        world.set_vertices(mesh, cube[0][:3])
+
+
+@pytest.mark.parametrize("index", [8, 2**20])
+def test_an_index_out_of_range_is_an_error(world, cube, index):
+    bad = cube[1].copy()
+    bad[5] = index
+    with pytest.raises(crofton.Error):
+        world.add_mesh(cube[0], bad)
+
+
+def test_bounds_of_three_kinds(world):
+    world.add(box=crofton.Box((0, 0, -5), (1, 1, 1)), user=1)
+    world.add(ball=((0, 0, -10), 1.0), user=2)
+    world.add(aligned=((-1, -1, -16), (1, 1, -14)), user=3)
+    world.update()
+    hits = world.raycast_all((0, 0, 0), (0, 0, -1))
+    assert [h.user for h in hits] == [1, 2, 3]
+    assert [h.t for h in hits] == pytest.approx([4, 9, 14])
+    assert hits[1].triangle is None
+
+
+@pytest.mark.parametrize("bound", [{"ball": ((0, 0, 0), -1.0)}, {"aligned": ((1, 0, 0), (0, 1, 1))}, {}], ids=str)
+def test_bounds_that_are_none_are_an_error(world, bound):
+    with pytest.raises(crofton.Error):
+        world.add(**bound)
+    assert len(world) == 0
+
+
+def test_nodes_carry_what_is_below(world, cube):
+    mesh = world.add_mesh(*cube)
+    parent = world.add_node(transform=at(10, 0, 0))
+    child = world.add_node(parent, at(0, 5, 0))
+    thing = world.add(mesh=mesh, node=child, transform=at(0, 0, 1))
+    world.update()
+    assert (world.transform_of(thing) == at(10, 5, 1)).all()
+    world.set_transform(parent, at(-1, 0, 0))
+    world.set_node_transforms([child], at(0, 0, 0)[None])
+    world.update()
+    assert (world.box_of(thing).center == (-1, 0, 1)).all()
+    world.remove(parent)
+    world.update()
+    assert thing not in world and child not in world and mesh in world
+
+
+def test_moves_in_arrays(world, random):
+    boxes = crofton.boxes(random.uniform(-50, 50, (500, 3)), 1)
+    handles = world.add_boxes(boxes, users=np.arange(500) + 1000)
+    world.update()
+    boxes["center"] += 3
+    world.set_boxes(handles, boxes)
+    world.update()
+    seen = world.view(crofton.Camera())
+    assert (seen.ids == crofton.find_visible(crofton.Camera(), boxes)).all()
+    assert (seen.users == seen.ids + 1000).all()
+    assert (seen.handles == handles[seen.ids]).all()
+    assert world.user_of(crofton.ObjectHandle(int(handles[3]["index"]), int(handles[3]["generation"]))) == 1003
+
+
+def test_instances_in_arrays(world, cube):
+    transforms = np.array([at(0, 0, -5 * i) for i in range(1, 6)])
+    handles = world.add_instances(world.add_mesh(*cube), transforms)
+    world.update()
+    assert len(world.view(crofton.Camera())) == 5
+    world.set_transforms(handles, transforms[::-1, :3])
+    world.update()
+    assert world.raycast((0, 0, 0), (0, 0, -1)).object.index == handles[4]["index"]
+
+
+def test_one_bad_box_adds_none(world):
+    boxes = crofton.boxes(np.zeros((5, 3)), 1)
+    boxes["center"][3] = np.nan
+    with pytest.raises(crofton.Error) as raised:
+        world.add_boxes(boxes)
+    assert raised.value.item == 3
+    assert len(world) == 0
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda w, h: w.set_transform(h, at(0, 0, 0)),
+        lambda w, h: w.box_of(h),
+        lambda w, h: w.user_of(h),
+        lambda w, h: w.remove(h),
+        lambda w, h: w.set_hidden(h, True),
+        lambda w, h: w.set_layers(h, 1),
+        lambda w, h: w.set_boxes(h, crofton.Box((0, 0, 0), (1, 1, 1))),
+    ],
+)
+def test_a_stale_handle_is_named(world, call):
+    handle = world.add(box=crofton.Box((0, 0, 0), (1, 1, 1)))
+    world.remove(handle)
+    world.update()
+    assert handle not in world
+    with pytest.raises(crofton.Error) as raised:
+        call(world, handle)
+    assert raised.value.code == "stale_handle"
+
+
+@pytest.mark.parametrize("bad", [None, 5, "object", [1, 2], np.zeros(3)], ids=str)
+def test_what_is_no_handle_is_a_type_error(world, bad):
+    with pytest.raises(TypeError):
+        world.remove(bad)
+
+
+def test_a_node_is_no_mesh(world):
+    with pytest.raises(TypeError, match="mesh"):
+        world.add(mesh=world.add_node())
+
+
+def test_handles_are_values():
+    a = crofton.ObjectHandle(3, 1)
+    assert a == crofton.ObjectHandle(3, 1) and a != crofton.ObjectHandle(3, 2)
+    assert a != crofton.NodeHandle(3, 1)
+    assert len({a, crofton.ObjectHandle(3, 1)}) == 1
+    assert repr(a) == "ObjectHandle(index=3, generation=1)"
+
+
+def test_hidden_and_layered_objects(world):
+    box = crofton.Box((0, 0, -5), (1, 1, 1))
+    first, second = world.add(box=box, layers=1), world.add(box=box, layers=2)
+    world.update()
+    assert len(world.view(crofton.Camera())) == 2
+    assert world.view(crofton.Camera(), layers=2).ids.tolist() == [second.index]
+    world.set_hidden(second, True)
+    world.set_layers([first], 4)
+    world.update()
+    assert world.view(crofton.Camera()).ids.tolist() == [first.index]
+    assert len(world.view(crofton.Camera(), layers=1)) == 0
+
+
+def test_what_hides_behind_a_wall_is_left_out(world, cube):
+    wall = world.add_mesh(cube[0] * [20, 20, 0.1], cube[1], occluders=True)
+    front = world.add(mesh=wall, transform=at(0, 0, -10))
+    behind = world.add(box=crofton.Box((0, 0, -20), (1, 1, 1)))
+    beside = world.add(box=crofton.Box((-3, 0, -5), (1, 1, 1)))
+    world.update()
+    seen = world.view(crofton.Camera(), occlusion=True, size=(320, 180))
+    assert seen.ids.tolist() == sorted([front.index, beside.index])
+    assert seen.occluded_ids.tolist() == [behind.index]
+    assert seen.depth.shape == (180, 320) and (seen.depth > 0).any()
+    assert seen.statistics["occluders_drawn"] >= 1
+    assert world.view(crofton.Camera()).depth is None
+
+
+def test_many_rays_are_as_one(world, random):
+    world.add_boxes(crofton.boxes(random.uniform(-20, 20, (300, 3)), 0.8), users=np.arange(300))
+    world.update()
+    directions = random.normal(size=(100, 3))
+    many = world.raycast_many(np.zeros((1, 3)), directions)
+    for record, direction in zip(many, directions):
+        one = world.raycast((0, 0, 0), direction)
+        assert bool(record["hit"]) == (one is not None)
+        if one:
+            assert (record["t"], record["user"], record["index"]) == (one.t, one.user, one.object.index)
+        else:
+            assert np.isinf(record["t"])
+
+
+@pytest.mark.parametrize("ray", [((0, 0, 0), (0, 0, 0)), ((np.nan, 0, 0), (1, 0, 0)), ((0, 0, 0), (1, 0, 0), -1.0)], ids=str)
+def test_a_ray_that_is_none_is_an_error(world, ray):
+    with pytest.raises(crofton.Error):
+        world.raycast(*ray)
+
+
+def test_overlap_and_closest(world):
+    handle = world.add(box=crofton.Box((5, 0, 0), (1, 1, 1)))
+    world.update()
+    for shape in ({"box": crofton.Box((3.5, 0, 0), (1, 1, 1))}, {"ball": ((3, 0, 0), 1.0)},
+                  {"capsule": ((0, 0, 0), (3.5, 0, 0), 0.6)}):
+        assert world.overlap(**shape)["index"].tolist() == [handle.index]
+    assert len(world.overlap(ball=((0, 0, 0), 1.0))) == 0
+    nearest = world.closest(100.0, ball=((0, 0, 0), 1.0))
+    assert nearest.object == handle and nearest.distance == pytest.approx(3)
+    assert nearest.on_object == pytest.approx((4, 0, 0))
+    assert world.closest(2.0, ball=((0, 0, 0), 1.0)) is None
+    with pytest.raises(TypeError):
+        world.overlap()
+
+
+def test_pairs_are_those_of_the_broadphase(random):
+    boxes = crofton.boxes(random.uniform(-10, 10, (200, 3)), 1)
+    world = crofton.World(contacts=False)
+    world.add_boxes(boxes)
+    world.update()
+    broadphase = crofton.Broadphase()
+    broadphase.update(boxes)
+    assert (world.pairs == broadphase.pairs).all()
+
+
+def test_answers_outlive_the_world(cube):
+    world = crofton.World()
+    world.add(mesh=world.add_mesh(*cube), transform=at(0, 0, -5), user=9)
+    world.update()
+    seen, contacts = world.view(crofton.Camera()), world.contacts
+    del world
+    gc.collect()
+    assert seen.users.tolist() == [9] and contacts == []
+
+
+def test_threads_ask_while_one_changes(random):
+    boxes = crofton.boxes(random.uniform(-50, 50, (2000, 3)), 1)
+    world = crofton.World(pairs=False)
+    handles = world.add_boxes(boxes)
+    world.update()
+    stop, wrong = threading.Event(), []
+
+    def ask():
+        while not stop.is_set():
+            seen = world.view(crofton.Camera())
+            if len(seen) != len(set(seen.ids.tolist())):
+                wrong.append(len(seen))
+
+    threads = [threading.Thread(target=ask) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for step in range(60):
+        boxes["center"] += random.normal(size=(2000, 3))
+        world.set_boxes(handles, boxes)
+        world.update()
+        if step % 10 == 9:
+            gc.collect()
+    stop.set()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+    assert (world.view(crofton.Camera()).ids == crofton.find_visible(crofton.Camera(), boxes)).all()
+
+
+def test_more_pairs_than_allowed_is_an_error():
+    world = crofton.World(max_pairs=10)
+    world.add_boxes(crofton.boxes(np.zeros((30, 3)), 1))
+    with pytest.raises(crofton.Error):
+        world.update()
+    assert len(world.pairs) == 0
+
+
+def test_kinds_of_trees():
+    for tree in ("aligned", "oriented", "automatic"):
+        crofton.World(tree=tree).update()
+    with pytest.raises(crofton.Error):
+        crofton.World(tree="round")
+
+
+@pytest.mark.parametrize("matrix", [np.eye(3), np.zeros((2, 4)), None, "matrix"], ids=str)
+def test_what_is_no_matrix_is_a_type_error(world, matrix):
+    with pytest.raises(TypeError):
+        world.add_node(transform=5 if matrix is None else matrix)
+
+
+@pytest.mark.parametrize("entry", [np.nan, np.inf, 1e300])
+def test_a_matrix_with_a_bad_number_is_an_error(world, entry):
+    matrix = np.eye(4)
+    matrix[0, 1] = entry
+    with pytest.raises(crofton.Error):
+        world.add_node(transform=matrix)
+
+
+def test_a_projective_matrix_is_an_error(world):
+    matrix = np.eye(4)
+    matrix[3, 0] = 1
+    with pytest.raises(crofton.Error):
+        world.add_node(transform=matrix)
