@@ -6,7 +6,7 @@
 
 namespace {
 
-constexpr const char* kPeers[] = {"/fcl", "/bullet", "/embree", "/ode"};
+constexpr const char* kPeers[] = {"/fcl", "/bullet", "/embree 8", "/embree 16", "/embree", "/ode"};
 
 class Ratios : public crofton::bench::LeastTimes {
   public:

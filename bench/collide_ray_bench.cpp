@@ -10,8 +10,10 @@
 #include <map>
 #include <random>
 #include <string>
+#include <string_view>
 
 #include "collide_inputs.hpp"
+#include "simd_target.hpp"
 
 #if defined(CROFTON_HAVE_EMBREE)
 #include <embree3/rtcore.h>
@@ -58,6 +60,18 @@ std::vector<Ray> camera_rays(const TriangleMesh& mesh, std::size_t count) {
     return rays;
 }
 
+// The same picture in tiles of 4 × 4 pixels, so that each sixteen lie together.
+std::vector<Ray> tiled_rays(const TriangleMesh& mesh, std::size_t count) {
+    const std::vector<Ray> lines = camera_rays(mesh, count);
+    const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count))) / 4 * 4;
+    const auto width = static_cast<std::size_t>(std::sqrt(static_cast<double>(lines.size())));
+    std::vector<Ray> rays;
+    for (std::size_t y = 0; y < side; y += 4)
+        for (std::size_t x = 0; x < side; x += 4)
+            for (std::size_t i = 0; i < 16; ++i) rays.push_back(lines[(y + i / 4) * width + x + i % 4]);
+    return rays;
+}
+
 // Those of random directions that leave from the sphere around the mesh and pass it by.
 std::vector<Ray> missing_rays(const TriangleMesh& mesh, std::size_t count) {
     std::vector<Ray> rays = random_rays(mesh, count);
@@ -69,7 +83,11 @@ using RayMaker = std::vector<Ray> (*)(const TriangleMesh&, std::size_t);
 constexpr struct {
     const char* name;
     RayMaker make;
-} kKinds[] = {{"random", random_rays}, {"diffuse", diffuse_rays}, {"camera", camera_rays}, {"missing", missing_rays}};
+} kKinds[] = {{"random", random_rays},
+              {"diffuse", diffuse_rays},
+              {"camera", camera_rays},
+              {"tiles", tiled_rays},
+              {"missing", missing_rays}};
 
 const TriangleMesh& mesh_of(const char* name) {
     static std::map<std::string, TriangleMesh> meshes;
@@ -104,6 +122,18 @@ void single_rays(benchmark::State& state, const char* name, RayMaker make, std::
     count_rays(state, rays.size(), hits);
 }
 
+// All at once, beside Embree's packets of 8 and 16.
+void many_rays(benchmark::State& state, const char* name, RayMaker make, std::size_t count) {
+    const mesh::MeshTree* const tree = tree_of(name, true);
+    if (tree == nullptr) return state.SkipWithError("shared data is absent");
+    const auto rays = make(mesh_of(name), count);
+    std::vector<std::optional<mesh::RayHit>> found(rays.size());
+    for (auto _ : state) mesh::raycast(rays, *tree, found);
+    int hits = 0;
+    for (const auto& hit : found) hits += hit.has_value();
+    count_rays(state, rays.size(), hits);
+}
+
 #if defined(CROFTON_HAVE_EMBREE)
 
 RTCScene embree_scene(const char* name) {
@@ -111,7 +141,9 @@ RTCScene embree_scene(const char* name) {
     const auto [place, is_new] = scenes.try_emplace(name);
     if (!is_new) return place->second;
     const TriangleMesh& mesh = mesh_of(name);
-    static const RTCDevice device = rtcNewDevice("threads=1");
+    // On the instruction set that ours is restricted to.
+    static const bool avx2 = std::string_view(target_in_use()) == "AVX2";
+    static const RTCDevice device = rtcNewDevice(avx2 ? "threads=1,isa=avx2" : "threads=1");
     const RTCScene scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -158,6 +190,56 @@ void embree_rays(benchmark::State& state, const char* name, RayMaker make, std::
     count_rays(state, rays.size(), hits);
 }
 
+template <int Width>
+struct EmbreePacket;
+template <>
+struct EmbreePacket<8> {
+    using Type = RTCRayHit8;
+    static void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context, Type* rays) {
+        rtcIntersect8(valid, scene, context, rays);
+    }
+};
+template <>
+struct EmbreePacket<16> {
+    using Type = RTCRayHit16;
+    static void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context, Type* rays) {
+        rtcIntersect16(valid, scene, context, rays);
+    }
+};
+
+template <int Width>
+void embree_packets(benchmark::State& state, const char* name, RayMaker make, std::size_t count, bool coherent) {
+    if (mesh_of(name).indices.empty()) return state.SkipWithError("shared data is absent");
+    const RTCScene scene = embree_scene(name);
+    const auto rays = make(mesh_of(name), count);
+    int hits = 0;
+    for (auto _ : state) {
+        hits = 0;
+        for (std::size_t begin = 0; begin < rays.size(); begin += Width) {
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+            typename EmbreePacket<Width>::Type query;
+            alignas(64) int valid[Width];
+            for (int i = 0; i < Width; ++i) {
+                const std::size_t r = begin + static_cast<std::size_t>(i);
+                valid[i] = r < rays.size() ? -1 : 0;
+                const Ray& ray = rays[r < rays.size() ? r : begin];
+                query.ray.org_x[i] = float(ray.origin.x), query.ray.org_y[i] = float(ray.origin.y);
+                query.ray.org_z[i] = float(ray.origin.z), query.ray.tnear[i] = 0.0f;
+                query.ray.dir_x[i] = float(ray.direction.x), query.ray.dir_y[i] = float(ray.direction.y);
+                query.ray.dir_z[i] = float(ray.direction.z), query.ray.time[i] = 0.0f;
+                query.ray.tfar[i] = INFINITY, query.ray.mask[i] = ~0u;
+                query.ray.id[i] = query.ray.flags[i] = 0;
+                query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            }
+            EmbreePacket<Width>::intersect(valid, scene, &context, &query);
+            for (int i = 0; i < Width; ++i) hits += valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+    count_rays(state, rays.size(), hits);
+}
+
 #endif
 
 void ray_benchmarks() {
@@ -173,6 +255,18 @@ void ray_benchmarks() {
                     ->Unit(benchmark::kMicrosecond);
 #if defined(CROFTON_HAVE_EMBREE)
                 benchmark::RegisterBenchmark((name + "embree").c_str(), embree_rays, mesh, kind.make, count)
+                    ->Unit(benchmark::kMicrosecond);
+#endif
+                const std::string many = "many " + name;
+                benchmark::RegisterBenchmark((many + "crofton").c_str(), many_rays, mesh, kind.make, count)
+                    ->Unit(benchmark::kMicrosecond);
+#if defined(CROFTON_HAVE_EMBREE)
+                const bool coherent = kind.make == camera_rays || kind.make == tiled_rays;
+                benchmark::RegisterBenchmark((many + "embree 8").c_str(), embree_packets<8>, mesh, kind.make, count,
+                                             coherent)
+                    ->Unit(benchmark::kMicrosecond);
+                benchmark::RegisterBenchmark((many + "embree 16").c_str(), embree_packets<16>, mesh, kind.make, count,
+                                             coherent)
                     ->Unit(benchmark::kMicrosecond);
 #endif
             }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -178,6 +179,77 @@ TEST_SUITE("mesh/ray") {
         }
         CHECK(hits > 1000);
         CHECK(mesh::MeshTree().prepare_rays().has_value());  // of no triangles
+    }
+
+    // Rays of one place: into a narrow cone, a wider one, everywhere; and each from elsewhere.
+    TEST_CASE("many rays at once are answered as one by one, whether they lie together or not") {
+        std::mt19937_64 random(31);
+        TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 60, 40);
+        for (const float shift : {0.0f, 3e4f}) {
+            for (glm::vec3& p : mesh.positions) p.x += shift;
+            const auto plain = mesh::MeshTree::build(mesh), prepared = mesh::MeshTree::build(mesh, {.rays = true});
+            std::vector<std::optional<RayHit>> hits;
+            int met = 0, missed = 0;
+            for (int trial = 0; trial < 1500; ++trial) {
+                const double cone = std::pow(10.0, -static_cast<double>(trial % 5));
+                const double spread = trial % 3 == 0 ? 0.0 : 0.1 * cone;
+                const std::size_t count = 1 + random() % 40;
+                const glm::dvec3 eye = glm::dvec3(shift, 0, 0) + 4.0 * random_vector(random);
+                const glm::dvec3 way = vertex(mesh, random() % mesh.triangle_count(), 0) - eye;
+                std::vector<Ray> rays;
+                for (std::size_t i = 0; i < count; ++i) {
+                    Ray ray{eye + spread * random_vector(random), way + cone * random_vector(random)};
+                    // Of any length, along an axis, at a vertex, of a length that ends near the surface.
+                    if (trial % 4 == 1) ray.direction *= std::pow(10.0, static_cast<int>(random() % 3) - 1);
+                    if (trial % 4 == 2) ray.direction[static_cast<int>(random() % 3)] = 0.0;
+                    if (trial % 7 == 3) ray.direction = vertex(mesh, random() % mesh.triangle_count(), 0) - ray.origin;
+                    if (trial % 4 == 3) ray.max_t = 0.9 + 0.1 * static_cast<double>(random() % 4);
+                    if (trial % 11 == 4 && i % 5 == 2) ray.max_t = -1.0;
+                    if (trial % 11 == 5 && i % 5 == 3) ray.direction.y = std::numeric_limits<double>::quiet_NaN();
+                    if (trial % 11 == 6 && i % 5 == 1) ray.direction = glm::dvec3(0.0);
+                    rays.push_back(ray);
+                }
+                for (const auto* tree : {&*plain, &*prepared}) {
+                    hits.assign(count + 1, RayHit{-7.0, 7u});
+                    raycast(rays, *tree, hits);
+                    for (std::size_t i = 0; i < count; ++i) {
+                        const auto alone = raycast(rays[i], *plain);
+                        CHECK(are_same(hits[i], alone));
+                        ++(alone ? met : missed);
+                    }
+                    CHECK(are_same(hits[count], RayHit{-7.0, 7u}));  // of no ray
+                }
+            }
+            CHECK(met > 5000);
+            CHECK(missed > 5000);
+        }
+        raycast(std::span<const Ray>(), mesh::MeshTree(), std::span<std::optional<RayHit>>());
+        const std::vector<Ray> same(20, Ray{{0.0, 0.0, -5.0}});
+        std::vector<std::optional<RayHit>> none(20, RayHit{});
+        raycast(same, mesh::MeshTree(), none);
+        for (const auto& hit : none) CHECK_FALSE(hit.has_value());
+        CHECK_FALSE(raycast(same[0], mesh::MeshTree()).has_value());
+        CHECK_FALSE(hits_any(same[0], mesh::MeshTree()));
+    }
+
+    TEST_CASE("packets through vertices and edges: as alone, on every instruction set") {
+        const TriangleMesh mesh = wavy_torus(1.0, 0.4, 0.2, 90, 60);
+        const auto tree = mesh::MeshTree::build(mesh, {.rays = true});
+        const glm::dvec3 eye(0.3, 0.4, 6.0);
+        std::vector<Ray> rays;
+        for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+            for (const double along : {0.0, 0.5, 1.0}) {
+                const glm::dvec3 a = vertex(mesh, t, 0), b = vertex(mesh, t, 1);
+                rays.push_back({eye, a + along * (b - a) - eye});
+            }
+        std::vector<std::optional<RayHit>> alone, hits(rays.size());
+        for (const Ray& ray : rays) alone.push_back(raycast(ray, *tree));
+        for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+            hwy::SetSupportedTargetsForTest(rest & -rest);
+            raycast(rays, *tree, hits);
+            CHECK(std::equal(hits.begin(), hits.end(), alone.begin(), are_same));
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 
     TEST_CASE("a closed mesh has no leaks: rays from inside always hit") {

@@ -68,43 +68,63 @@ double power_of_two(double x) {
     return std::min(std::max(power, 0x1p-1000), 0x1p1000);
 }
 
+// validate(ray) without the words.
+bool is_valid(const Ray& ray) {
+    const glm::dvec3 sum = ray.origin + ray.direction;
+    return std::isfinite(sum.x + sum.y + sum.z) && glm::dot(ray.direction, ray.direction) > 0.0 && ray.max_t >= 0.0;
+}
+
 RayAnswer trace(const Ray& ray, const mesh::MeshTree& mesh, bool any) {
+    if (mesh.triangle_count() == 0) return {};
+    const RayQuery query = query_of(ray, mesh, any);
+    return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) { return line_meets(ray, mesh, leaf, lane); });
+}
+
+}  // namespace
+
+// Without a branch: what rays are like cannot be predicted.
+RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any) {
     RayQuery query;
     const glm::dvec3 size = glm::abs(ray.direction);
     query.scale = power_of_two(std::max({size.x, size.y, size.z}));
     const double per_scale = 1.0 / query.scale;
+    float along[3], reach[3];
     double far = 0.0;
     for (int i = 0; i < 3; ++i) {
         query.origin[i] = ray.origin[i];
         query.direction[i] = ray.direction[i];
         query.start[i] = static_cast<float>(ray.origin[i]);
-        const auto along = static_cast<float>(ray.direction[i] * per_scale);
         // A component of 0 would make 0 · infinity; this one bends the ray by less than its rounding.
-        query.direction_f[i] = std::abs(along) < 1e-18f ? std::copysign(1e-18f, along) : along;
-        query.inverse[i] = 1.0f / query.direction_f[i];
+        const auto exact = static_cast<float>(ray.direction[i] * per_scale);
+        reach[i] = std::max(std::abs(exact), 1e-18f);
+        query.direction_f[i] = along[i] = std::copysign(reach[i], exact);
+        query.inverse[i] = 1.0f / along[i];
         far = std::max(far, std::abs(ray.origin[i]));
     }
-    query.axis[2] = 0;
-    for (std::uint32_t i = 1; i < 3; ++i)
-        if (std::abs(query.direction_f[i]) > std::abs(query.direction_f[query.axis[2]])) query.axis[2] = i;
+    const auto y_above_x = static_cast<std::uint32_t>(reach[1] > reach[0]);
+    const auto z_above_both = static_cast<std::uint32_t>(reach[2] > std::max(reach[0], reach[1]));
+    const std::uint32_t z = z_above_both * 2u + (1u - z_above_both) * y_above_x;
+    constexpr std::uint32_t kAfter[] = {0, 1, 2, 0, 1};
+    query.axis[2] = z;
     for (std::uint32_t k = 0; k < 2; ++k) {
-        query.axis[k] = (query.axis[2] + 1 + k) % 3;
-        query.shear[k] = query.direction_f[query.axis[k]] * query.inverse[query.axis[2]];
+        query.axis[k] = kAfter[z + 1 + k];
+        query.shear[k] = along[query.axis[k]] * query.inverse[z];
     }
     query.max_t = ray.max_t;
     // Rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any point the mesh can
     // reach.
     query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
-    query.nodes = mesh.parts().ray_nodes.data();
-    query.mesh_nodes = mesh.parts().nodes.data();
-    query.leaves = mesh.parts().leaves.data();
+    const MeshParts& parts = mesh.parts();
+    query.nodes = parts.ray_nodes.data();
+    query.mesh_nodes = parts.nodes.data();
+    query.leaves = parts.leaves.data();
     query.any = any;
-    return trace(query, [&](std::uint32_t leaf, std::uint32_t lane) {
-        return line_meets(ray, triangle_of(mesh.parts().leaves[leaf], lane));
-    });
+    return query;
 }
 
-}  // namespace
+bool line_meets(const Ray& ray, const MeshTree& mesh, std::uint32_t leaf, std::uint32_t lane) {
+    return line_meets(ray, triangle_of(mesh.parts().leaves[leaf], lane));
+}
 
 std::optional<double> entry_of(const Ray& ray, const Obb& box) {
     const glm::dvec3 offset = ray.origin - box.center;
@@ -141,14 +161,14 @@ std::optional<double> raycast(const Ray& ray, const Triangle& triangle) {
 }
 
 std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh) {
-    if (!validate(ray)) return std::nullopt;
+    if (!is_valid(ray)) return std::nullopt;
     const RayAnswer answer = trace(ray, mesh, false);
     if (!answer.hit) return std::nullopt;
     return RayHit{answer.t, answer.triangle};
 }
 
 bool hits_any(const Ray& ray, const mesh::MeshTree& mesh) {
-    return validate(ray).has_value() && trace(ray, mesh, true).hit;
+    return is_valid(ray) && trace(ray, mesh, true).hit;
 }
 
 }  // namespace crofton::mesh

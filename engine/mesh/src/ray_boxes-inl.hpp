@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// One ray through a hierarchy of boxes. Included once per instruction set.
+#if defined(CROFTON_MESH_RAY_BOXES) == defined(HWY_TARGET_TOGGLE)
+#ifdef CROFTON_MESH_RAY_BOXES
+#undef CROFTON_MESH_RAY_BOXES
+#else
+#define CROFTON_MESH_RAY_BOXES
+#endif
+
+#include <hwy/highway.h>
+
+#include "ray_leaf-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace crofton::mesh::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The hierarchy of aligned boxes, grown by the slop: for each axis where the ray meets the nearer face and the farther
+// one, seen from its start. The parameter is a fused or plain product less one made beforehand: what that one's
+// rounding does is to move a face by 2^-24 of the start, for which the slop has room.
+class AlignedBoxes {
+  public:
+    using Node = BoxNode;
+    static constexpr std::uint32_t kWidth = kBoxNodeWidth;
+
+    HWY_INLINE explicit AlignedBoxes(const RayQuery& q) : nodes_(q.nodes) {
+        const D d;
+        for (int i = 0; i < 3; ++i) {
+            const bool backward = q.direction_f[i] < 0.0f;
+            const float slop = backward ? -q.slop : q.slop;
+            near_start_[i] = hn::Set(d, (q.start[i] + slop) * q.inverse[i]);
+            far_start_[i] = hn::Set(d, (q.start[i] - slop) * q.inverse[i]);
+            inverse_[i] = hn::Set(d, q.inverse[i]);
+            near_[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
+            far_[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);
+        }
+    }
+    HWY_INLINE const Node& node(std::uint32_t index) const { return nodes_[index]; }
+
+    // The lanes that are met before `limit`, and where.
+    HWY_INLINE std::uint32_t entries(const Node& node, float limit, float* entry) const {
+        const D d;
+        std::uint32_t lanes = 0;
+        for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
+            V first = hn::Zero(d), last = hn::Set(d, limit);
+            for (int i = 0; i < 3; ++i) {
+                const V near = hn::Load(d, node.bounds[near_[i]] + l), far = hn::Load(d, node.bounds[far_[i]] + l);
+                first = hn::Max(first, hn::MulSub(near, inverse_[i], near_start_[i]));
+                last = hn::Min(last, hn::MulSub(far, inverse_[i], far_start_[i]));
+            }
+            // The reciprocals and the products are within 3 · 2^-24 each.
+            hn::Store(first, d, entry + l);
+            lanes |= bits_of(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
+        }
+        return lanes;
+    }
+
+  private:
+    using D = hn::CappedTag<float, kWidth>;
+    using V = hn::Vec<D>;
+    const Node* nodes_;
+    V near_start_[3], far_start_[3], inverse_[3];
+    std::size_t near_[3], far_[3];  // rows of BoxNode::bounds
+};
+
+// A child, and where the ray comes to it.
+struct Step {
+    std::uint32_t child;
+    float entry;
+};
+
+// The nearest of the children that are met; the others go to the stack, the nearest of them on top. Most nodes have one
+// or two: these take no loop, whose number of rounds could not be predicted.
+template <class Node>
+HWY_INLINE std::uint32_t descend(const Node& node, std::uint32_t lanes, const float* entry, Step*& top) {
+    const auto next = [&]() HWY_ATTR {
+        const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+        lanes &= lanes - 1;
+        return Step{node.child[lane], entry[lane]};
+    };
+    const Step one = next();
+    if (lanes == 0) return one.child;
+    const Step two = next();
+    const bool ordered = one.entry <= two.entry;
+    Step nearest = ordered ? one : two;
+    Step* const base = top;
+    *top++ = ordered ? two : one;
+    while (lanes != 0) {
+        Step step = next();
+        if (step.entry < nearest.entry) std::swap(step, nearest);
+        Step* place = top++;
+        for (; place > base && place[-1].entry < step.entry; --place) *place = place[-1];
+        *place = step;
+    }
+    return nearest.child;
+}
+
+// The nearest hit below `child`, if it comes before `answer`; else that.
+template <class Boxes>
+HWY_INLINE RayAnswer trace_below(const RayQuery& q, std::uint32_t child, RayAnswer answer, LineTest line_meets) {
+    Step stack[8 * 64];  // BoxHierarchy::kWidth · kMaxDepth; a mesh tree's own needs 15 · 7
+    Step* top = stack;
+    const Boxes boxes(q);
+    float limit = limit_of(q, answer.t);
+    for (;;) {
+        if (!(child & mesh::kMeshLeaf)) {
+            HWY_ALIGN float entry[Boxes::kWidth];
+            const auto& node = boxes.node(child);
+            const std::uint32_t lanes = boxes.entries(node, limit, entry);
+            if (lanes != 0) {
+                child = descend(node, lanes, entry, top);
+                continue;
+            }
+        } else if (trace_leaf(q, child & ~mesh::kMeshLeaf, limit, line_meets, answer)) {
+            if (q.any) return answer;
+            limit = limit_of(q, answer.t);
+        }
+        do {
+            if (top == stack) return answer;
+            --top;
+        } while (top->entry > limit);
+        child = top->child;
+    }
+}
+
+}  // namespace crofton::mesh::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
