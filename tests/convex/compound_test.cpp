@@ -145,7 +145,8 @@ TEST_SUITE("convex/compound") {
         for (int round = 0; round < 100; ++round) {
             const Tree a = random_tree(random, 6, 2), b = random_tree(random, 5, 1);
             const Body body_a = Body::compound(*a.compound), body_b = Body::compound(*b.compound);
-            const RigidTransform pose_a{random.rotation(), {}}, pose_b{random.rotation(), 3.0 * random.direction()};
+            const RigidTransform pose_a{random.rotation(), {}},
+                pose_b{random.rotation(), random.number(1, 2.5) * random.direction()};
             const Motion fly{-2.0 * pose_b.translation, {}, {}};
             bool meets = false;
             double least = HUGE_VAL, first = 1.0;

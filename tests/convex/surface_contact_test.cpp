@@ -168,4 +168,35 @@ TEST_SUITE("convex/surface_contact") {
         }
         CHECK(kept >= 0.99 * all);
     }
+
+    TEST_CASE("tracked points keep the caller's numbers while their ids stay, and those that go are counted") {
+        const Body floor = Body::box({9, 1, 9}).value(), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        const RigidTransform still = at({});
+        Manifolds found;
+        PairCache cache;
+        Vector<TrackedPoint> points;
+        const auto step = [&](const RigidTransform& pose) {
+            contact_manifolds({floor, still}, {box, pose}, {}, found, &cache);
+            return track(found.all(), points);
+        };
+        CHECK(step(at({0, 1.49, 0})) == 0);
+        REQUIRE(points.size() == 4);
+        for (std::size_t i = 0; i < 4; ++i) {
+            CHECK(points[i].began);
+            CHECK(points[i].memory[0] == 0.0f);
+            points[i].memory[0] = static_cast<float>(points[i].contact.on_b.index) + 1.0f;
+        }
+        CHECK(step(at({0.3, 1.495, -0.1})) == 0);
+        REQUIRE(points.size() == 4);
+        for (const TrackedPoint& p : points) {
+            CHECK_FALSE(p.began);
+            CHECK(p.memory[0] == static_cast<float>(p.contact.on_b.index) + 1.0f);
+        }
+        // Over the floor's edge two corners leave it: their points end, and new ones begin on the edge.
+        CHECK(step(at({9.0, 1.49, 0})) == 2);
+        REQUIRE(points.size() == 4);
+        CHECK(std::count_if(points.begin(), points.end(), [](const TrackedPoint& p) { return p.began; }) == 2);
+        CHECK(step(at({0, 5, 0})) == 4);
+        CHECK(points.empty());
+    }
 }

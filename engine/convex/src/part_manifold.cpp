@@ -68,10 +68,10 @@ class ManifoldFinder {
         all_points_.max_points = 8;
     }
 
-    void run(const Placed& a, const Placed& b) {
+    void run(const Placed& a, const Placed& b, PairCache* cache) {
         found_.all_.clear();
         if (a.body.is_convex() && b.body.is_convex()) {
-            const Manifold m = contact_manifold(a, b, options_);
+            const Manifold m = contact_manifold(a, b, options_, cache);
             if (m.count > 0) found_.all_.push_back(m);
             return;
         }
@@ -167,8 +167,9 @@ class ManifoldFinder {
     Manifolds& found_;
 };
 
-void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found) {
-    ManifoldFinder(options, found).run(a, b);
+void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
+                       PairCache* cache) {
+    ManifoldFinder(options, found).run(a, b, cache);
 }
 
 Manifold deepest_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options) {

@@ -136,11 +136,23 @@ class Manifolds {
 // would point into the surface beside it, the triangle pushes along its face's. So what slides over a floor of many
 // triangles meets the floor alone. Neighbours are triangles of the same body that share vertices of equal position.
 // Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls; else the
-// middle of the bounds). No allocation once `found` has seen as many parts.
-void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found);
+// middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many parts.
+void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
+                       PairCache* cache = nullptr);
 
 // Replaces `parts` by the parts of a body that may be within `margin` ≥ 0 of another: all that are, and some more.
 void parts_near(const Placed& body, const Placed& other, double margin, Vector<Part>& parts);
+
+// What a pair's contact points are from step to step.
+struct TrackedPoint {
+    ContactPoint contact;
+    glm::dvec3 normal{0.0};  // its manifold's
+    bool began = true;       // its id was not there in the step before
+    float memory[4] = {};    // the caller's, as impulses for a warm start: 0 when the point begins, kept while it stays
+};
+// Replaces `points`, of the step before, by those of the manifolds; of the same id they keep their memory. Returns how
+// many have ended. Allocates nothing once `points` has room for two steps.
+std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& points);
 
 // When will two moving bodies first touch?
 
