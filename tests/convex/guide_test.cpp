@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <crofton/convex/query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
 #include <cstdio>
 #include <vector>
 
@@ -41,6 +42,31 @@ int drop(const std::vector<glm::vec3>& points) {
     return mass > 0.0 && impact->result == convex::CastResult::hit ? contact.count : -1;
 }
 
+int rest(const crofton::TriangleMesh& level, const std::vector<float>& heights,
+         const std::vector<std::uint8_t>& materials, const crofton::convex::Body& crate) {
+    using namespace crofton;
+    const RigidTransform here, place{glm::dmat3(1.0), {4.0, 0.99, 4.0}};
+    // clang-format off
+    const Result<mesh::MeshTree> tree = mesh::MeshTree::build(level);
+    if (!tree) return report(tree.error());
+    const auto walls = convex::Body::mesh(*tree, convex::Sides::front);  // pushes outward alone
+    if (!walls) return report(walls.error());
+
+    const Result<convex::HeightField> hills =
+        convex::HeightField::build({.columns = 3, .rows = 3, .heights = heights, .spacing = {10.0, 10.0}, .materials = materials});
+    if (!hills) return report(hills.error());  // which height is NaN
+    const convex::Body ground = convex::Body::height_field(*hills);  // a view: keep `hills`
+
+    convex::Manifolds found;  // kept from frame to frame
+    convex::contact_manifolds({ground, here}, {crate, place}, {.margin = 0.02}, found);
+    for (const convex::Manifold& contact : found.all()) {
+        const std::uint32_t cell = contact.points[0].part_a.triangle / 2;
+        std::printf("%d points, on material %u\n", contact.count, hills->material(cell));
+    }
+    // clang-format on
+    return convex::intersects({*walls, here}, {crate, place}) ? -2 : static_cast<int>(found.all().size());
+}
+
 }  // namespace
 
 TEST_SUITE("convex/guide") {
@@ -50,5 +76,15 @@ TEST_SUITE("convex/guide") {
         CHECK(drop(cube) == 4);
         cube.resize(3);
         CHECK(drop(cube) == -1);
+    }
+
+    TEST_CASE("the example of surfaces rests on the ground and meets no wall") {
+        crofton::TriangleMesh wall;
+        wall.positions = {{9, 0, 0}, {9, 9, 0}, {9, 0, 9}};
+        wall.indices = {0, 1, 2};
+        const auto crate = crofton::convex::Body::box({1, 1, 1}).value();
+        CHECK(rest(wall, std::vector<float>(9, 0.0f), {1, 2, 3, crofton::convex::kHole}, crate) == 1);
+        CHECK(rest(wall, std::vector<float>(8, 0.0f), {}, crate) == -1);
+        CHECK(rest({}, std::vector<float>(9, 0.0f), {}, crate) == -1);
     }
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/convex/body.hpp>
+#include <crofton/mesh/mesh_parts.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>
 
+#include "body_maker.hpp"
 #include "support.hpp"
 
 namespace crofton::convex {
@@ -26,6 +28,11 @@ Result<void> check_lengths(float half_height, float radius) {
     return check_length(radius, "radius");
 }
 
+void grow(Aabb& box, double radius) {
+    box.min -= radius * kUp;
+    box.max += radius * kUp;
+}
+
 }  // namespace
 
 void Body::set_corners(std::span<const glm::dvec3> corners) {
@@ -33,7 +40,22 @@ void Body::set_corners(std::span<const glm::dvec3> corners) {
     padded_ = vertex_count_ <= 4 ? 4 : 8;
     for (std::size_t i = 0; i < 8; ++i)
         for (int k = 0; k < 3; ++k) corners_[k][i] = corners[std::min(i, corners.size() - 1)][k];
-    for (const glm::dvec3& p : corners) reach_ = std::max(reach_, glm::length(p) * kUp);
+    for (const glm::dvec3& p : corners) {
+        reach_ = std::max(reach_, glm::length(p) * kUp);
+        bounds_.include(p);
+    }
+    grow(bounds_, radius_);
+}
+
+void Body::set_reach_of_bounds() {
+    reach_ = glm::length((glm::max)(glm::abs(bounds_.min), glm::abs(bounds_.max))) * kUp;
+}
+
+Body BodyMaker::triangle(const Triangle& corners) {
+    Body body;
+    body.kind_ = Kind::triangle;
+    body.set_corners(corners);
+    return body;
 }
 
 Result<Body> Body::ball(float radius) {
@@ -63,6 +85,7 @@ Result<Body> Body::cylinder(float half_height, float radius) {
     body.kind_ = Kind::cylinder;
     body.half_ = {static_cast<double>(radius), static_cast<double>(half_height), static_cast<double>(radius)};
     body.reach_ = std::sqrt(body.half_.x * body.half_.x + body.half_.y * body.half_.y) * kUp;
+    body.bounds_ = {-body.half_, body.half_};
     return body;
 }
 
@@ -107,6 +130,7 @@ Body Body::hull(const Hull& hull) {
     body.hull_ = &hull;
     body.vertex_count_ = static_cast<int>(hull.vertices().size());
     body.reach_ = hull.radius() * kUp;
+    for (const glm::vec3& p : hull.vertices()) body.bounds_.include(glm::dvec3(p));
     return body;
 }
 
@@ -123,15 +147,53 @@ Result<Body> Body::half_space(const Plane& plane) {
     body.kind_ = Kind::half_space;
     body.plane_ = plane;
     body.reach_ = HUGE_VAL;
+    body.bounds_ = {glm::dvec3(-HUGE_VAL), glm::dvec3(HUGE_VAL)};
     return body;
 }
 
 Result<Body> Body::rounded(const Body& core, float radius) {
     if (core.kind_ == Kind::half_space)
         return fail(ErrorCode::unsupported, kNoItem, "body: a half-space is not rounded; move its plane");
+    if (!core.is_convex())
+        return fail(ErrorCode::unsupported, kNoItem, "body: surfaces and compounds are not rounded; round the parts");
     if (Result<void> good = check_length(radius, "rounding"); !good) return tl::unexpected(good.error());
     Body body = core;
     body.radius_ += static_cast<double>(radius);
+    grow(body.bounds_, static_cast<double>(radius));
+    return body;
+}
+
+Result<Body> Body::mesh(const mesh::MeshTree& mesh, Sides sides) {
+    if (mesh.triangle_count() == 0) return fail(ErrorCode::empty, kNoItem, "body: the mesh tree has no triangles");
+    Body body;
+    body.kind_ = Kind::mesh;
+    body.sides_ = sides;
+    body.mesh_ = &mesh;
+    for (const mesh::MeshLeaf& leaf : mesh.parts().leaves)
+        for (std::uint32_t lane = 0; lane < leaf.count; ++lane)
+            for (int v = 0; v < 3; ++v)
+                body.bounds_.include(
+                    glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane])));
+    body.set_reach_of_bounds();
+    return body;
+}
+
+Body Body::height_field(const HeightField& field, Sides sides) {
+    Body body;
+    body.kind_ = Kind::height_field;
+    body.sides_ = sides;
+    body.field_ = &field;
+    body.bounds_ = field.bounds();
+    body.set_reach_of_bounds();
+    return body;
+}
+
+Body Body::compound(const Compound& compound) {
+    Body body;
+    body.kind_ = Kind::compound;
+    body.compound_ = &compound;
+    body.bounds_ = compound.bounds();
+    body.set_reach_of_bounds();
     return body;
 }
 

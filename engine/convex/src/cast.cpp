@@ -5,6 +5,7 @@
 #include <crofton/geometry/trigonometry.hpp>
 
 #include "core_query.hpp"
+#include "part_cast.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -103,7 +104,7 @@ double path_error(const Placed& now, const Motion& motion, double time) {
 }
 
 // As `distance`, where the bounds need not be close: a tenth of the distance, or the tolerance for a hit.
-Distance near_distance(const Placed& a, const Placed& b, double tolerance, PairCache& cache) {
+Distance rough_distance(const Placed& a, const Placed& b, double tolerance, PairCache& cache) {
     if (is_half_space(a) || is_half_space(b)) return distance(a, b);
     const Pair pair(a, b);
     const double rounding = a.body.radius() + b.body.radius();
@@ -144,14 +145,28 @@ Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, co
         return fail(ErrorCode::unsupported, is_half_space(a) ? 0 : 1, "cast: a half-space cannot turn; turn the other");
     if (is_half_space(a) && is_half_space(b))
         return fail(ErrorCode::unsupported, 1, "cast: two half-spaces; ask `distance` at the two times");
+    if (!a.body.is_convex()) return cast_parts(a, motion_a, b, motion_b, options, 0.0);
+    if (!b.body.is_convex()) {
+        Impact impact = cast_parts(b, motion_b, a, motion_a, options, 0.0);
+        impact.normal = -impact.normal;
+        std::swap(impact.on_a, impact.on_b);
+        std::swap(impact.part_a, impact.part_b);
+        return impact;
+    }
+    return advance(a, motion_a, b, motion_b, options, 0.0, cache);
+}
+
+Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+               const CastOptions& options, double start, PairCache* cache) {
     PairCache own;
     if (cache == nullptr) cache = &own;
     Impact impact;
+    impact.time = start;
     for (impact.steps = 1;; ++impact.steps) {
         const RigidTransform pose_a = moved(a.pose, motion_a, impact.time),
                              pose_b = moved(b.pose, motion_b, impact.time);
         const Placed now_a{a.body, pose_a}, now_b{b.body, pose_b};
-        const Distance d = near_distance(now_a, now_b, options.tolerance, *cache);
+        const Distance d = rough_distance(now_a, now_b, options.tolerance, *cache);
         impact.distance = d.distance;
         impact.normal = d.normal;
         impact.on_a = d.on_a;

@@ -67,7 +67,7 @@ Feature reference_feature(const Patch& patch, const ClipCorner& corner) {
 
 }  // namespace
 
-void find_sides(const Patch& polygon, const glm::dvec3& direction, Sides& sides) {
+void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides) {
     sides.count = polygon.count;
     for (int k = 0; k < polygon.count; ++k) {
         const glm::dvec3 &p = polygon.point[k], &q = polygon.point[k + 1 < polygon.count ? k + 1 : 0];
@@ -76,7 +76,7 @@ void find_sides(const Patch& polygon, const glm::dvec3& direction, Sides& sides)
     }
 }
 
-void clip(const Patch& reference, const Sides& sides, const Patch& incident, const glm::dvec3& direction,
+void clip(const Patch& reference, const Prism& sides, const Patch& incident, const glm::dvec3& direction,
           Clipped& clipped) {
     clipped.count = 0;
     const double steepness = glm::dot(reference.normal, direction);
@@ -156,7 +156,7 @@ void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
     manifold.depth = points[kept[0]].depth;
     for (int i = 0; i < chosen; ++i) {
         const RawPoint& p = points[kept[i]];
-        manifold.points[i] = {p.position, p.depth, p.on_a, p.on_b};
+        manifold.points[i] = {p.position, p.depth, p.on_a, p.on_b, p.part_a, p.part_b};
         manifold.depth = std::max(manifold.depth, points[kept[i]].depth);
     }
 }

@@ -15,6 +15,7 @@ struct RawPoint {
     glm::dvec3 position;
     double depth;
     Feature on_a, on_b;
+    PartId part_a, part_b;
 };
 inline constexpr int kMaxClipped = 2 * kMaxPatch;
 struct Clipped {
@@ -23,16 +24,16 @@ struct Clipped {
 };
 
 // The sides of the prism over a polygon along a direction: inside is dot(outward, x) ≤ level.
-struct Sides {
+struct Prism {
     int count = 0;
     glm::dvec3 outward[kMaxPatch];
     double level[kMaxPatch];
 };
-void find_sides(const Patch& polygon, const glm::dvec3& direction, Sides& sides);
+void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides);
 
 // The part of the incident patch within the prism over the reference polygon along `direction` (unit, out of the
 // reference), and its shadow on the reference's plane. Nothing where that plane is nearly along the direction.
-void clip(const Patch& reference, const Sides& sides, const Patch& incident, const glm::dvec3& direction,
+void clip(const Patch& reference, const Prism& sides, const Patch& incident, const glm::dvec3& direction,
           Clipped& clipped);
 
 // Two segments that are nearly parallel: the ends of their common stretch.

@@ -34,6 +34,7 @@ class Polytope {
         const Corner corner = pair_.support(unit, along);
         const double upper = along + pair_.error;
         if (upper < result_.upper) result_.upper = upper, result_.normal = unit;
+        longest_ = std::max(longest_, glm::dot(corner.w, corner.w));
         return corner;
     }
     bool complete(glm::dvec3 (&directions)[3], int count);
@@ -49,6 +50,7 @@ class Polytope {
     Corner corner_[kMaxCorners];
     Face face_[kMaxFaces];
     int corners_ = 0, faces_ = 0;
+    double longest_ = 0.0;  // squared, of the corners
 };
 
 glm::dvec3 perpendicular(const glm::dvec3& d) {
@@ -60,7 +62,10 @@ glm::dvec3 perpendicular(const glm::dvec3& d) {
 }
 
 bool Polytope::start(const Simplex& s) {
-    for (int i = 0; i < s.count; ++i) corner_[corners_++] = s.corner[i];
+    for (int i = 0; i < s.count; ++i) {
+        corner_[corners_++] = s.corner[i];
+        longest_ = std::max(longest_, glm::dot(s.corner[i].w, s.corner[i].w));
+    }
     const double flat = 0x1p-34 * pair_.size;
     // Each new corner is off the point, line or plane of those before; where none is, the body is flat.
     while (corners_ < 4) {
@@ -189,7 +194,7 @@ void Polytope::grow() {
 // certainly positive: the surface, which is closed, goes around the origin at least once.
 void Polytope::finish(int nearest) {
     const Face& face = face_[nearest];
-    const double bound = 0x1p-47 * pair_.size * pair_.size * pair_.size;
+    const double bound = determinant_error(pair_.size, longest_);
     bool around = true;
     for (int f = 0; f < faces_ && around; ++f) around = !face_[f].alive || face_[f].determinant > bound;
     if (around) result_.lower = std::max(result_.lower, face.distance - pair_.error);

@@ -5,6 +5,7 @@
 
 #include "clip.hpp"
 #include "core_query.hpp"
+#include "part_manifold.hpp"
 #include "touch.hpp"
 
 namespace crofton::convex {
@@ -26,7 +27,7 @@ class Gatherer {
         // A face that is not quite flat would seem deeper than the bodies overlap.
         const double depth = std::min(glm::dot(p - q, touch_.normal), touch_.depth);
         if (!(depth >= -margin_)) return;
-        points.point[points.count++] = {a_.pose.translation + 0.5 * (p + q), depth, on_a, on_b};
+        points.point[points.count++] = {a_.pose.translation + 0.5 * (p + q), depth, on_a, on_b, {}, {}};
     }
 
     void add(const Clipped& clipped, bool reference_is_a) {
@@ -82,7 +83,7 @@ int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Cli
     const double along_b = b.count > 2 ? -glm::dot(b.normal, normal) : -1.0;
     const bool reference_is_a = along_a >= along_b - 1e-3 && a.count > 2;
     const glm::dvec3 out = reference_is_a ? normal : -normal;
-    Sides sides;
+    Prism sides;
     find_sides(reference_is_a ? a : b, out, sides);
     clip(reference_is_a ? a : b, sides, reference_is_a ? b : a, out, clipped);
     gatherer.add(clipped, reference_is_a);
@@ -122,15 +123,32 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
     return finish(gatherer, touch, options.max_points);
 }
 
+}  // namespace
+
 Manifold flipped(Manifold m) {
     m.normal = -m.normal;
-    for (int i = 0; i < m.count; ++i) std::swap(m.points[i].on_a, m.points[i].on_b);
+    for (int i = 0; i < m.count; ++i) {
+        std::swap(m.points[i].on_a, m.points[i].on_b);
+        std::swap(m.points[i].part_a, m.points[i].part_b);
+    }
     return m;
 }
 
-}  // namespace
+Manifold manifold_along(const Placed& a, const Placed& b, const glm::dvec3& normal, const ManifoldOptions& options) {
+    Touch touch;
+    touch.normal = normal;
+    touch.depth = HUGE_VAL;
+    Patch patch_a, patch_b;
+    patch_along(a, normal, a.pose.translation, patch_a);
+    patch_along(b, -normal, a.pose.translation, patch_b);
+    Gatherer gatherer(a, b, touch, options.margin);
+    Clipped clipped;
+    (void)gather_patches(patch_a, patch_b, normal, clipped, gatherer);
+    return finish(gatherer, touch, options.max_points);
+}
 
 Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
+    if (!a.body.is_convex() || !b.body.is_convex()) return deepest_manifold(a, b, options);
     if (is_half_space(a)) return is_half_space(b) ? Manifold{} : on_half_space(a, b, options);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options));
     const Pair pair(a, b);

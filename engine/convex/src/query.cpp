@@ -6,6 +6,7 @@
 
 #include "core_query.hpp"
 #include "exact_gjk.hpp"
+#include "part_query.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -15,17 +16,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 bool finite_pair(const Pair& pair) {
     return pair.size < kInfinity && std::isfinite(pair.pose_a.rotation[0].x + pair.pose_a.rotation[1].y) &&
            std::isfinite(pair.pose_b.rotation[0].x + pair.pose_b.rotation[1].y);
-}
-
-Distance flipped(Distance d) {
-    std::swap(d.on_a, d.on_b);
-    d.normal = -d.normal;
-    return d;
-}
-Penetration flipped(Penetration p) {
-    std::swap(p.on_a, p.on_b);
-    p.normal = -p.normal;
-    return p;
 }
 
 Distance half_space_distance(const Placed& a, const Placed& b) {
@@ -88,6 +78,8 @@ Result<void> validate_pose(const RigidTransform& pose, std::uint64_t item) {
 }
 
 bool intersects(const Placed& a, const Placed& b, PairCache* cache) {
+    if (!a.body.is_convex()) return parts_meet(a, b);
+    if (!b.body.is_convex()) return parts_meet(b, a);
     if (is_half_space(a) || is_half_space(b)) {
         if (!is_half_space(b)) return half_space_meets(a, b);
         if (!is_half_space(a)) return half_space_meets(b, a);
@@ -110,6 +102,8 @@ bool intersects(const Placed& a, const Placed& b, PairCache* cache) {
 }
 
 Distance distance(const Placed& a, const Placed& b, PairCache* cache) {
+    if (!a.body.is_convex()) return distance_of_parts(a, b);
+    if (!b.body.is_convex()) return flipped(distance_of_parts(b, a));
     if (is_half_space(a)) return half_space_distance(a, b);
     if (is_half_space(b)) return flipped(half_space_distance(b, a));
     const Pair pair(a, b);
@@ -141,7 +135,16 @@ Distance distance_of(const Pair& pair, const Nearest& core) {
     return d;
 }
 
+Distance near_distance(const Placed& a, const Placed& b, double far) {
+    if (is_half_space(a) || is_half_space(b)) return distance(a, b);
+    const Pair pair(a, b);
+    if (!finite_pair(pair)) return {};
+    return distance_of(pair, core_distance(pair, nullptr, 0.0, far + a.body.radius() + b.body.radius()));
+}
+
 Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
+    if (!a.body.is_convex()) return penetration_of_parts(a, b);
+    if (!b.body.is_convex()) return flipped(penetration_of_parts(b, a));
     if (is_half_space(a)) return half_space_penetration(a, b);
     if (is_half_space(b)) return flipped(half_space_penetration(b, a));
     const Pair pair(a, b);

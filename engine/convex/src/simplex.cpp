@@ -95,7 +95,9 @@ void reduce(Simplex& s, bool all) {
 bool certainly_inside(const Simplex& s, double size) {
     if (s.count != 4) return false;
     const Parts parts = parts_of(s);
-    const double bound = 0x1p-47 * size * size * size;
+    double longest = 0.0;
+    for (const Corner& corner : s.corner) longest = std::max(longest, glm::dot(corner.w, corner.w));
+    const double bound = determinant_error(size, longest);
     return std::all_of(parts.part, parts.part + 4, [&](double part) { return part > bound; });
 }
 

@@ -37,8 +37,14 @@ struct Simplex {
 // distinctions that rounding could lead astray: those with the last corner alone, unless `all`.
 void reduce(Simplex& simplex, bool all);
 
-// Whether the origin certainly lies strictly within the tetrahedron. With corners off by 11u of the size, a determinant
-// of three of them is off by less than 64u · size³.
+// A determinant of three corners is off by less than this. The corners are off by 11u of the size, which gives 34u ·
+// size · longest², where `longest` is the length of the longest. The roundings are below 16u · longest³, and no corner
+// is longer than the size.
+[[nodiscard]] inline double determinant_error(double size, double longest_squared) {
+    return 0x1p-47 * size * longest_squared;
+}
+
+// Whether the origin certainly lies strictly within the tetrahedron.
 [[nodiscard]] bool certainly_inside(const Simplex& simplex, double size);
 
 }  // namespace crofton::convex

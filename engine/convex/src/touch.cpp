@@ -35,7 +35,7 @@ InnerBall inner_ball(const Placed& p) {
 }
 
 // How far `x` is within the sides of a prism: the least distance, negative outside.
-double distance_within(const Sides& sides, const glm::dvec3& x) {
+double distance_within(const Prism& sides, const glm::dvec3& x) {
     double least = std::numeric_limits<double>::infinity();  // squared, with its sign
     for (int k = 0; k < sides.count; ++k) {
         const double along = sides.level[k] - glm::dot(sides.outward[k], x);
@@ -116,7 +116,7 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
     // Contacts nearer than rounding tells are decided exactly by the other way.
     if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;
     patch_along(incident, -out, a.pose.translation, other);
-    Sides sides;
+    Prism sides;
     find_sides(face, out, sides);
     clip(face, sides, other, out, clipped);
     // The deepest corner itself above the face, else the common part of the two faces.

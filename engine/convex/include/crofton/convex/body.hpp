@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Convex bodies of all kinds, hulls of points, mass.
+// Bodies of all kinds: convex ones, hulls of points, meshes, height fields, compounds; mass.
 #pragma once
+#include <compare>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/core/version.hpp>
+#include <crofton/geometry/box.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+
+namespace crofton::mesh {
+class MeshTree;
+}
 
 namespace crofton::convex {
 
@@ -98,13 +105,35 @@ class Hull {
     double excess_ = 0.0, radius_ = 0.0, inner_radius_ = 0.0;
 };
 
-// A convex body, whichever kind: what every query of this module takes.
+// A body, whichever kind: what every query of this module takes.
 
-enum class Kind : std::uint8_t { ball, capsule, cylinder, cone, box, triangle, hull, half_space };
+class HeightField;
+class Compound;
 
-// A small value; of a hull it is a view, which the caller keeps alive. Solids of revolution stand along the frame's y
-// axis, with the origin half way up. Made by the functions below, which refuse NaN, infinite and negative lengths, and
-// lengths beyond kMaxExtent; zero lengths are allowed, and give a segment, a disc, a point.
+enum class Kind : std::uint8_t {
+    ball,
+    capsule,
+    cylinder,
+    cone,
+    box,
+    triangle,
+    hull,
+    half_space,  // up to here convex
+    mesh,
+    height_field,
+    compound,
+};
+
+// Which sides of a surface's triangles contacts and casts see. Yes or no, distances and depths see both.
+enum class Sides : std::uint8_t {
+    both,
+    front,  // contacts push to the front; what comes from behind passes
+};
+
+// A small value; of a hull, mesh, height field or compound it is a view, which the caller keeps alive and unchanged.
+// Solids of revolution stand along the frame's y axis, with the origin half way up. Made by the functions below, which
+// refuse NaN, infinite and negative lengths, and lengths beyond kMaxExtent; zero lengths are allowed, and give a
+// segment, a disc, a point.
 class Body {
   public:
     [[nodiscard]] static Result<Body> ball(float radius);
@@ -120,10 +149,23 @@ class Body {
     [[nodiscard]] static Body hull(const Hull& hull);
     // { x : dot(normal, x) + offset ≥ 0 }: `normal`, of any length but 0, points into the solid, as everywhere.
     [[nodiscard]] static Result<Body> half_space(const Plane& plane);
-    // All points within `radius` of `core`: of any kind but a half-space.
+    // All points within `radius` of `core`: of any convex kind but a half-space.
     [[nodiscard]] static Result<Body> rounded(const Body& core, float radius);
+    // The mesh's triangles: a surface, also where it is closed. Error: a tree without triangles.
+    [[nodiscard]] static Result<Body> mesh(const mesh::MeshTree& mesh, Sides sides = Sides::both);
+    // Its triangles, whose fronts look up.
+    [[nodiscard]] static Body height_field(const HeightField& field, Sides sides = Sides::front);
+    [[nodiscard]] static Body compound(const Compound& compound);  // the union of its children
 
     [[nodiscard]] Kind kind() const { return kind_; }
+    // One convex body; else a body of parts, each of which is convex.
+    [[nodiscard]] bool is_convex() const { return kind_ < Kind::mesh; }
+    [[nodiscard]] Sides sides() const { return sides_; }  // of a surface; else both
+    [[nodiscard]] const mesh::MeshTree* mesh() const { return mesh_; }
+    [[nodiscard]] const HeightField* height_field() const { return field_; }
+    [[nodiscard]] const Compound* compound() const { return compound_; }
+    // Around the body in its frame, rounded outward; infinite for half-spaces.
+    [[nodiscard]] const Aabb& bounds() const { return bounds_; }
     [[nodiscard]] double radius() const { return radius_; }  // of the rounding; of balls and capsules
     [[nodiscard]] const Hull* hull() const { return hull_; }
     [[nodiscard]] const Plane& plane() const { return plane_; }
@@ -144,23 +186,133 @@ class Body {
     [[nodiscard]] double reach() const { return reach_; }
 
   private:
+    friend struct BodyMaker;
     Body() = default;
     void set_corners(std::span<const glm::dvec3> corners);
+    void set_reach_of_bounds();
 
     Kind kind_ = Kind::ball;
+    Sides sides_ = Sides::both;
     int vertex_count_ = 0, padded_ = 0;
     double radius_ = 0.0, reach_ = 0.0;
     glm::dvec3 half_{0.0};
     Plane plane_;
+    Aabb bounds_;
     const Hull* hull_ = nullptr;
+    const mesh::MeshTree* mesh_ = nullptr;
+    const HeightField* field_ = nullptr;
+    const Compound* compound_ = nullptr;
     double corners_[3][8] = {};
 };
 
-// Exact formulas, rounded, for every kind but half-spaces and roundings of boxes, triangles, hulls, cylinders, cones:
-// there `unsupported`. A triangle has volume 0.
+// One of the convex parts of a body, by number.
+struct PartId {
+    // Of a compound: which child, with the children of compounds within it counted in their place. Else 0.
+    std::uint32_t child = 0;
+    std::uint32_t triangle = 0;  // of a mesh or height field; else 0
+    auto operator<=>(const PartId&) const = default;
+};
+
+// Ground given by heights at the corners of square or oblong cells, two triangles each.
+
+inline constexpr std::uint8_t kHole = 255;  // as a cell's material: nothing is there
+
+struct HeightFieldDescription {
+    std::uint32_t columns = 0, rows = 0;           // corners along x and along z, in [2, 32768]
+    std::span<const float> heights = {};           // y of the corners, row by row: columns · rows of them
+    glm::dvec2 spacing{1.0};                       // between corners along x and z, in [1e-6, 1e6]
+    std::span<const std::uint8_t> materials = {};  // of the cells, row by row: (columns − 1)(rows − 1); empty: all 0
+};
+
+// Corner (i, j) is at (i · spacing.x, height, j · spacing.y), each rounded to double. Cell c = j (columns − 1) + i has
+// triangles 2c, on the side of its corner (i, j), and 2c + 1; their common edge leads from (i + 1, j) to (i, j + 1).
+class HeightField {
+  public:
+    // Copies what it needs. Errors: sizes out of range or that do not fit; a height that is NaN, infinite or beyond
+    // kMaxExtent (item: the first such corner); no cell but holes.
+    [[nodiscard]] static Result<HeightField> build(const HeightFieldDescription& description);
+
+    [[nodiscard]] std::uint32_t columns() const { return columns_; }
+    [[nodiscard]] std::uint32_t rows() const { return rows_; }
+    [[nodiscard]] std::uint32_t cell_count() const { return (columns_ - 1) * (rows_ - 1); }
+    [[nodiscard]] std::uint8_t material(std::uint32_t cell) const { return materials_.empty() ? 0 : materials_[cell]; }
+    [[nodiscard]] glm::dvec3 corner(std::uint32_t column, std::uint32_t row) const {
+        return {static_cast<double>(column) * spacing_.x,
+                static_cast<double>(heights_[std::size_t{row} * columns_ + column]),
+                static_cast<double>(row) * spacing_.y};
+    }
+    [[nodiscard]] Triangle triangle(std::uint32_t index) const;  // counter-clockwise seen from above
+    [[nodiscard]] const Aabb& bounds() const { return bounds_; }
+
+  private:
+    friend class FieldSearch;
+    struct Span {
+        float low, high;  // of heights; low > high where all cells are holes
+    };
+    struct Level {
+        std::uint32_t columns, rows;
+        std::size_t first;  // of spans_
+    };
+    [[nodiscard]] Span span_of(std::uint32_t column, std::uint32_t row) const;  // of a block of 4 × 4 cells
+    void build_levels();
+
+    std::uint32_t columns_ = 0, rows_ = 0;
+    glm::dvec2 spacing_{1.0};
+    Aabb bounds_;
+    Vector<float> heights_;
+    Vector<std::uint8_t> materials_;
+    // Least and greatest heights of blocks of 4 × 4 cells, then of 4 × 4 of these blocks, up to one.
+    Vector<Level> levels_;
+    Vector<Span> spans_;
+};
+
+// Many bodies as one.
+
+inline constexpr int kMaxCompoundDepth = 16;
+
+struct CompoundChild {
+    Body body;
+    RigidTransform pose;  // in the compound's frame
+};
+
+// A tree over the children. A child stands where the product of the poses puts it, rounded to double.
+class Compound {
+  public:
+    // Copies the children; what they are views of stays the caller's. Errors: no children; a pose that is not valid or
+    // mirrors, a half-space, compounds in compounds deeper than kMaxCompoundDepth (item: the child).
+    [[nodiscard]] static Result<Compound> build(std::span<const CompoundChild> children);
+
+    [[nodiscard]] std::span<const CompoundChild> children() const { return children_; }
+    [[nodiscard]] int depth() const { return depth_; }  // 1: no compound within
+    // Children that are no compounds, with those of compounds within: PartId::child is less.
+    [[nodiscard]] std::uint32_t part_count() const { return part_count_; }
+    // The child of that number, with its pose in its own compound. Requires part < part_count().
+    [[nodiscard]] const CompoundChild& part(std::uint32_t part) const;
+    [[nodiscard]] const Aabb& bounds() const { return nodes_.front().box; }
+
+  private:
+    friend class CompoundSearch;
+    struct Node {
+        Aabb box;
+        std::uint32_t begin = 0, end = 0;  // of order_; all children below
+        std::uint32_t right = 0;           // the left one follows at once; 0: a leaf
+    };
+    void split(std::uint32_t begin, std::uint32_t end, std::span<const Aabb> boxes);
+
+    Vector<CompoundChild> children_;
+    Vector<std::uint32_t> first_part_;  // by child
+    Vector<Node> nodes_;
+    Vector<std::uint32_t> order_;
+    std::uint32_t part_count_ = 0;
+    int depth_ = 0;
+};
+
+// Exact formulas, rounded, for every kind but half-spaces, surfaces, compounds and roundings of boxes, triangles,
+// hulls, cylinders, cones: there `unsupported`. A triangle has volume 0.
 [[nodiscard]] Result<MassProperties> mass_properties(const Body& body);
 
-// The farthest point of the body along `direction` (finite; any length but 0), in its frame. Not for half-spaces.
+// The farthest point of the body along `direction` (finite; any length but 0), in its frame. Of convex bodies but
+// half-spaces.
 [[nodiscard]] glm::dvec3 support_point(const Body& body, const glm::dvec3& direction);
 
 }  // namespace crofton::convex

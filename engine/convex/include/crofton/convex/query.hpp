@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Questions asked of two convex bodies: meet, distance, depth, contacts, casts.
+// Questions asked of two bodies: meet, distance, depth, contacts, casts.
 #pragma once
 #include <compare>
 #include <crofton/convex/body.hpp>
+#include <crofton/core/memory.hpp>
 #include <cstdint>
+#include <span>
 
 namespace crofton::convex {
 
-// Do two convex bodies meet, how far apart are they, how deep do they overlap?
+// Do two bodies meet, how far apart are they, how deep do they overlap?
 
 // A body where it stands: the image of its stored points under the stored pose, all taken as reals. Poses are valid
 // and without reflection, as validate_pose tells. Alive for the call only.
@@ -33,7 +35,8 @@ struct PairCache {
 // Touching counts. Exact for two polytopes and for a polytope and a half-space. Where a body is round, a gap or overlap
 // below 1e-11 of the size, with cylinders and cones 1e-7, may be told either way. The size of a pair is the sum of the
 // bodies' reaches and of the offset between their origins. Two half-spaces: exact where the normals' rounded cross
-// product is not 0, as they meet then. A pose with NaN meets nothing.
+// product is not 0, as they meet then. A body of parts meets what one of its parts meets: as exact as these. A pose
+// with NaN meets nothing.
 [[nodiscard]] bool intersects(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 struct Distance {
@@ -41,10 +44,11 @@ struct Distance {
     double lower = 0.0, upper = 0.0;  // proven: the true distance lies between
     glm::dvec3 on_a{0.0}, on_b{0.0};  // nearest points; of bodies that meet, a common point up to 1e-9 of the size
     glm::dvec3 normal{0.0};           // unit, from a to b; 0 of bodies that meet
+    PartId part_a{}, part_b{};        // the nearest parts of bodies of parts
 };
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones. Gilbert, Johnson,
 // Keerthi 1988; where double does not reach the bound, in exact arithmetic. Half-spaces that do not meet: parallel
-// ones.
+// ones. Of bodies of parts: of the nearest parts; caches are not used.
 [[nodiscard]] Distance distance(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 // The shortest motion of b that ends the overlap: depth · normal.
@@ -54,16 +58,18 @@ struct Penetration {
     double lower = 0.0, upper = 0.0;  // proven: the true depth lies between
     glm::dvec3 normal{0.0};           // unit, from a to b
     glm::dvec3 on_a{0.0}, on_b{0.0};  // deepest points: on_a − on_b = depth · normal
+    PartId part_a{}, part_b{};        // of bodies of parts: those that are deepest in each other
 };
 // upper − lower ≤ 1e-9 of the size for polytopes, also rounded ones; 1e-5 for cylinders and cones. Expanding polytope
 // (van den Bergen 2001), checked afterwards from both sides; where that fails, all separating axes. Two half-spaces
-// overlap without end: depth, lower and upper are infinite.
+// overlap without end: depth, lower and upper are infinite. Of bodies of parts: of the two parts that are deepest in
+// each other. `lower` holds for the bodies; `upper` is infinite, since the motion may push parts into others.
 [[nodiscard]] Penetration penetration(const Placed& a, const Placed& b, PairCache* cache = nullptr);
 
 // From a point (in the world) to the body: a is the point.
 [[nodiscard]] Distance closest_point(const Placed& body, const glm::dvec3& point);
 
-// Where two convex bodies touch: points a physics step can hold on to from frame to frame.
+// Where two bodies touch: points a physics step can hold on to from frame to frame.
 
 // A vertex, edge or face of a body. Of hulls the indices are the hull's. Of boxes: a vertex is a corner number; edge 4k
 // + j runs along axis k; face 2k + s is across axis k, on the + side for s = 1. Of a triangle: edge k leads from corner
@@ -80,7 +86,9 @@ struct Feature {
 struct ContactPoint {
     glm::dvec3 position{0.0};  // midway between the surfaces, in the world
     double depth = 0.0;        // along the normal; negative: a gap
-    Feature on_a{}, on_b{};    // the same for as long as the same features touch: the point's id
+    // Together the point's id: the same for as long as the same features touch. Features are those of the parts.
+    Feature on_a{}, on_b{};
+    PartId part_a{}, part_b{};
 };
 
 struct Manifold {
@@ -100,8 +108,51 @@ struct ManifoldOptions {
 // tells, have one point at least. With a cache the face of the frame before stays the contact's while its normal is
 // proven to be the least deep within 1e-4 of the pair's size; normal and depth are then those of that face.
 // Points are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions).
+// Of bodies of parts: the deepest of the manifolds below; this allocates.
 [[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
+
+// One part of a body, where it stands.
+struct Part {
+    Body body;  // convex
+    RigidTransform pose;
+    PartId id;
+    Sides sides = Sides::both;
+};
+
+// Where two bodies touch, one of them of parts: one manifold for each direction. Memory is kept from call to call.
+class Manifolds {
+  public:
+    [[nodiscard]] std::span<const Manifold> all() const { return all_; }
+
+  private:
+    friend class ManifoldFinder;
+    Vector<Manifold> all_;
+    Vector<Part> near_;  // parts that may touch
+};
+
+// Replaces what `found` has. Manifolds of parts whose normals agree within 0.3 degrees are one. Two convex bodies: one
+// manifold, or none. On the edges and vertices of a surface the internal-edge rule holds: where a triangle's own normal
+// would point into the surface beside it, the triangle pushes along its face's. So what slides over a floor of many
+// triangles meets the floor alone. Neighbours are triangles of the same body that share vertices of equal position.
+// Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls; else the
+// middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many parts.
+void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
+                       PairCache* cache = nullptr);
+
+// Replaces `parts` by the parts of a body that may be within `margin` ≥ 0 of another: all that are, and some more.
+void parts_near(const Placed& body, const Placed& other, double margin, Vector<Part>& parts);
+
+// What a pair's contact points are from step to step.
+struct TrackedPoint {
+    ContactPoint contact;
+    glm::dvec3 normal{0.0};  // its manifold's
+    bool began = true;       // its id was not there in the step before
+    float memory[4] = {};    // the caller's, as impulses for a warm start: 0 when the point begins, kept while it stays
+};
+// Replaces `points`, of the step before, by those of the manifolds; of the same id they keep their memory. Returns how
+// many have ended. Allocates nothing once `points` has room for two steps.
+std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& points);
 
 // When will two moving bodies first touch?
 
@@ -134,13 +185,16 @@ struct Impact {
     glm::dvec3 normal{0.0};  // unit, from a to b, at that time; 0 where they overlap from the start
     glm::dvec3 on_a{0.0}, on_b{0.0};
     double distance = 0.0;
-    int steps = 0;
+    int steps = 0;              // of bodies of parts: of the pair of parts that hit
+    PartId part_a{}, part_b{};  // that hit
 };
 
 // Conservative advancement (Mirtich 1996) by a bound of second order: each step ends before any vertex can have crossed
 // the plane that parts the bodies, by its velocity across the plane and a bound of its acceleration. So no wall is too
 // thin. "Touch" is said of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a radian, which the
-// bounds include. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out of range, half-spaces turned.
+// bounds include. Bodies of parts: the first time at which parts touch; a triangle that only its front sees, and that
+// is first touched from behind, is passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options
+// out of range, half-spaces turned.
 [[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
                                   const CastOptions& options = {}, PairCache* cache = nullptr);
 

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <crofton/convex/body.hpp>
+#include <crofton/core/recovery.hpp>
+#include <numeric>
+#include <string>
+
+#include "parts.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+
+Result<void> check(const CompoundChild& child, std::uint64_t item) {
+    const std::string name = "compound: child " + std::to_string(item);
+    if (Result<void> good = validate_pose(child.pose, item); !good) return good;
+    if (child.body.kind() == Kind::half_space)
+        return fail(ErrorCode::unsupported, item, name + " is a half-space; make it an object of its own");
+    if (child.body.compound() != nullptr && child.body.compound()->depth() >= kMaxCompoundDepth)
+        return fail(ErrorCode::out_of_range, item,
+                    name + " holds compounds " + std::to_string(kMaxCompoundDepth) +
+                        " deep; put its children into fewer levels");
+    return {};
+}
+
+}  // namespace
+
+Result<Compound> Compound::build(std::span<const CompoundChild> children) {
+    if (children.empty()) return fail(ErrorCode::empty, kNoItem, "compound: no children");
+    return detail::recover([&]() -> Result<Compound> {
+        Compound result;
+        result.children_.assign(children.begin(), children.end());
+        result.depth_ = 1;
+        Vector<Aabb> boxes;
+        std::uint64_t parts = 0;
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            const CompoundChild& child = children[i];
+            if (Result<void> good = check(child, i); !good) return tl::unexpected(good.error());
+            result.first_part_.push_back(static_cast<std::uint32_t>(parts));
+            const Compound* const inner = child.body.compound();
+            parts += inner != nullptr ? inner->part_count() : 1;
+            if (parts >= (std::uint64_t{1} << 31))
+                return fail(ErrorCode::out_of_range, i, "compound: 2^31 parts or more");
+            if (inner != nullptr) result.depth_ = std::max(result.depth_, inner->depth() + 1);
+            boxes.push_back(bounds_of(box_around({child.body, child.pose}, {})));
+        }
+        result.part_count_ = static_cast<std::uint32_t>(parts);
+        result.order_.resize(children.size());
+        std::iota(result.order_.begin(), result.order_.end(), 0u);
+        result.split(0, static_cast<std::uint32_t>(children.size()), boxes);
+        return result;
+    });
+}
+
+// In halves, along the longest side of the centres' box.
+void Compound::split(std::uint32_t begin, std::uint32_t end, std::span<const Aabb> boxes) {
+    const std::size_t at = nodes_.size();
+    nodes_.emplace_back();
+    Aabb box, centers;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        box.include(boxes[order_[i]]);
+        centers.include(boxes[order_[i]].center());
+    }
+    nodes_[at].box = box;
+    nodes_[at].begin = begin;
+    nodes_[at].end = end;
+    if (end - begin <= kLeafSize) return;
+    const glm::dvec3 size = centers.max - centers.min;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::sort(order_.begin() + begin, order_.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
+        const double x = boxes[a].center()[axis], y = boxes[b].center()[axis];
+        return x != y ? x < y : a < b;
+    });
+    split(begin, middle, boxes);
+    nodes_[at].right = static_cast<std::uint32_t>(nodes_.size());
+    split(middle, end, boxes);
+}
+
+const CompoundChild& Compound::part(std::uint32_t part) const {
+    const auto after = std::upper_bound(first_part_.begin(), first_part_.end(), part);
+    const auto child = static_cast<std::size_t>(after - first_part_.begin()) - 1;
+    const Compound* const inner = children_[child].body.compound();
+    return inner != nullptr ? inner->part(part - first_part_[child]) : children_[child];
+}
+
+class CompoundSearch {
+  public:
+    CompoundSearch(const Compound& compound, const QueryBox& box, const PartSearch& search)
+        : compound_(compound), box_(box), bounds_(bounds_of(box)), search_(search) {}
+
+    bool descend(std::uint32_t at) const {
+        const Compound::Node& node = compound_.nodes_[at];
+        if (distance_between(node.box, bounds_) > search_.limit) return false;
+        if (node.right == 0) {
+            for (std::uint32_t i = node.begin; i < node.end; ++i)
+                if (visit(compound_.order_[i])) return true;
+            return false;
+        }
+        std::uint32_t near = at + 1, far = node.right;
+        if (search_.nearest_first && distance_between(compound_.nodes_[far].box, bounds_) <
+                                         distance_between(compound_.nodes_[near].box, bounds_))
+            std::swap(near, far);
+        return descend(near) || descend(far);
+    }
+
+  private:
+    bool visit(std::uint32_t index) const {
+        const CompoundChild& child = compound_.children_[index];
+        const RigidTransform pose = within(search_.pose, child.pose);
+        const PartSearch inner{
+            pose,          child.body.sides(), search_.child + compound_.first_part_[index], search_.nearest_first,
+            search_.limit, search_.visit};
+        const QueryBox box = seen_from(box_, child.pose);
+        if (distance_between(child.body.bounds(), bounds_of(box)) > search_.limit) return false;
+        return search_parts({child.body, pose}, box, inner);
+    }
+
+    const Compound& compound_;
+    const QueryBox& box_;
+    Aabb bounds_;
+    const PartSearch& search_;
+};
+
+bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search) {
+    return CompoundSearch(compound, box, search).descend(0);
+}
+
+}  // namespace crofton::convex

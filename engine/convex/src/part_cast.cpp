@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "part_cast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+
+#include "core_query.hpp"
+#include "part_manifold.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr int kManyParts = 24;  // in a stretch of time that is then halved
+constexpr int kMaxHalvings = 40;
+
+glm::dvec3 pivot_of(const Placed& placed, const Motion& motion) {
+    return placed.pose.rotation * motion.pivot + placed.pose.translation;
+}
+
+// Seeks the first touch of b with a's parts. A stretch of time in which b passes near many parts is halved, so that
+// those it meets last are not asked.
+class PartCaster {
+  public:
+    PartCaster(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+               const CastOptions& options)
+        : a_(a), b_(b), motion_a_(motion_a), motion_b_(motion_b), options_(options) {
+        best_.time = options.duration;
+        const Aabb& bounds = b.body.bounds();
+        around_ = glm::length(bounds.half_extents()) + glm::length(bounds.center() - motion_b.pivot);
+        b_turns_ = motion_b.spin != glm::dvec3(0.0);
+        apart_ = pivot_of(b, motion_b) - pivot_of(a, motion_a);
+    }
+
+    void search(double from, double to, int halvings) {
+        to = std::min(to, best_.time);
+        if (from > best_.time || (from == best_.time && best_.result != CastResult::miss)) return;
+        const RigidTransform pose = moved(a_.pose, motion_a_, from);
+        const QueryBox box = swept_box(pose, from, to);
+        int count = 0;
+        if (halvings < kMaxHalvings && to > from && !is_half_space(b_))
+            visit(pose, box, [&](const Part&) { return ++count > kManyParts; });
+        if (count > kManyParts && way(from, to) > 0.5 * around_) {
+            const double middle = 0.5 * (from + to);
+            search(from, middle, halvings + 1);
+            return search(middle, to, halvings + 1);
+        }
+        visit(pose, box, [&](const Part& part) {
+            cast_part(part, pose, from);
+            return best_.time <= from && best_.result != CastResult::miss;
+        });
+    }
+
+    [[nodiscard]] const Impact& best() const { return best_; }
+
+  private:
+    // How far b's pivot may come from where it is half way between two times, seen from a: its own way, and what a
+    // turns under it. And how long that way is about.
+    [[nodiscard]] double way(double from, double to) const {
+        const double half = 0.5 * (to - from);
+        const double travel = half * glm::length(motion_b_.velocity - motion_a_.velocity);
+        return travel + half * glm::length(motion_a_.spin) * distance_at(0.5 * (from + to), travel);
+    }
+    [[nodiscard]] double distance_at(double time, double travel) const {
+        return glm::length(apart_ + time * (motion_b_.velocity - motion_a_.velocity)) + travel + around_;
+    }
+
+    // All that b passes between two times, in the frame in which a stands at the first of them.
+    [[nodiscard]] QueryBox swept_box(const RigidTransform& pose, double from, double to) const {
+        const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
+        const double middle = 0.5 * (from + to), speed = glm::length(velocity);
+        const bool a_turns = motion_a_.spin != glm::dvec3(0.0);
+        const glm::dmat3 back = glm::inverse(pose.rotation);
+        const glm::dvec3 pivot_a = pivot_of({a_.body, pose}, motion_a_);
+        // Where b's pivot would be, if a kept the place it has at `from`.
+        const glm::dvec3 center = apart_ + middle * velocity + pivot_a;
+        QueryBox box;
+        if (b_turns_ || a_turns || speed == 0.0 || to == from) {
+            box.axes = glm::dmat3(1.0);
+            double grown = around_;
+            if (a_turns) grown += (to - from) * glm::length(motion_a_.spin) * distance_at(middle, way(from, to));
+            grown += 0.5 * (to - from) * speed;
+            box.half = glm::dvec3(grown);
+            box.center = back * (center - pose.translation);
+            if (b_turns_ || a_turns || speed == 0.0) return box;
+        }
+        return along_way(pose, back, center, velocity / speed, 0.5 * (to - from) * speed);
+    }
+
+    // b does not turn: its box, swept along a unit vector.
+    [[nodiscard]] QueryBox along_way(const RigidTransform& pose, const glm::dmat3& back, const glm::dvec3& pivot,
+                                     const glm::dvec3& unit, double half_way) const {
+        const glm::dvec3 m = glm::abs(unit);
+        const glm::dvec3 least = m.x <= m.y && m.x <= m.z ? glm::dvec3(1, 0, 0)
+                                 : m.y <= m.z             ? glm::dvec3(0, 1, 0)
+                                                          : glm::dvec3(0, 0, 1);
+        const glm::dvec3 across = glm::normalize(glm::cross(unit, least));
+        const glm::dmat3 axes(unit, across, glm::cross(unit, across));
+        const Aabb& bounds = b_.body.bounds();
+        const glm::dmat3 sides = glm::transpose(axes) * b_.pose.rotation;
+        QueryBox box;
+        const glm::dvec3 half = bounds.half_extents();
+        for (int k = 0; k < 3; ++k) box.half += half[k] * glm::abs(sides[k]);
+        box.half = box.half * 1.00001;  // a pose is orthonormal to 1e-6
+        box.half.x += half_way;
+        box.axes = back * axes;
+        box.center = back * (pivot + b_.pose.rotation * (bounds.center() - motion_b_.pivot) - pose.translation);
+        return box;
+    }
+
+    void visit(const RigidTransform& pose, const QueryBox& box, PartVisitor visitor) const {
+        const double margin = is_half_space(b_) ? kEverything : options_.tolerance + 1e-9 * (around_ + a_.body.reach());
+        visit_parts({a_.body, pose}, box, margin, visitor);
+    }
+
+    // The part stands as a does at `from`; it is cast from where it is at time 0.
+    void cast_part(const Part& part, const RigidTransform& pose, double from) {
+        const bool is_child = a_.body.kind() == Kind::compound;
+        const RigidTransform start = is_child ? within(a_.pose, within(inverse_of(pose), part.pose)) : a_.pose;
+        Motion motion = motion_a_;
+        motion.pivot = glm::inverse(start.rotation) * (pivot_of(a_, motion_a_) - start.translation);
+        CastOptions options = options_;
+        options.duration = best_.time;
+        const Placed placed{part.body, start};
+        Impact impact = b_.body.is_convex() ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
+                                            : reversed(cast_parts(b_, motion_b_, placed, motion, options, from));
+        if (impact.result == CastResult::miss || impact.time > best_.time) return;
+        if (impact.time == best_.time && best_.result != CastResult::miss) return;
+        if (part.sides == Sides::front && comes_from_behind(part, start, motion, impact)) return;
+        best_ = impact;
+        best_.part_a = part.id;
+    }
+
+    [[nodiscard]] static RigidTransform inverse_of(const RigidTransform& pose) {
+        const glm::dmat3 back = glm::inverse(pose.rotation);
+        return {back, -(back * pose.translation)};
+    }
+    [[nodiscard]] static Impact reversed(Impact impact) {
+        impact.normal = -impact.normal;
+        std::swap(impact.on_a, impact.on_b);
+        std::swap(impact.part_a, impact.part_b);
+        return impact;
+    }
+    [[nodiscard]] bool comes_from_behind(const Part& part, const RigidTransform& start, const Motion& motion,
+                                         const Impact& impact) const {
+        const RigidTransform then = moved(start, motion, impact.time), b_then = moved(b_.pose, motion_b_, impact.time);
+        const Part there{part.body, then, part.id, part.sides};
+        if (impact.normal == glm::dvec3(0.0)) return !is_in_front(there, {b_.body, b_then});
+        return glm::dot(impact.normal, placed_triangle(there, then.translation).normal) <= 0.0;
+    }
+
+    const Placed &a_, &b_;
+    const Motion &motion_a_, &motion_b_;
+    const CastOptions& options_;
+    Impact best_;
+    double around_ = 0.0;  // b's reach from its pivot
+    glm::dvec3 apart_{0.0};
+    bool b_turns_ = false;
+};
+
+}  // namespace
+
+Impact cast_parts(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
+                  const CastOptions& options, double start) {
+    PartCaster caster(a, motion_a, b, motion_b, options);
+    caster.search(start, options.duration, 0);
+    return caster.best();
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "part_query.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core_query.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Improves `best` by the distances of a's parts from b, nearest first.
+void search_nearest(const Placed& a, const Placed& b, Distance& best, double& lower) {
+    double limit = best.distance;
+    const auto visit = [&](const Part& part) {
+        const Placed placed{part.body, part.pose};
+        Distance d;
+        if (b.body.is_convex()) {
+            d = near_distance(placed, b, limit);
+        } else {
+            // The other's nearest part is asked for within the same limit.
+            Distance inner;
+            inner.distance = limit;
+            double inner_lower = kInfinity;
+            search_nearest(b, placed, inner, inner_lower);
+            d = flipped(inner);
+            d.lower = std::min(inner_lower, limit);
+        }
+        lower = std::min(lower, d.lower);
+        if (d.distance < best.distance) {
+            best = d;
+            best.part_a = part.id;
+            limit = d.distance;
+        }
+        return best.distance == 0.0;
+    };
+    if (is_half_space(b))
+        visit_parts(a, {}, kEverything, visit);
+    else
+        visit_nearest_parts(a, box_around(b, a.pose), limit, visit);
+}
+
+}  // namespace
+
+bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit) {
+    if (is_half_space(b)) return visit_parts(a, {}, kEverything, visit);
+    return visit_parts(a, box_around(b, a.pose), margin, visit);
+}
+
+bool parts_meet(const Placed& a, const Placed& b) {
+    return visit_parts_near(a, b, 0.0, [&](const Part& part) { return intersects({part.body, part.pose}, b); });
+}
+
+Distance distance_of_parts(const Placed& a, const Placed& b) {
+    Distance best;
+    best.distance = kInfinity;
+    double lower = kInfinity;
+    search_nearest(a, b, best, lower);
+    if (!(best.distance < kInfinity)) return {};  // a pose with NaN
+    best.lower = std::min(lower, best.distance);
+    return best;
+}
+
+Penetration penetration_of_parts(const Placed& a, const Placed& b) {
+    Penetration deepest;
+    visit_parts_near(a, b, 0.0, [&](const Part& part) {
+        const Penetration p = penetration({part.body, part.pose}, b);
+        if (p.overlapping && (!deepest.overlapping || p.depth > deepest.depth)) {
+            const double lower = std::max(deepest.lower, p.lower);
+            deepest = p;
+            deepest.part_a = part.id;
+            deepest.lower = lower;
+        }
+        return false;
+    });
+    if (deepest.overlapping) deepest.upper = kInfinity;
+    return deepest;
+}
+
+void parts_near(const Placed& body, const Placed& other, double margin, Vector<Part>& parts) {
+    parts.clear();
+    if (body.body.is_convex()) return parts.push_back({body.body, body.pose, {}, Sides::both});
+    visit_parts_near(body, other, margin, [&](const Part& part) {
+        parts.push_back(part);
+        return false;
+    });
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Bodies of parts against any body. Here a has parts.
+#pragma once
+#include "parts.hpp"
+
+namespace crofton::convex {
+
+[[nodiscard]] bool parts_meet(const Placed& a, const Placed& b);
+[[nodiscard]] Distance distance_of_parts(const Placed& a, const Placed& b);
+[[nodiscard]] Penetration penetration_of_parts(const Placed& a, const Placed& b);
+
+// `distance` of two convex bodies; above `far` any lower bound above it will do.
+[[nodiscard]] Distance near_distance(const Placed& a, const Placed& b, double far);
+
+// Calls visit for the parts of a that may be within `margin` of b.
+bool visit_parts_near(const Placed& a, const Placed& b, double margin, PartVisitor visit);
+
+[[nodiscard]] inline Distance flipped(Distance d) {
+    std::swap(d.on_a, d.on_b);
+    std::swap(d.part_a, d.part_b);
+    d.normal = -d.normal;
+    return d;
+}
+[[nodiscard]] inline Penetration flipped(Penetration p) {
+    std::swap(p.on_a, p.on_b);
+    std::swap(p.part_a, p.part_b);
+    p.normal = -p.normal;
+    return p;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "parts.hpp"
+
+#include <cmath>
+#include <crofton/mesh/mesh_parts.hpp>
+#include <crofton/mesh/near_triangles.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+
+#include "body_maker.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr double kWider = 1.0001;  // of a distance: frames are rigid to 1e-6 alone
+
+// A float box that holds the box, but for `slop`.
+struct FloatBox {
+    mesh::MeshBox box{};
+    float slop = 0.0f;
+};
+FloatBox to_floats(const QueryBox& box) {
+    FloatBox result;
+    double size = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        result.box.center[k] = static_cast<float>(box.center[k]);
+        result.box.half[k] = static_cast<float>(box.half[k]);
+        for (int i = 0; i < 3; ++i) result.box.axes[k][i] = static_cast<float>(box.axes[k][i]);
+        size += std::abs(box.center[k]) + 50.0 * box.half[k];  // axes are orthonormal to 4e-6 alone
+    }
+    result.slop = static_cast<float>(0x1p-22 * size) + std::numeric_limits<float>::min();
+    return result;
+}
+
+}  // namespace
+
+QueryBox box_around(const Placed& placed, const RigidTransform& pose) {
+    const Aabb& bounds = placed.body.bounds();
+    const glm::dmat3 back = glm::inverse(pose.rotation);
+    QueryBox box;
+    box.axes = back * placed.pose.rotation;
+    box.half = bounds.half_extents();
+    box.center = back * (placed.pose.rotation * bounds.center() + (placed.pose.translation - pose.translation));
+    return box;
+}
+
+QueryBox seen_from(const QueryBox& box, const RigidTransform& pose) {
+    const glm::dmat3 back = glm::inverse(pose.rotation);
+    return {back * (box.center - pose.translation), box.half, back * box.axes};
+}
+
+Aabb bounds_of(const QueryBox& box) {
+    glm::dvec3 reach(0.0);
+    for (int k = 0; k < 3; ++k) reach += box.half[k] * glm::abs(box.axes[k]);
+    reach = reach * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center);
+    return {box.center - reach, box.center + reach};
+}
+
+double distance_between(const Aabb& a, const Aabb& b) {
+    const glm::dvec3 gap = (glm::max)(glm::dvec3(0.0), (glm::max)(a.min - b.max, b.min - a.max));
+    return glm::length(gap) * (1.0 - 1e-4);
+}
+
+bool PartSearch::offer(const Triangle& corners, std::uint32_t triangle) const {
+    return visit({BodyMaker::triangle(corners), pose, {child, triangle}, sides});
+}
+
+bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search) {
+    const mesh::MeshParts& parts = mesh.parts();
+    bool ended = false;
+    const FloatBox q = to_floats(box);
+    double squared = kWider * kWider * search.limit * search.limit;
+    const auto offer = [&](const mesh::MeshLeaf& leaf, std::uint32_t lane) {
+        Triangle corners;
+        for (int v = 0; v < 3; ++v)
+            corners[static_cast<std::size_t>(v)] =
+                glm::dvec3(glm::vec3(leaf.vertex[v][0][lane], leaf.vertex[v][1][lane], leaf.vertex[v][2][lane]));
+        ended = search.offer(corners, leaf.triangle[lane]);
+        squared = kWider * kWider * search.limit * search.limit;
+        return ended;
+    };
+    if (search.nearest_first) {
+        mesh::visit_nearest_triangles(parts.nodes.data(), parts.leaves.data(), q.box, q.slop, squared, offer);
+        return ended;
+    }
+    const double margin = (std::min)(search.limit * kWider, 1e18);
+    mesh::visit_triangles_near(parts.nodes.data(), parts.leaves.data(), q.box, q.slop + static_cast<float>(margin),
+                               offer);
+    return ended;
+}
+
+bool search_parts(const Placed& placed, const QueryBox& box, const PartSearch& search) {
+    const Body& body = placed.body;
+    if (body.is_convex()) return search.visit({body, placed.pose, {search.child, 0}, Sides::both});
+    if (body.kind() == Kind::mesh) return search_mesh(*body.mesh(), box, search);
+    if (body.kind() == Kind::height_field) return search_field(*body.height_field(), bounds_of(box), search);
+    return search_compound(*body.compound(), box, search);
+}
+
+bool visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit) {
+    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit});
+}
+
+bool visit_nearest_parts(const Placed& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
+    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, true, limit, visit});
+}
+
+}  // namespace crofton::convex

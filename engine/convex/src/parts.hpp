@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The convex parts of a body that may be near a box.
+#pragma once
+#include <crofton/convex/query.hpp>
+#include <crofton/core/executor.hpp>
+
+namespace crofton::convex {
+
+// True ends the search.
+using PartVisitor = FunctionRef<bool(const Part& part)>;
+
+// A box in some frame: center ± half[k] · axes[k], where the axes are those of a pose seen from another.
+struct QueryBox {
+    glm::dvec3 center{0.0}, half{0.0};
+    glm::dmat3 axes{1.0};
+};
+
+// Around the body, in the frame of `pose`. Rounding is up to the callers below: 1e-12 of all numbers that go in.
+[[nodiscard]] QueryBox box_around(const Placed& body, const RigidTransform& pose);
+// The same box seen from the frame of `pose`.
+[[nodiscard]] QueryBox seen_from(const QueryBox& box, const RigidTransform& pose);
+[[nodiscard]] Aabb bounds_of(const QueryBox& box);
+
+// Calls `visit` for each part of the body that is not surely farther than `margin` from the box, which is in the body's
+// frame; a margin of kEverything: for all. True if a visit ended the search. Parts come in an order that depends on the
+// body alone.
+inline constexpr double kEverything = 1e300;
+bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit);
+
+// Calls `visit` for parts that may be nearer to the box than `limit`, the visitor's to lessen; about the nearest first.
+bool visit_nearest_parts(const Placed& body, const QueryBox& box, const double& limit, PartVisitor visit);
+
+// What the searches of one kind of body share: the body of the search, a child's number, and both ways to ask.
+struct PartSearch {
+    const RigidTransform& pose;  // of the body
+    Sides sides;
+    std::uint32_t child;  // number of the body among a compound's, or of its first part
+    bool nearest_first;   // else in the body's order
+    const double& limit;  // distance
+    PartVisitor visit;
+
+    // Calls visit for one triangle.
+    bool offer(const Triangle& corners, std::uint32_t triangle) const;
+};
+bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search);
+bool search_field(const HeightField& field, const Aabb& box, const PartSearch& search);
+bool search_compound(const Compound& compound, const QueryBox& box, const PartSearch& search);
+bool search_parts(const Placed& body, const QueryBox& box, const PartSearch& search);
+
+// Of two closed boxes, from below, also where they are told in a frame that is orthonormal to 1e-6 alone.
+[[nodiscard]] double distance_between(const Aabb& a, const Aabb& b);
+
+// A pose within another.
+[[nodiscard]] inline RigidTransform within(const RigidTransform& outer, const RigidTransform& inner) {
+    return {outer.rotation * inner.rotation, outer.rotation * inner.translation + outer.translation};
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <memory>
+
+#include "surfaces.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+RigidTransform product(const RigidTransform& outer, const RigidTransform& inner) {
+    return {outer.rotation * inner.rotation, outer.rotation * inner.translation + outer.translation};
+}
+
+// Children and what they stand for one by one, with compounds within put in their place.
+struct Tree {
+    std::vector<std::unique_ptr<Compound>> inner;
+    std::unique_ptr<Compound> compound;
+    std::vector<CompoundChild> flat;
+};
+
+Tree random_tree(RandomBodies& random, int children, int levels, const Surface* surface = nullptr) {
+    Tree tree;
+    std::vector<CompoundChild> list;
+    for (int i = 0; i < children; ++i) {
+        const RigidTransform pose{random.rotation(), random.number(0, 2) * random.direction()};
+        if (levels > 1 && i % 3 == 0) {
+            Tree below = random_tree(random, 3, levels - 1);
+            for (const CompoundChild& child : below.flat) tree.flat.push_back({child.body, product(pose, child.pose)});
+            for (auto& c : below.inner) tree.inner.push_back(std::move(c));
+            list.push_back({Body::compound(*below.compound), pose});
+            tree.inner.push_back(std::move(below.compound));
+        } else {
+            const Body body = surface != nullptr && i == 1 ? surface->body() : any_body(random, 0.4);
+            list.push_back({body, pose});
+            tree.flat.push_back({body, pose});
+        }
+    }
+    tree.compound = std::make_unique<Compound>(Compound::build(list).value());
+    return tree;
+}
+
+}  // namespace
+
+TEST_SUITE("convex/compound") {
+    TEST_CASE("no children, bad poses and half-spaces are named errors, with the child") {
+        CHECK(Compound::build({}).error().code == ErrorCode::empty);
+        const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, 1, 0}, 0}).value();
+        std::vector<CompoundChild> children{{box, at({})}, {floor, at({})}};
+        REQUIRE_FALSE(Compound::build(children).has_value());
+        CHECK(Compound::build(children).error().code == ErrorCode::unsupported);
+        CHECK(Compound::build(children).error().item == 1);
+        children[1] = {box, at({0, NAN, 0})};
+        REQUIRE_FALSE(Compound::build(children).has_value());
+        CHECK(Compound::build(children).error().code == ErrorCode::non_finite);
+        CHECK(Compound::build(children).error().item == 1);
+    }
+
+    TEST_CASE("compounds in compounds: sixteen deep work, the seventeenth is a named error, so a thousand never nest") {
+        std::vector<std::unique_ptr<Compound>> chain;
+        Body body = Body::ball(0.5f).value();
+        int built = 0;
+        for (; built < 1000; ++built) {
+            const CompoundChild child{body, at({1, 0, 0})};
+            auto next = Compound::build({&child, 1});
+            if (!next) {
+                CHECK(next.error().code == ErrorCode::out_of_range);
+                CHECK(next.error().item == 0);
+                break;
+            }
+            chain.push_back(std::make_unique<Compound>(std::move(*next)));
+            body = Body::compound(*chain.back());
+        }
+        CHECK(built == kMaxCompoundDepth);
+        CHECK(chain.back()->depth() == kMaxCompoundDepth);
+        const Body point = Body::ball(0.0f).value();
+        CHECK(intersects({body, at({})}, {point, at({16.4, 0, 0})}));
+        CHECK_FALSE(intersects({body, at({})}, {point, at({16.6, 0, 0})}));
+        CHECK(distance({body, at({})}, {point, at({20, 0, 0})}).distance == doctest::Approx(3.5));
+    }
+
+    TEST_CASE("children are numbered through, with those of compounds within in their place") {
+        RandomBodies random(1);
+        const Tree tree = random_tree(random, 9, 3);
+        REQUIRE(tree.compound->part_count() == tree.flat.size());
+        for (std::uint32_t i = 0; i < tree.compound->part_count(); ++i)
+            CHECK(tree.compound->part(i).body.kind() == tree.flat[i].body.kind());
+    }
+
+    TEST_CASE("all answers are those of the children one by one") {
+        RandomBodies random(2);
+        const Surface patch = soup(random, 20, 1.0, 0.4);
+        int meeting = 0, hits = 0;
+        Manifolds found;
+        for (int round = 0; round < 120; ++round) {
+            const Tree tree =
+                random_tree(random, 1 + random.index(12), 1 + round % 3, round % 2 == 0 ? &patch : nullptr);
+            const Body body = Body::compound(*tree.compound), b = any_body(random, 0.6);
+            const RigidTransform pose{random.rotation(), random.number(0, 1e5) * random.direction()};
+            const RigidTransform pose_b{random.rotation(),
+                                        pose.translation + random.number(0, 2.8) * random.direction()};
+            const Motion spin{random.direction(), random.direction(), {}}, still;
+            const Motion& motion = round % 4 == 0 ? spin : still;
+            const Motion fly{1.5 * (pose.translation - pose_b.translation), 3.0 * random.direction(), {}};
+            bool meets = false;
+            double least = HUGE_VAL, deepest = -1.0, first = 1.0, depth = 0.0;
+            std::uint32_t nearest = 0;
+            for (std::size_t i = 0; i < tree.flat.size(); ++i) {
+                const RigidTransform place = product(pose, tree.flat[i].pose);
+                const Placed child{tree.flat[i].body, place};
+                meets = meets || intersects(child, {b, pose_b});
+                const double d = distance(child, {b, pose_b}).distance;
+                if (d < least) least = d, nearest = static_cast<std::uint32_t>(i);
+                contact_manifolds(child, {b, pose_b}, {.margin = 0.02}, found);
+                for (const Manifold& m : found.all()) deepest = std::max(deepest, m.depth);
+                depth = std::max(depth, penetration(child, {b, pose_b}).depth);
+                Motion own = motion;
+                own.pivot = glm::transpose(tree.flat[i].pose.rotation) * (motion.pivot - tree.flat[i].pose.translation);
+                first = std::min(first, cast(child, own, {b, pose_b}, fly, {.max_steps = 5000}).value().time);
+            }
+            CHECK(intersects({body, pose}, {b, pose_b}) == meets);
+            const Distance d = distance({body, pose}, {b, pose_b});
+            CHECK(d.distance == doctest::Approx(least).epsilon(1e-6));
+            if (least > 0.0) CHECK(d.part_a.child == nearest);
+            contact_manifolds({b, pose_b}, {body, pose}, {.margin = 0.02}, found);
+            double told = -1.0;
+            for (const Manifold& m : found.all()) told = std::max(told, m.depth);
+            CHECK(told == doctest::Approx(deepest).epsilon(1e-6));
+            CHECK(penetration({body, pose}, {b, pose_b}).depth == doctest::Approx(depth).epsilon(1e-6));
+            const Impact impact = cast({body, pose}, motion, {b, pose_b}, fly, {.max_steps = 5000}).value();
+            CHECK(std::abs(impact.time - first) <= 1e-5);
+            meeting += meets;
+            hits += impact.result == CastResult::hit;
+        }
+        CHECK(meeting > 20);
+        CHECK(hits > 30);
+    }
+
+    TEST_CASE("compound against compound: every pair of children") {
+        RandomBodies random(3);
+        int meeting = 0;
+        for (int round = 0; round < 100; ++round) {
+            const Tree a = random_tree(random, 6, 2), b = random_tree(random, 5, 1);
+            const Body body_a = Body::compound(*a.compound), body_b = Body::compound(*b.compound);
+            const RigidTransform pose_a{random.rotation(), {}},
+                pose_b{random.rotation(), random.number(1, 2.5) * random.direction()};
+            const Motion fly{-2.0 * pose_b.translation, {}, {}};
+            bool meets = false;
+            double least = HUGE_VAL, first = 1.0;
+            for (const CompoundChild& x : a.flat)
+                for (const CompoundChild& y : b.flat) {
+                    const RigidTransform px = product(pose_a, x.pose), py = product(pose_b, y.pose);
+                    meets = meets || intersects({x.body, px}, {y.body, py});
+                    least = std::min(least, distance({x.body, px}, {y.body, py}).distance);
+                    first = std::min(first, cast({x.body, px}, {}, {y.body, py}, fly).value().time);
+                }
+            CHECK(intersects({body_a, pose_a}, {body_b, pose_b}) == meets);
+            CHECK(distance({body_a, pose_a}, {body_b, pose_b}).distance == doctest::Approx(least).epsilon(1e-6));
+            CHECK(std::abs(cast({body_a, pose_a}, {}, {body_b, pose_b}, fly).value().time - first) <= 1e-5);
+            meeting += meets;
+        }
+        CHECK(meeting > 10);
+    }
+}

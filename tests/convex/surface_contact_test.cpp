@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <set>
+
+#include "surfaces.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+RigidTransform turned(double angle, const glm::dvec3& p) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c), p};
+}
+
+}  // namespace
+
+TEST_SUITE("convex/surface_contact") {
+    TEST_CASE("of triangles that share nothing the manifolds are those of the triangles one by one") {
+        RandomBodies random(1);
+        int touching = 0;
+        Manifolds found;
+        for (int round = 0; round < 200; ++round) {
+            const Surface s = soup(random, 60, 2.0, 0.5);
+            const Body b = any_body(random, 0.7), body = s.body();
+            const RigidTransform pose{random.rotation(), {}}, pose_b{random.rotation(), random.direction()};
+            const ManifoldOptions options{.margin = 0.05, .max_points = 8};
+            double deepest = -1.0;
+            std::set<std::uint32_t> touched;
+            for (std::size_t t = 0; t < s.size(); ++t) {
+                const Manifold m = contact_manifold({s.triangle(t), pose}, {b, pose_b}, options);
+                if (m.count == 0) continue;
+                deepest = std::max(deepest, m.depth);
+                touched.insert(static_cast<std::uint32_t>(t));
+            }
+            contact_manifolds({body, pose}, {b, pose_b}, options, found);
+            double told = -1.0;
+            std::set<std::uint32_t> parts;
+            for (const Manifold& m : found.all()) {
+                told = std::max(told, m.depth);
+                CHECK(glm::length(m.normal) == doctest::Approx(1.0));
+                for (int i = 0; i < m.count; ++i) parts.insert(m.points[i].part_a.triangle);
+            }
+            CHECK(told == doctest::Approx(deepest));
+            CHECK(parts == touched);
+            touching += touched.empty() ? 0 : 1;
+            contact_manifolds({b, pose_b}, {body, pose}, options, found);
+            double reversed = -1.0;
+            for (const Manifold& m : found.all()) reversed = std::max(reversed, m.depth);
+            CHECK(reversed == doctest::Approx(deepest));
+        }
+        CHECK(touching > 100);
+    }
+
+    TEST_CASE("bodies that slide over a triangulated floor meet no inner edge, whatever the floor's place") {
+        RandomBodies random(2);
+        const Body bodies[] = {Body::box({0.5f, 0.5f, 0.5f}).value(),
+                               Body::box({0.05f, 0.5f, 0.05f}).value(),
+                               Body::box({3.0f, 0.5f, 2.0f}).value(),
+                               Body::ball(0.5f).value(),
+                               Body::capsule(0.2f, 0.3f).value(),
+                               Body::cylinder(0.5f, 0.4f).value(),
+                               Body::rounded(Body::box({0.3f, 0.4f, 0.3f}).value(), 0.1f).value()};
+        Manifolds found;
+        for (const double offset : {0.0, 1e6}) {
+            const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });
+            for (const Sides sides : {Sides::front, Sides::both}) {
+                const Body floor = s.body(sides);
+                const RigidTransform place = at(offset * glm::dvec3(1.0, 0.5, -0.3));
+                for (int i = 0; i < 2000; ++i) {
+                    const Body& b = bodies[i % 7];
+                    const double depth = std::pow(10.0, -random.number(1.4, 6.0));
+                    const RigidTransform pose =
+                        turned(random.number(0, 6.2),
+                               place.translation + glm::dvec3(random.number(-2, 2), 0.5 - depth, random.number(-2, 2)));
+                    contact_manifolds({floor, place}, {b, pose}, {.margin = 0.01}, found);
+                    REQUIRE(found.all().size() == 1);
+                    const Manifold& m = found.all()[0];
+                    CHECK(m.normal.y >= 1.0 - 1e-9);
+                    CHECK(m.depth == doctest::Approx(depth).epsilon(1e-3));
+                    CHECK(m.count <= 4);
+                    if (b.kind() == Kind::box) CHECK(m.count >= 3);
+                }
+            }
+        }
+    }
+
+    TEST_CASE("a box tilted on the floor is held by its lowest corner or edge, straight up") {
+        RandomBodies random(3);
+        const Surface s = ground(random, 24, 0.5, [](double, double) { return 0.0; });
+        const Body floor = s.body(Sides::front), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        Manifolds found;
+        for (int i = 0; i < 500; ++i) {
+            RigidTransform pose{random.rotation(), {random.number(-2, 2), 0.0, random.number(-2, 2)}};
+            double lowest = HUGE_VAL;
+            for (int k = 0; k < 8; ++k) lowest = std::min(lowest, (pose.rotation * box.vertex(k)).y);
+            const double depth = random.number(1e-4, 0.02);
+            pose.translation.y = -lowest - depth;
+            contact_manifolds({floor, at({})}, {box, pose}, {}, found);
+            REQUIRE(found.all().size() == 1);
+            CHECK(found.all()[0].normal.y >= 1.0 - 1e-9);
+            CHECK(found.all()[0].depth == doctest::Approx(depth).epsilon(1e-6));
+        }
+    }
+
+    TEST_CASE("a ridge pushes to both sides, a valley along its faces, and a step's edge outward") {
+        RandomBodies random(4);
+        const auto roof = ground(
+            random, 16, 0.5, [](double x, double) { return x < 1e-3 ? x : -x; }, 0.0);
+        Manifolds found;
+        const Body ball = Body::ball(0.25f).value(), box = Body::box({0.25f, 0.25f, 0.25f}).value();
+        contact_manifolds({roof.body(Sides::front), at({})}, {ball, at({0, 0.2, 0.1})}, {}, found);
+        REQUIRE(found.all().size() == 1);
+        CHECK(found.all()[0].normal.y == doctest::Approx(1.0));  // between the two faces' normals
+        CHECK(found.all()[0].depth == doctest::Approx(0.05));
+        contact_manifolds({roof.body(Sides::front), at({})}, {box, at({0, 0.2, 0.1})}, {}, found);
+        for (const Manifold& m : found.all()) CHECK(m.normal.y > 0.7);
+        const auto valley = ground(
+            random, 16, 0.5, [](double x, double) { return std::abs(x); }, 0.0);
+        contact_manifolds({valley.body(Sides::front), at({})}, {ball, at({0, 0.34, 0.1})}, {}, found);
+        REQUIRE(found.all().size() == 2);
+        for (const Manifold& m : found.all()) {
+            CHECK(m.normal.y == doctest::Approx(std::sqrt(0.5)));
+            CHECK(m.depth == doctest::Approx(0.25 - 0.34 * std::sqrt(0.5)));
+        }
+    }
+
+    TEST_CASE("front sides alone: what has sunk in is pushed up, what is below is left alone, both sides push down") {
+        RandomBodies random(5);
+        const Surface s = ground(random, 16, 0.5, [](double, double) { return 0.0; });
+        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value(), ball = Body::ball(0.5f).value();
+        Manifolds found;
+        for (const Body& b : {box, ball}) {
+            contact_manifolds({s.body(Sides::front), at({})}, {b, at({0.1, 0.1, 0.2})}, {}, found);
+            REQUIRE_FALSE(found.all().empty());
+            for (const Manifold& m : found.all()) CHECK(m.normal.y == doctest::Approx(1.0));
+            CHECK(found.all()[0].depth == doctest::Approx(0.4));
+            contact_manifolds({s.body(Sides::front), at({})}, {b, at({0.1, -0.4, 0.2})}, {}, found);
+            CHECK(found.all().empty());
+            contact_manifolds({s.body(Sides::both), at({})}, {b, at({0.1, -0.4, 0.2})}, {}, found);
+            REQUIRE_FALSE(found.all().empty());
+            CHECK(found.all()[0].normal.y == doctest::Approx(-1.0));
+            CHECK(found.all()[0].depth == doctest::Approx(0.1));
+        }
+        CHECK(contact_manifold({s.body(), at({})}, {box, at({0.1, 0.45, 0.2})}).depth == doctest::Approx(0.05));
+    }
+
+    TEST_CASE("ids stay while a box rests and trembles on triangles") {
+        RandomBodies random(6);
+        const Surface s = ground(random, 16, 0.9, [](double, double) { return 0.0; });
+        const Body floor = s.body(Sides::front), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        Manifolds found;
+        int kept = 0, all = 0;
+        std::set<std::pair<PartId, std::uint16_t>> before;
+        for (int frame = 0; frame < 300; ++frame) {
+            const glm::dvec3 tremble = 1e-5 * random.direction();
+            contact_manifolds({floor, at({})}, {box, turned(0.3 + tremble.x, glm::dvec3(0.2, 0.499, 0.1) + tremble)},
+                              {.margin = 0.01}, found);
+            std::set<std::pair<PartId, std::uint16_t>> now;
+            for (const Manifold& m : found.all())
+                for (int i = 0; i < m.count; ++i) now.insert({m.points[i].part_a, m.points[i].on_b.index});
+            for (const auto& id : before) kept += static_cast<int>(now.count(id));
+            all += static_cast<int>(before.size());
+            before = now;
+        }
+        CHECK(kept >= 0.99 * all);
+    }
+
+    TEST_CASE("tracked points keep the caller's numbers while their ids stay, and those that go are counted") {
+        const Body floor = Body::box({9, 1, 9}).value(), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        const RigidTransform still = at({});
+        Manifolds found;
+        PairCache cache;
+        Vector<TrackedPoint> points;
+        const auto step = [&](const RigidTransform& pose) {
+            contact_manifolds({floor, still}, {box, pose}, {}, found, &cache);
+            return track(found.all(), points);
+        };
+        CHECK(step(at({0, 1.49, 0})) == 0);
+        REQUIRE(points.size() == 4);
+        for (std::size_t i = 0; i < 4; ++i) {
+            CHECK(points[i].began);
+            CHECK(points[i].memory[0] == 0.0f);
+            points[i].memory[0] = static_cast<float>(points[i].contact.on_b.index) + 1.0f;
+        }
+        CHECK(step(at({0.3, 1.495, -0.1})) == 0);
+        REQUIRE(points.size() == 4);
+        for (const TrackedPoint& p : points) {
+            CHECK_FALSE(p.began);
+            CHECK(p.memory[0] == static_cast<float>(p.contact.on_b.index) + 1.0f);
+        }
+        // Over the floor's edge two corners leave it: their points end, and new ones begin on the edge.
+        CHECK(step(at({9.0, 1.49, 0})) == 2);
+        REQUIRE(points.size() == 4);
+        CHECK(std::count_if(points.begin(), points.end(), [](const TrackedPoint& p) { return p.began; }) == 2);
+        CHECK(step(at({0, 5, 0})) == 4);
+        CHECK(points.empty());
+    }
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <algorithm>
+
+#include "surfaces.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+bool brute_meets(const Surface& s, const RigidTransform& pose, const Placed& b) {
+    for (std::size_t i = 0; i < s.size(); ++i)
+        if (intersects({s.triangle(i), pose}, b)) return true;
+    return false;
+}
+
+// b's pose next to one of the triangles, `gap` from it along a random direction.
+RigidTransform next_to(RandomBodies& random, const Surface& s, const RigidTransform& pose, const Body& b, double gap) {
+    const Body triangle = s.triangle(static_cast<std::size_t>(random.index(static_cast<int>(s.size()))));
+    const glm::dvec3 d = random.direction();
+    const RigidTransform turned{random.rotation(), {}};
+    const glm::dvec3 from =
+        pose.translation + pose.rotation * support_point(triangle, glm::transpose(pose.rotation) * d);
+    const glm::dvec3 own = turned.rotation * support_point(b, glm::transpose(turned.rotation) * -d);
+    return {turned.rotation, from - own + gap * d};
+}
+
+}  // namespace
+
+TEST_SUITE("convex/surface") {
+    TEST_CASE("a tree without triangles is refused, and what is not convex is not rounded") {
+        const mesh::MeshTree none;
+        REQUIRE_FALSE(Body::mesh(none).has_value());
+        CHECK(Body::mesh(none).error().code == ErrorCode::empty);
+        RandomBodies random(1);
+        const Surface s = soup(random, 3, 1.0, 1.0);
+        REQUIRE_FALSE(Body::rounded(s.body(), 1.0f).has_value());
+        CHECK(Body::rounded(s.body(), 1.0f).error().code == ErrorCode::unsupported);
+    }
+
+    TEST_CASE("yes or no is that of the triangles one by one, at every gap and offset, for every kind of body") {
+        RandomBodies random(2);
+        int meeting = 0, apart = 0;
+        for (const double offset : {0.0, 1e3, 1e7})
+            for (int round = 0; round < 8; ++round) {
+                const Surface s = soup(random, 300, 6.0, 0.6);
+                const Body body = s.body();
+                const RigidTransform pose{random.rotation(), offset * random.direction()};
+                for (int i = 0; i < 40; ++i) {
+                    const Body b = any_body(random);
+                    const double gap = (i % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, -random.number(0, 12));
+                    const RigidTransform pose_b = next_to(random, s, pose, b, gap);
+                    const bool truth = brute_meets(s, pose, {b, pose_b});
+                    CHECK(intersects({body, pose}, {b, pose_b}) == truth);
+                    CHECK(intersects({b, pose_b}, {body, pose}) == truth);
+                    (truth ? meeting : apart) += 1;
+                }
+            }
+        CHECK(meeting > 200);
+        CHECK(apart > 100);
+    }
+
+    TEST_CASE("distances are the least of the triangles' one by one, with points and bounds") {
+        RandomBodies random(3);
+        int apart = 0;
+        for (int round = 0; round < 10; ++round) {
+            const Surface s = soup(random, 200, 4.0, 0.5);
+            const Body body = s.body();
+            const RigidTransform pose{random.rotation(), random.number(0, 1e4) * random.direction()};
+            for (int i = 0; i < 20; ++i) {
+                const Body b = any_body(random, 0.5);
+                const RigidTransform pose_b{random.rotation(), pose.translation + 6.0 * random.direction()};
+                Distance least;
+                least.distance = HUGE_VAL;
+                for (std::size_t t = 0; t < s.size(); ++t) {
+                    const Body triangle = s.triangle(t);
+                    const Distance d = distance({triangle, pose}, {b, pose_b});
+                    if (d.distance < least.distance) least = d;
+                }
+                const Distance d = distance({body, pose}, {b, pose_b});
+                const double size = 1e-9 * (body.reach() + b.reach() + 12.0);
+                CHECK(std::abs(d.distance - least.distance) <= 2.0 * size);
+                CHECK(d.lower <= least.upper);
+                CHECK(d.distance <= d.upper);
+                CHECK(d.lower <= d.distance);
+                if (d.distance == 0.0) continue;
+                ++apart;
+                CHECK(glm::distance(d.on_a, d.on_b) == doctest::Approx(d.distance).epsilon(1e-6));
+                const Body nearest = s.triangle(d.part_a.triangle);
+                CHECK(closest_point({nearest, pose}, d.on_a).distance <= size);
+                const Distance back = distance({b, pose_b}, {body, pose});
+                CHECK(back.distance == doctest::Approx(d.distance));
+                CHECK(back.part_b == d.part_a);
+            }
+        }
+        CHECK(apart > 80);
+    }
+
+    TEST_CASE(
+        "the tree leaves out what is far: a small box is asked of few of 20,000 triangles, and of all it may meet") {
+        RandomBodies random(4);
+        const Surface s = ground(random, 100, 1.0, [](double x, double z) { return 0.3 * std::sin(x) * std::cos(z); });
+        const Body body = s.body(), box = Body::box({0.5f, 0.5f, 0.5f}).value();
+        Vector<Part> parts;
+        std::size_t most = 0;
+        for (int i = 0; i < 200; ++i) {
+            const RigidTransform pose{random.rotation(), {random.number(-40, 40), 0.3, random.number(-40, 40)}};
+            parts_near({body, at({})}, {box, pose}, 0.1, parts);
+            most = std::max(most, parts.size());
+            std::vector<bool> told(s.size(), false);
+            for (const Part& part : parts) told[part.id.triangle] = true;
+            for (std::size_t t = 0; t < s.size(); ++t)
+                if (!told[t] && distance({s.triangle(t), at({})}, {box, pose}).distance <= 0.1) CHECK(told[t]);
+            if (i % 20 != 0) continue;
+            parts_near({body, at({})}, {box, at({0, 200, 0})}, 0.1, parts);
+            CHECK(parts.empty());
+        }
+        CHECK(most < 60);
+    }
+
+    TEST_CASE("a half-space and a surface, and a point next to one") {
+        RandomBodies random(5);
+        const Surface s = soup(random, 50, 2.0, 0.5);
+        const Body body = s.body(), floor = Body::half_space({{0, -1, 0}, -9.0}).value();
+        CHECK_FALSE(intersects({body, at({})}, {floor, at({})}));
+        double lowest = HUGE_VAL;
+        for (const glm::vec3& p : s.mesh.positions) lowest = std::min(lowest, double(p.y));
+        CHECK(distance({body, at({})}, {floor, at({})}).distance == doctest::Approx(lowest + 9.0));
+        CHECK(intersects({floor, at({})}, {body, at({0, -9.0 - lowest, 0})}));
+        const Surface plain = ground(random, 4, 1.0, [](double, double) { return 1.0; });
+        const Distance d = closest_point({plain.body(), at({})}, {0.1, 3.0, 0.2});
+        CHECK(d.distance == doctest::Approx(2.0));
+        CHECK(d.on_b.y == doctest::Approx(1.0));
+    }
+
+    TEST_CASE("two surfaces and their triangles: meeting and distance") {
+        RandomBodies random(6);
+        for (int i = 0; i < 12; ++i) {
+            const Surface a = soup(random, 40, 1.0, 0.3), b = soup(random, 30, 1.0, 0.3);
+            const RigidTransform pose_a{random.rotation(), {}}, pose_b{random.rotation(), 2.5 * random.direction()};
+            double least = HUGE_VAL;
+            for (std::size_t t = 0; t < b.size(); ++t)
+                for (std::size_t u = 0; u < a.size(); ++u)
+                    least = std::min(least, distance({a.triangle(u), pose_a}, {b.triangle(t), pose_b}).distance);
+            CHECK(intersects({a.body(), pose_a}, {b.body(), pose_b}) == (least == 0.0));
+            const Distance d = distance({a.body(), pose_a}, {b.body(), pose_b});
+            CHECK(d.distance == doctest::Approx(least));
+            if (least > 0.0)
+                CHECK(distance({a.triangle(d.part_a.triangle), pose_a}, {b.triangle(d.part_b.triangle), pose_b})
+                          .distance == doctest::Approx(least));
+        }
+    }
+}
