@@ -49,9 +49,12 @@ class Prover {
         const bool single = group.count == 1;
         if (eyes.count == 1 && single && is_seen(eyes, group)) return;
         const Corners corners = single ? q_.parts[q_.objects.items(group)[0]].corners() : corners_of(group.box);
-        if (!intersects(eyes.box, group.box) && is_blocked(eyes.box, corners)) return hide(eyes, group);
+        const Answer answer = intersects(eyes.box, group.box) ? Answer::open : ask(eyes.box, corners);
+        if (answer == Answer::blocked) return hide(eyes, group);
         if (eyes.count == 1 && single) {
-            if (prove_halves(eyes.box, q_.parts[q_.objects.items(group)[0]], q_.options.halvings)) hide(eyes, group);
+            if (answer == Answer::partly &&
+                prove_halves(eyes.box, q_.parts[q_.objects.items(group)[0]], q_.options.halvings))
+                hide(eyes, group);
             return;
         }
         const bool halve_cells = !single ? eyes.count > 1 && size_of(eyes.box) >= size_of(group.box) : true;
@@ -78,18 +81,25 @@ class Prover {
             }
     }
 
-    // By one body: the last that did, or one that the segment between the middles meets.
-    [[nodiscard]] bool is_blocked(const Aabb& eyes, const Corners& object) {
+    enum class Answer {
+        blocked,  // all segments meet one body
+        partly,   // the one between the middles meets a body
+        open,     // it meets none: no halving can help
+    };
+
+    // The last body that blocked is asked first, then all that the segment between the middles meets.
+    [[nodiscard]] Answer ask(const Aabb& eyes, const Corners& object) {
         const Corners from = corners_of(eyes);
-        const auto tries = [&](std::uint32_t body) {
-            return may_prove_for(q_.bodies[body], eyes, q_.options.near_reach, q_.margin) &&
-                   blocks_all(q_.bodies[body], from, object, q_.margin);
+        const auto blocks_eyes = [&](const Blocker& body) {
+            return may_prove_for(body, eyes, q_.options.near_reach, q_.margin) &&
+                   blocks_all(body, from, object, q_.margin);
         };
-        if (last_ < q_.bodies.size() && tries(last_)) return true;
+        if (last_ < q_.bodies.size() && blocks_eyes(q_.bodies[last_])) return Answer::blocked;
         glm::dvec3 middle(0.0);
         for (const glm::dvec3& p : object) middle += 0.125 * p;
         const glm::dvec3 start = eyes.center();
         const Line line{start, middle - start};  // of any length: 0 ≤ t ≤ 1 is the segment
+        Answer answer = Answer::open;
         stack_.assign(1, BoxGroups::kRoot);
         while (!stack_.empty()) {
             const auto& node = q_.tree[stack_.back()];
@@ -102,9 +112,14 @@ class Prover {
                 continue;
             }
             const std::uint32_t body = q_.tree.items(node)[0];
-            if (body != last_ && tries(body)) return last_ = body, true;
+            if (!blocks(q_.bodies[body], start, middle, q_.margin)) continue;
+            answer = Answer::partly;
+            if (body != last_ && blocks_eyes(q_.bodies[body])) {
+                last_ = body;
+                return Answer::blocked;
+            }
         }
-        return false;
+        return answer;
     }
 
     [[nodiscard]] bool prove_halves(const Aabb& eyes, const Part& object, std::uint32_t halvings) {
@@ -124,8 +139,9 @@ class Prover {
                 part.half[widest] *= 0.5;
                 part.center += side * part.half[widest];
             }
-            if (!is_blocked(part_of_eyes, part.corners()) && !prove_halves(part_of_eyes, part, halvings - 1))
-                return false;
+            const Answer answer = ask(part_of_eyes, part.corners());
+            if (answer == Answer::open) return false;
+            if (answer == Answer::partly && !prove_halves(part_of_eyes, part, halvings - 1)) return false;
         }
         return true;
     }

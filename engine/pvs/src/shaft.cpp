@@ -27,6 +27,14 @@ bool add_plane(Blocker& body, glm::dvec3 normal, const glm::dvec3& p, const glm:
     return true;
 }
 
+// Keeps of a segment what is on the kept side of a plane, from which its ends are a and b away. False: nothing is left.
+bool cut(double a, double b, double& begin, double& end) {
+    if (a < 0.0 && b < 0.0) return false;
+    if (a < 0.0) begin = (std::max)(begin, a / (a - b));
+    if (b < 0.0) end = (std::min)(end, a / (a - b));
+    return begin <= end;
+}
+
 bool make_box(Blocker& body, const Corners& c) {
     glm::dvec3 inside(0.0);
     for (const glm::dvec3& p : c) inside += 0.125 * p;
@@ -111,12 +119,16 @@ bool blocks_all(const Blocker& body, const Corners& eyes, const Corners& object,
             for (std::size_t k = 0; k < count; ++k) {
                 const double a = k < kept ? from[k][i] : at(body.planes[k], eyes[i]) - margin;
                 const double b = k < kept ? to[k][j] : at(body.planes[k], object[j]) - margin;
-                if (a < 0.0 && b < 0.0) return false;
-                if (a < 0.0) begin = (std::max)(begin, a / (a - b));
-                if (b < 0.0) end = (std::min)(end, a / (a - b));
-                if (!(begin <= end)) return false;
+                if (!cut(a, b, begin, end)) return false;
             }
         }
+    return true;
+}
+
+bool blocks(const Blocker& body, const glm::dvec3& p, const glm::dvec3& q, double margin) {
+    double begin = 0.0, end = 1.0;
+    for (const Plane& plane : body.planes)
+        if (!cut(at(plane, p) - margin, at(plane, q) - margin, begin, end)) return false;
     return true;
 }
 

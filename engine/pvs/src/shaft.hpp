@@ -34,6 +34,9 @@ using Corners = std::array<glm::dvec3, 8>;
 // rounding of what is computed here. docs/notes/pvs.md has the proof.
 [[nodiscard]] bool blocks_all(const Blocker& body, const Corners& eyes, const Corners& object, double margin);
 
+// Whether the body meets the segment from p to q, as deep as that.
+[[nodiscard]] bool blocks(const Blocker& body, const glm::dvec3& p, const glm::dvec3& q, double margin);
+
 // Whether the body may prove anything for these eyes; `near_reach` as in ProofOptions.
 [[nodiscard]] bool may_prove_for(const Blocker& body, const Aabb& eyes, double near_reach, double margin);
 
