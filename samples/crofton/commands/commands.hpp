@@ -12,6 +12,8 @@ void add_frames_command(CommandLine& line);
 void add_hierarchy_command(CommandLine& line);
 void add_lines_command(CommandLine& line);
 void add_measure_command(CommandLine& line);
+void add_merge_command(CommandLine& line);
+void add_pvs_command(CommandLine& line);
 void add_radiosity_command(CommandLine& line);
 void add_triangulate_command(CommandLine& line);
 void add_verify_command(CommandLine& line);

@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
     add_hierarchy_command(line);
     add_lines_command(line);
     add_measure_command(line);
+    add_merge_command(line);
+    add_pvs_command(line);
     add_radiosity_command(line);
     add_triangulate_command(line);
     add_verify_command(line);

@@ -46,11 +46,12 @@ class Writer {
     void add(std::string_view name, std::span<const T> elements) {
         add_bytes(name, std::as_bytes(elements), sizeof(T));
     }
+    // The same for elements of a size that is known only now, as those of another file's section.
+    void add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size);
     // The whole file.
     [[nodiscard]] Vector<std::byte> finish();
 
   private:
-    void add_bytes(std::string_view name, std::span<const std::byte> bytes, std::size_t element_size);
     Vector<Section> sections_;
     Vector<Vector<std::byte>> contents_;
 };

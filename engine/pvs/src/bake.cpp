@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// Lines through the cells, and what the gaps between their crossings witness.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <crofton/bake/checksum.hpp>
+#include <crofton/core/recovery.hpp>
+
+#include "bake_data.hpp"
+
+namespace crofton::pvs {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 34;
+constexpr std::uint64_t kWave = 64;  // blocks between two looks at the limits
+constexpr std::uint32_t kNothing = ~std::uint32_t{0};
+
+// Bits are only ever set, so the order of threads does not matter.
+template <class T>
+void set_bits(T& word, T bits) {
+    const std::atomic_ref<T> shared(word);
+    if ((shared.load(std::memory_order_relaxed) & bits) != bits) shared.fetch_or(bits, std::memory_order_relaxed);
+}
+
+// What is seen from one gap between crossings: the object at each of its ends.
+struct Gap {
+    double end = 0.0;  // along the line
+    std::uint32_t behind = kNothing, ahead = kNothing;
+    std::uint16_t flags = 0;  // of CellFlag
+};
+
+// One thread's memory.
+struct Scratch {
+    Vector<Line> lines;
+    radiosity::LineHits hits;
+    Vector<CellSpan> spans;
+    Vector<Gap> gaps;
+};
+
+class BlockTracing {
+  public:
+    BlockTracing(Bake::State& state, Scratch& scratch) : state_(state), scratch_(scratch) {}
+
+    void trace(std::uint64_t block) {
+        state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
+        state_.tracer->all_hits(scratch_.lines, scratch_.hits);
+        for (std::size_t i = 0, first = 0; i < scratch_.lines.size(); ++i) {
+            const std::size_t end = scratch_.hits.ends[i];
+            find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), i % kEscapeClasses);
+            state_.walk->find(scratch_.lines[i], scratch_.spans);
+            witness();
+            first = end;
+        }
+    }
+
+  private:
+    [[nodiscard]] std::uint32_t object(const radiosity::Hit& hit) const { return state_.object_of[hit.triangle]; }
+
+    void find_gaps(std::span<const radiosity::Hit> hits, std::size_t line_class) {
+        auto& gaps = scratch_.gaps;
+        gaps.assign(hits.size() + 1, Gap{});
+        const bool both = state_.options.sides == occlude::Sides::both;
+        std::uint32_t behind = kNothing, ahead = kNothing;
+        for (std::size_t g = 0; g <= hits.size(); ++g) {
+            // After it has come from a front the line leaves a back behind.
+            if (g > 0 && (both || !hits[g - 1].front)) behind = object(hits[g - 1]);
+            gaps[g].behind = behind;
+            gaps[g].end = g < hits.size() ? static_cast<double>(hits[g].t) : HUGE_VAL;
+            gaps[g].flags = kPassed;
+        }
+        for (std::size_t g = hits.size() + 1; g-- > 0;) {
+            if (g < hits.size() && (both || hits[g].front)) ahead = object(hits[g]);
+            gaps[g].ahead = ahead;
+        }
+        tell_solids(hits);
+        const auto escapes = static_cast<std::uint16_t>(kFirstEscape << line_class);
+        for (Gap& gap : gaps)
+            if ((gap.behind == kNothing || gap.ahead == kNothing) && !(gap.flags & kSolid)) gap.flags |= escapes;
+    }
+
+    // Depth is how often the line is inside of something. A line that goes in as often as it comes out, and has been at
+    // two depths at least, is in a solid where it is deeper than at its least. Others have met what is open, or nothing
+    // but sheets at one place: they say nothing.
+    void tell_solids(std::span<const radiosity::Hit> hits) {
+        int depth = 0, least = 0, most = 0;
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            depth += hits[i].front ? 1 : -1;
+            if (i + 1 < hits.size() && hits[i + 1].t - hits[i].t <= state_.thin) continue;
+            least = (std::min)(least, depth);
+            most = (std::max)(most, depth);
+        }
+        if (depth != 0 || least == most) return;
+        for (std::size_t g = 0; g <= hits.size(); ++g) {
+            if (g > 0) depth += hits[g - 1].front ? 1 : -1;
+            if (g > 0 && g < hits.size() && hits[g].t - hits[g - 1].t <= state_.thin) continue;
+            scratch_.gaps[g].flags |= depth == least ? kFree : kSolid;
+        }
+    }
+
+    void witness() {
+        const auto& gaps = scratch_.gaps;
+        std::size_t g = 0;
+        for (const CellSpan& span : scratch_.spans) {
+            if (g > 0 && gaps[g - 1].end >= span.begin) g = 0;  // not in order: boxes of the caller's
+            while (gaps[g].end < span.begin) ++g;
+            double begin = span.begin;
+            for (std::size_t i = g; begin < span.end; ++i) {
+                const double end = (std::min)(gaps[i].end, span.end);
+                if (end - begin > static_cast<double>(state_.thin)) see(span.cell, gaps[i]);
+                begin = end;
+            }
+        }
+    }
+
+    void see(std::uint32_t cell, const Gap& gap) {
+        set_bits(state_.found.flags[cell], gap.flags);
+        mark(cell, gap.behind);
+        mark(cell, gap.ahead);
+    }
+
+    void mark(std::uint32_t cell, std::uint32_t object) {
+        if (object == kNothing) return;
+        set_bits(state_.found.seen[cell * state_.found.words() + object / 64], std::uint64_t{1} << (object % 64));
+    }
+
+    Bake::State& state_;
+    Scratch& scratch_;
+};
+
+std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const BakeOptions& options) {
+    Vector<std::uint64_t> sums;
+    const auto include = [&](const auto& elements) { sums.push_back(bake::checksum(std::as_bytes(elements))); };
+    include(std::span(subject.mesh.positions));
+    include(std::span(subject.mesh.indices));
+    include(std::span(subject.object_of));
+    include(std::span(&subject.origin, 1));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const Aabb box = cells.box(i);
+        include(std::span(&box, 1));
+    }
+    sums.push_back(options.seed);
+    return bake::checksum(std::as_bytes(std::span(sums)));
+}
+
+Result<void> check(const Subject& subject, const Cells& cells, const BakeOptions& options) {
+    const auto within = [](double x) { return x > 0.0 && x < 1.0; };
+    if (!within(options.epsilon) || !within(options.confidence))
+        return fail(ErrorCode::invalid_argument, kNoItem, "pvs: epsilon and confidence lie between 0 and 1");
+    if (cells.size() == 0 || !(cells.bounds().min.x <= cells.bounds().max.x))
+        return fail(ErrorCode::empty, kNoItem, "pvs: there are no cells");
+    if (subject.object_of.size() != subject.mesh.triangle_count())
+        return fail(ErrorCode::invalid_argument, kNoItem, "pvs: each triangle needs an object");
+    for (std::size_t t = 0; t < subject.object_of.size(); ++t)
+        if (subject.object_of[t] >= subject.boxes.size())
+            return fail(ErrorCode::out_of_range, t, "pvs: a triangle's object has no box");
+    for (int k = 0; k < 3; ++k)
+        if (!(std::abs(subject.origin[k]) <= kMaxCoordinate))
+            return fail(ErrorCode::non_finite, kNoItem, "pvs: the origin is not finite");
+    if (subject.boxes.size() > 0xffffffffu || cells.size() * subject.boxes.size() > kMaxPairs)
+        return fail(ErrorCode::out_of_range, cells.size() * subject.boxes.size(),
+                    "pvs: more than 2^34 pairs of a cell and an object: take fewer cells, or put objects together");
+    for (std::size_t i = 0; i < subject.boxes.size(); ++i)
+        if (auto valid = validate(subject.boxes[i], i); !valid) return valid;
+    return {};
+}
+
+}  // namespace
+
+Bake::Bake(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Bake::~Bake() = default;
+Bake::Bake(Bake&&) noexcept = default;
+Bake& Bake::operator=(Bake&&) noexcept = default;
+
+Result<Bake> Bake::create(const Subject& subject, const Cells& cells, const BakeOptions& options) {
+    return crofton::detail::recover([&]() -> Result<Bake> {
+        if (auto checked = check(subject, cells, options); !checked) return tl::unexpected(checked.error());
+        auto tracer = radiosity::LineTracer::build(subject.mesh);
+        if (!tracer) return tl::unexpected(tracer.error());
+        const auto plan = plan_lines(cells, cells.size() * subject.boxes.size(), options);
+        if (!plan) return tl::unexpected(plan.error());
+        auto state = std::make_unique<State>();
+        state->cells = cells;
+        state->options = options;
+        state->boxes = subject.boxes;
+        state->origin = subject.origin;
+        state->object_of = subject.object_of;
+        state->plan = *plan;
+        state->walk.emplace(cells, subject.origin);
+        Found& found = state->found;
+        found.name = {fingerprint_of(subject, cells, options),
+                      cells.size(),
+                      plan->blocks,
+                      static_cast<std::uint32_t>(subject.boxes.size()),
+                      options.sides == occlude::Sides::both ? 1u : 0u,
+                      options.epsilon,
+                      options.confidence};
+        state->baked.assign(found.words(), 0);
+        for (const std::uint32_t o : subject.object_of) state->baked[o / 64] |= std::uint64_t{1} << (o % 64);
+        found.flags.assign(cells.size(), 0);
+        found.seen.assign(cells.size() * found.words(), 0);
+        Aabb all = cells.bounds();
+        all.include({tracer->bounds().min + subject.origin, tracer->bounds().max + subject.origin});
+        for (int k = 0; k < 3; ++k)
+            state->extent = (std::max)(
+                {state->extent, std::abs(all.min[k] - subject.origin[k]), std::abs(all.max[k] - subject.origin[k])});
+        state->thin = static_cast<float>(2e-6 * state->extent);
+        state->tracer.emplace(std::move(*tracer));
+        return Bake(std::move(state));
+    });
+}
+
+Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
+    if (limits.shard.count == 0 || limits.shard.index >= limits.shard.count)
+        return fail(ErrorCode::invalid_argument, limits.shard.index, "pvs: a shard i/n needs 0 <= i < n");
+    return crofton::detail::recover([&]() -> Result<void> {
+        Found& found = state_->found;
+        const BlockRange shard = blocks_of(limits.shard, state_->plan.blocks);
+        const auto start = Clock::now();
+        Vector<Scratch> scratch(executor.concurrency());
+        std::uint64_t lines = 0;
+        for (;;) {
+            const BlockRange todo = found.done.first_gap(shard, kWave);
+            const auto done = static_cast<double>(found.done.count_within(shard));
+            if (todo.begin >= todo.end || lines >= limits.lines ||
+                std::chrono::duration<double>(Clock::now() - start).count() >= limits.seconds ||
+                (limits.go_on && !limits.go_on(limits.user, done / static_cast<double>(shard.end - shard.begin))))
+                return {};
+            crofton::detail::recoverable_for(executor, todo.end - todo.begin, 1,
+                                             [&](std::size_t begin, std::size_t end, unsigned worker) {
+                                                 for (std::size_t i = begin; i < end; ++i)
+                                                     BlockTracing(*state_, scratch[worker]).trace(todo.begin + i);
+                                             });
+            found.done.add(todo);
+            lines += (todo.end - todo.begin) * LinePlan::kBlock;
+        }
+    });
+}
+
+std::uint64_t Bake::lines_planned() const {
+    return state_->plan.blocks * LinePlan::kBlock;
+}
+std::uint64_t Bake::lines_done() const {
+    return state_->found.done.count() * LinePlan::kBlock;
+}
+
+double Bake::epsilon_reached() const {
+    const LinePlan& plan = state_->plan;
+    const BlockRanges& done = state_->found.done;
+    double lines = static_cast<double>(lines_done()) * plan.least_share;
+    if (!plan.whole) {
+        std::uint64_t least = plan.per_cell;
+        for (std::uint64_t c = 0; c < state_->cells.size(); ++c)
+            least = (std::min)(least, done.count_within({c * plan.per_cell, (c + 1) * plan.per_cell}));
+        lines = static_cast<double>(least * LinePlan::kBlock);
+    }
+    const std::uint64_t pairs = state_->cells.size() * state_->boxes.size();
+    return epsilon_after(lines, pairs, state_->options.confidence);
+}
+
+bool Bake::is_seen(std::size_t cell, std::uint32_t object) const {
+    const Found& found = state_->found;
+    return found.seen[cell * found.words() + object / 64] >> (object % 64) & 1;
+}
+
+Result<Vector<std::byte>> Bake::state() const {
+    return crofton::detail::recover([&]() -> Result<Vector<std::byte>> { return to_bytes(state_->found); });
+}
+
+Result<void> Bake::add_state(std::span<const std::byte> state) {
+    return crofton::detail::recover([&]() -> Result<void> {
+        const auto part = found_from(state);
+        if (!part) return tl::unexpected(part.error());
+        if (!(part->name == state_->found.name))
+            return fail(ErrorCode::invalid_argument, kNoItem,
+                        "this is the state of another bake: scene, cells, epsilon, confidence, seed and sides must be "
+                        "the same; remove the file, or give other options");
+        add(*part, state_->found);
+        return {};
+    });
+}
+
+}  // namespace crofton::pvs

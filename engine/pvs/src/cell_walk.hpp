@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Which cells a line passes through, and where along it.
+#pragma once
+#include <crofton/core/memory.hpp>
+#include <crofton/geometry/shapes.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <cstdint>
+
+namespace crofton::pvs {
+
+struct CellSpan {
+    std::uint32_t cell = 0;
+    double begin = 0.0, end = 0.0;  // along the line, from its point; begin ≤ end
+};
+
+// Cells relative to an origin. Boxes of the caller's are listed in the voxels of a grid.
+class CellWalk {
+  public:
+    CellWalk(const Cells& cells, const glm::dvec3& origin);
+
+    // Replaces `spans` by all cells that the line meets, but for those that it grazes within rounding. Of a grid each
+    // once, along the line; a box of the caller's may come more than once, in any order.
+    void find(const Line& line, Vector<CellSpan>& spans) const;
+
+  private:
+    template <class Visit>
+    void walk(const Line& line, Visit&& visit) const;
+
+    Aabb bounds_;
+    std::uint32_t counts_[3] = {1, 1, 1};
+    Vector<Aabb> boxes_;                    // empty: the voxels are the cells
+    Vector<std::uint32_t> first_, listed_;  // by voxel, the range of boxes that meet it
+};
+
+// Where the line is in the box: begin ≤ end, or none.
+[[nodiscard]] bool clip(const Line& line, const Aabb& box, double& begin, double& end);
+
+}  // namespace crofton::pvs

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <crofton/core/recovery.hpp>
+#include <crofton/pvs/pvs.hpp>
+
+namespace crofton::pvs {
+namespace {
+
+constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 24;
+
+bool is_finite(const Aabb& box) {
+    for (int k = 0; k < 3; ++k)
+        if (!(std::abs(box.min[k]) <= kMaxCoordinate && std::abs(box.max[k]) <= kMaxCoordinate)) return false;
+    return true;
+}
+
+int positive_extents(const Aabb& box) {
+    int count = 0;
+    for (int k = 0; k < 3; ++k) count += box.max[k] > box.min[k];
+    return count;
+}
+
+bool holds(const Aabb& box, const glm::dvec3& p) {
+    return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y && p.z >= box.min.z &&
+           p.z <= box.max.z;
+}
+
+}  // namespace
+
+Result<Cells> Cells::grid(const Aabb& bounds, const glm::uvec3& counts) {
+    if (!is_finite(bounds)) return fail(ErrorCode::non_finite, kNoItem, "cells: the bounds are not finite");
+    if (positive_extents(bounds) < 3)
+        return fail(ErrorCode::degenerate, kNoItem,
+                    "cells: the bounds of a grid need a positive extent along each axis");
+    if (counts.x == 0 || counts.y == 0 || counts.z == 0)
+        return fail(ErrorCode::invalid_argument, kNoItem, "cells: a grid needs at least one cell along each axis");
+    // Each factor is checked first, so that the product of three fits.
+    const std::uint64_t all =
+        counts.x > kMaxCells || counts.y > kMaxCells || counts.z > kMaxCells
+            ? kMaxCells + 1
+            : (std::uint64_t{counts.x} * counts.y > kMaxCells ? kMaxCells + 1
+                                                              : std::uint64_t{counts.x} * counts.y * counts.z);
+    if (all > kMaxCells) return fail(ErrorCode::out_of_range, kNoItem, "cells: a grid of more than 2^24 cells");
+    Cells cells;
+    cells.bounds_ = bounds;
+    cells.counts_ = counts;
+    return cells;
+}
+
+Result<Cells> Cells::boxes(std::span<const Aabb> boxes) {
+    return crofton::detail::recover([&]() -> Result<Cells> {
+        if (boxes.empty()) return fail(ErrorCode::empty, kNoItem, "cells: there are none");
+        if (boxes.size() > kMaxCells) return fail(ErrorCode::out_of_range, boxes.size(), "cells: more than 2^24");
+        Cells cells;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            if (!is_finite(boxes[i])) return fail(ErrorCode::non_finite, i, "cells: a box is not finite");
+            if (boxes[i].is_empty()) return fail(ErrorCode::empty, i, "cells: a box is empty: min is above max");
+            if (positive_extents(boxes[i]) < 2)
+                return fail(ErrorCode::degenerate, i,
+                            "cells: a box needs two positive extents, as lines miss a segment");
+            cells.bounds_.include(boxes[i]);
+        }
+        cells.boxes_.assign(boxes.begin(), boxes.end());
+        return cells;
+    });
+}
+
+std::size_t Cells::size() const {
+    return is_grid() ? std::size_t{counts_.x} * counts_.y * counts_.z : boxes_.size();
+}
+
+Aabb Cells::box(std::size_t cell) const {
+    if (!is_grid()) return boxes_[cell];
+    const std::size_t at[3] = {cell % counts_.x, cell / counts_.x % counts_.y,
+                               cell / (std::size_t{counts_.x} * counts_.y)};
+    Aabb box;
+    for (int k = 0; k < 3; ++k) {
+        const double step = (bounds_.max[k] - bounds_.min[k]) / counts_[k];
+        box.min[k] = bounds_.min[k] + static_cast<double>(at[k]) * step;
+        box.max[k] = at[k] + 1 == counts_[k] ? bounds_.max[k] : bounds_.min[k] + static_cast<double>(at[k] + 1) * step;
+    }
+    return box;
+}
+
+std::uint32_t Cells::find(const glm::dvec3& point) const {
+    if (!holds(bounds_, point)) return kNoCell;
+    if (!is_grid()) {
+        const auto found =
+            std::find_if(boxes_.begin(), boxes_.end(), [&](const Aabb& box) { return holds(box, point); });
+        return found == boxes_.end() ? kNoCell : static_cast<std::uint32_t>(found - boxes_.begin());
+    }
+    std::uint32_t at[3];
+    for (int k = 0; k < 3; ++k) {
+        const double share = (point[k] - bounds_.min[k]) / (bounds_.max[k] - bounds_.min[k]);
+        at[k] = (std::min)(static_cast<std::uint32_t>(share * counts_[k]), counts_[k] - 1);
+    }
+    return at[0] + counts_.x * (at[1] + counts_.y * at[2]);
+}
+
+}  // namespace crofton::pvs

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "hidden_pairs.hpp"
+
+#include <algorithm>
+#include <crofton/core/recovery.hpp>
+#include <glm/geometric.hpp>
+
+#include "box_groups.hpp"
+#include "cell_walk.hpp"
+
+namespace crofton::pvs {
+namespace {
+
+// Relative to the margin: a thousand million times the rounding of what is computed from such coordinates.
+constexpr double kMargin = 1e-9;
+
+// Part of the boxes of one object: its halves are proved one by one.
+struct Part {
+    glm::dvec3 center{0.0};
+    std::array<glm::dvec3, 3> half{};
+
+    [[nodiscard]] Corners corners() const {
+        Corners c;
+        for (unsigned i = 0; i < 8; ++i) {
+            c[i] = center;
+            for (unsigned k = 0; k < 3; ++k) c[i] += (i >> k & 1 ? 1.0 : -1.0) * half[k];
+        }
+        return c;
+    }
+};
+
+struct Question {
+    const Bake::State& bake;
+    std::span<const Blocker> bodies;
+    const ProofOptions& options;
+    const BoxGroups &cells, &objects, &tree;  // of the cells' boxes, the objects', the bodies'
+    Vector<Part> parts;                       // by object
+    double margin;
+};
+
+// One thread's work on some of the cells.
+class Prover {
+  public:
+    Prover(const Question& question, Vector<std::uint64_t>& open) : q_(question), open_(open) {}
+
+    void prove(std::uint32_t cells, std::uint32_t objects) {
+        const auto& eyes = q_.cells[cells];
+        const auto& group = q_.objects[objects];
+        const bool single = group.count == 1;
+        if (eyes.count == 1 && single && is_seen(eyes, group)) return;
+        const Corners corners = single ? q_.parts[q_.objects.items(group)[0]].corners() : corners_of(group.box);
+        const Answer answer = intersects(eyes.box, group.box) ? Answer::open : ask(eyes.box, corners);
+        if (answer == Answer::blocked) return hide(eyes, group);
+        if (eyes.count == 1 && single) {
+            if (answer == Answer::partly &&
+                prove_halves(eyes.box, q_.parts[q_.objects.items(group)[0]], q_.options.halvings))
+                hide(eyes, group);
+            return;
+        }
+        const bool halve_cells = !single ? eyes.count > 1 && size_of(eyes.box) >= size_of(group.box) : true;
+        for (std::uint32_t half = 0; half < 2; ++half)
+            halve_cells ? prove(eyes.child + half, objects) : prove(cells, group.child + half);
+    }
+
+  private:
+    static double size_of(const Aabb& box) { return glm::length(box.max - box.min); }
+
+    [[nodiscard]] bool is_seen(const BoxGroups::Group& cell, const BoxGroups::Group& object) const {
+        const Found& found = q_.bake.found;
+        const std::uint32_t o = q_.objects.items(object)[0];
+        return found.seen[q_.cells.items(cell)[0] * found.words() + o / 64] >> (o % 64) & 1;
+    }
+
+    // As hidden: those that no line has seen.
+    void hide(const BoxGroups::Group& cells, const BoxGroups::Group& objects) {
+        const Found& found = q_.bake.found;
+        for (const std::uint32_t c : q_.cells.items(cells))
+            for (const std::uint32_t o : q_.objects.items(objects)) {
+                const std::size_t word = c * found.words() + o / 64;
+                open_[word] &= ~(std::uint64_t{1} << (o % 64)) | found.seen[word];
+            }
+    }
+
+    enum class Answer {
+        blocked,  // all segments meet one body
+        partly,   // the one between the middles meets a body
+        open,     // it meets none: no halving can help
+    };
+
+    // The last body that blocked is asked first, then all that the segment between the middles meets.
+    [[nodiscard]] Answer ask(const Aabb& eyes, const Corners& object) {
+        const Corners from = corners_of(eyes);
+        const auto blocks_eyes = [&](const Blocker& body) {
+            return may_prove_for(body, eyes, q_.options.near_reach, q_.margin) &&
+                   blocks_all(body, from, object, q_.margin);
+        };
+        if (last_ < q_.bodies.size() && blocks_eyes(q_.bodies[last_])) return Answer::blocked;
+        glm::dvec3 middle(0.0);
+        for (const glm::dvec3& p : object) middle += 0.125 * p;
+        const glm::dvec3 start = eyes.center();
+        const Line line{start, middle - start};  // of any length: 0 ≤ t ≤ 1 is the segment
+        Answer answer = Answer::open;
+        stack_.assign(1, BoxGroups::kRoot);
+        while (!stack_.empty()) {
+            const auto& node = q_.tree[stack_.back()];
+            stack_.pop_back();
+            double begin = 0.0, end = 0.0;
+            if (!clip(line, node.box, begin, end) || begin > 1.0 || end < 0.0) continue;
+            if (node.count > 1) {
+                stack_.push_back(node.child);
+                stack_.push_back(node.child + 1);
+                continue;
+            }
+            const std::uint32_t body = q_.tree.items(node)[0];
+            if (!blocks(q_.bodies[body], start, middle, q_.margin)) continue;
+            answer = Answer::partly;
+            if (body != last_ && blocks_eyes(q_.bodies[body])) {
+                last_ = body;
+                return Answer::blocked;
+            }
+        }
+        return answer;
+    }
+
+    [[nodiscard]] bool prove_halves(const Aabb& eyes, const Part& object, std::uint32_t halvings) {
+        if (halvings == 0) return false;
+        const glm::dvec3 e = 0.5 * (eyes.max - eyes.min);
+        const int k = e.x >= e.y ? (e.x >= e.z ? 0 : 2) : (e.y >= e.z ? 1 : 2);
+        std::size_t widest = 0;
+        for (std::size_t i = 1; i < 3; ++i)
+            if (glm::length(object.half[i]) > glm::length(object.half[widest])) widest = i;
+        const bool halve_eyes = e[k] >= glm::length(object.half[widest]);
+        for (const double side : {-1.0, 1.0}) {
+            Aabb part_of_eyes = eyes;
+            Part part = object;
+            if (halve_eyes) {
+                (side < 0.0 ? part_of_eyes.max : part_of_eyes.min)[k] = eyes.center()[k];
+            } else {
+                part.half[widest] *= 0.5;
+                part.center += side * part.half[widest];
+            }
+            const Answer answer = ask(part_of_eyes, part.corners());
+            if (answer == Answer::open) return false;
+            if (answer == Answer::partly && !prove_halves(part_of_eyes, part, halvings - 1)) return false;
+        }
+        return true;
+    }
+
+    const Question& q_;
+    Vector<std::uint64_t>& open_;
+    Vector<std::uint32_t> stack_;
+    std::uint32_t last_ = ~std::uint32_t{0};
+};
+
+}  // namespace
+
+void prove_hidden(const Bake::State& bake, std::span<const Blocker> bodies, const ProofOptions& options,
+                  Executor& executor, Vector<std::uint64_t>& open) {
+    if (bodies.empty()) return;
+    const double margin = kMargin * bake.extent + 1e-13 * glm::length(bake.origin);
+    Vector<Aabb> cells, objects, bounds;
+    Vector<Part> parts;
+    for (std::size_t c = 0; c < bake.cells.size(); ++c)
+        cells.push_back({bake.cells.box(c).min - bake.origin - margin, bake.cells.box(c).max - bake.origin + margin});
+    for (const Obb& box : bake.boxes) {
+        Part part;
+        part.center = box.center - bake.origin;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto axis = static_cast<int>(k);
+            part.half[k] = glm::dvec3(box.axes[axis]) * static_cast<double>(box.half_extents[axis]);
+        }
+        parts.push_back(part);
+        const Aabb outer = aabb_of(box);
+        objects.push_back({outer.min - bake.origin - margin, outer.max - bake.origin + margin});
+    }
+    for (const Blocker& body : bodies) bounds.push_back(body.bounds);
+    const BoxGroups cell_groups(cells), object_groups(objects), tree(bounds);
+    const Question question{bake, bodies, options, cell_groups, object_groups, tree, std::move(parts), margin};
+    // Groups of few cells are tasks: each writes its cells' bits alone.
+    Vector<std::uint32_t> tasks, stack{BoxGroups::kRoot};
+    while (!stack.empty()) {
+        const std::uint32_t g = stack.back();
+        stack.pop_back();
+        if (cell_groups[g].count <= 64) {
+            tasks.push_back(g);
+        } else {
+            stack.push_back(cell_groups[g].child);
+            stack.push_back(cell_groups[g].child + 1);
+        }
+    }
+    crofton::detail::recoverable_for(executor, tasks.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) Prover(question, open).prove(tasks[i], BoxGroups::kRoot);
+    });
+}
+
+}  // namespace crofton::pvs

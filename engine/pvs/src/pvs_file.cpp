@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// The finished sets as sections of a .crofton file.
+#include <algorithm>
+#include <cmath>
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/bake/container.hpp>
+#include <crofton/core/recovery.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <string_view>
+
+#include "pair_coder.hpp"
+
+namespace crofton::pvs {
+namespace {
+
+struct Head {
+    double low[3] = {}, high[3] = {};  // of a grid
+    std::uint32_t counts[3] = {};      // 0: boxes, in a section of their own
+    std::uint32_t objects = 0;
+    double epsilon = 1.0, confidence = 0.0;
+};
+static_assert(sizeof(Head) == 80);
+
+tl::unexpected<Error> damaged(const char* what, std::uint64_t item = kNoItem) {
+    return fail(ErrorCode::parse, item, std::string("potentially visible sets: ") + what);
+}
+
+Result<Cells> cells_from(const Head& head, std::span<const Aabb> boxes) {
+    if (!boxes.empty()) return Cells::boxes(boxes);
+    const glm::dvec3 low(head.low[0], head.low[1], head.low[2]), high(head.high[0], head.high[1], head.high[2]);
+    return Cells::grid({low, high}, {head.counts[0], head.counts[1], head.counts[2]});
+}
+
+glm::uvec3 rows_of(const Cells& cells) {
+    return cells.is_grid() ? cells.counts() : glm::uvec3(static_cast<std::uint32_t>(cells.size()), 1, 1);
+}
+
+std::string_view name_of(const bake::Section& section) {
+    const auto end = std::find(std::begin(section.name), std::end(section.name), '\0');
+    return {section.name, static_cast<std::size_t>(end - section.name)};
+}
+
+}  // namespace
+
+struct PvsFile {
+    static void add(const Pvs& pvs, bake::Writer& writer) {
+        Head head;
+        for (int k = 0; k < 3 && pvs.cells_.is_grid(); ++k) {
+            head.low[k] = pvs.cells_.bounds().min[k];
+            head.high[k] = pvs.cells_.bounds().max[k];
+            head.counts[k] = pvs.cells_.counts()[k];
+        }
+        head.objects = pvs.objects_;
+        head.epsilon = pvs.epsilon_, head.confidence = pvs.confidence_;
+        Vector<Aabb> boxes;
+        for (std::size_t c = 0; c < pvs.cells_.size() && !pvs.cells_.is_grid(); ++c) boxes.push_back(pvs.cells_.box(c));
+        PairStates pairs{rows_of(pvs.cells_), pvs.objects_, {}};
+        for (std::size_t c = 0; c < pvs.kinds_.size(); ++c)
+            for (std::uint32_t o = 0; o < pvs.objects_; ++o)
+                pairs.states.push_back(pvs.is_baked(o) ? static_cast<std::uint8_t>(pvs.state(c, o)) : 0);
+        const Vector<std::byte> code = encode(pairs);
+        writer.add("pvs_head", std::span<const Head>(&head, 1));
+        writer.add("pvs_box", std::span<const Aabb>(boxes));
+        writer.add("pvs_kind", std::span<const CellKind>(pvs.kinds_));
+        writer.add("pvs_from", std::span<const std::uint64_t>(pvs.baked_));
+        writer.add("pvs_code", std::span<const std::byte>(code));
+    }
+
+    static Result<Pvs> read(const bake::Reader& reader) {
+        const auto head = reader.section<Head>("pvs_head");
+        const auto boxes = reader.section<Aabb>("pvs_box");
+        const auto kinds = reader.section<CellKind>("pvs_kind");
+        const auto baked = reader.section<std::uint64_t>("pvs_from");
+        const auto code = reader.section<std::byte>("pvs_code");
+        if (!head) return tl::unexpected(head.error());
+        if (!boxes) return tl::unexpected(boxes.error());
+        if (!kinds) return tl::unexpected(kinds.error());
+        if (!baked) return tl::unexpected(baked.error());
+        if (!code) return tl::unexpected(code.error());
+        if (head->size() != 1) return damaged("not one header");
+        auto cells = cells_from(head->front(), *boxes);
+        if (!cells) return damaged(cells.error().message.c_str(), cells.error().item);
+        Pvs pvs;
+        pvs.cells_ = std::move(*cells);
+        pvs.objects_ = head->front().objects;
+        pvs.epsilon_ = head->front().epsilon, pvs.confidence_ = head->front().confidence;
+        if (kinds->size() != pvs.cells_.size() || baked->size() != pvs.words())
+            return damaged("sections are not as long as the header says");
+        if (pvs.cells_.size() * pvs.objects_ > most_pairs(code->size())) return damaged("too few bytes for its pairs");
+        for (std::size_t c = 0; c < kinds->size(); ++c)
+            if ((*kinds)[c] > CellKind::open) return damaged("a cell of no known kind", c);
+        pvs.kinds_.assign(kinds->begin(), kinds->end());
+        pvs.baked_.assign(baked->begin(), baked->end());
+        PairStates pairs{rows_of(pvs.cells_), pvs.objects_, {}};
+        decode(*code, pairs);
+        fill(pvs, pairs);
+        return pvs;
+    }
+
+  private:
+    static void fill(Pvs& pvs, const PairStates& pairs) {
+        const std::size_t words = pvs.words();
+        pvs.seen_.assign(pvs.cells_.size() * words, 0);
+        pvs.open_.assign(pvs.cells_.size() * words, 0);
+        for (std::size_t c = 0; c < pvs.cells_.size(); ++c) {
+            if (pvs.kinds_[c] == CellKind::solid || pvs.kinds_[c] == CellKind::unknown) continue;
+            std::uint64_t *seen = pvs.seen_.data() + c * words, *open = pvs.open_.data() + c * words;
+            for (std::uint32_t o = 0; o < pvs.objects_; ++o) {
+                const std::uint8_t state = pvs.is_baked(o) ? pairs.states[c * pvs.objects_ + o] : 2;
+                seen[o / 64] |= std::uint64_t{state == 2} << (o % 64);
+                open[o / 64] |= std::uint64_t{state != 0} << (o % 64);
+            }
+        }
+    }
+};
+
+Result<Vector<std::byte>> Pvs::to_file(std::span<const std::byte> scene_file) const {
+    return crofton::detail::recover([&]() -> Result<Vector<std::byte>> {
+        bake::Writer writer;
+        if (!scene_file.empty()) {
+            const auto reader = bake::Reader::open(scene_file);
+            if (!reader) return tl::unexpected(reader.error());
+            if (reader->sections().size() + 5 > bake::kMaxSections)
+                return fail(ErrorCode::out_of_range, kNoItem, "the scene file has no room for more sections");
+            for (const bake::Section& section : reader->sections()) {
+                if (name_of(section).substr(0, 4) == "pvs_")
+                    return fail(ErrorCode::invalid_argument, kNoItem, "the scene file has visible sets already");
+                writer.add_bytes(name_of(section), scene_file.subspan(section.offset, section.size),
+                                 section.element_size);
+            }
+        }
+        PvsFile::add(*this, writer);
+        return writer.finish();
+    });
+}
+
+Result<Pvs> Pvs::from_memory(std::span<const std::byte> file) {
+    return crofton::detail::recover([&]() -> Result<Pvs> {
+        const auto reader = bake::Reader::open(file);
+        if (!reader) return tl::unexpected(reader.error());
+        return PvsFile::read(*reader);
+    });
+}
+
+Result<Pvs> Pvs::open(const std::string& path) {
+    return crofton::detail::recover([&]() -> Result<Pvs> {
+        const auto file = bake::MappedFile::open(path);
+        if (!file) return tl::unexpected(file.error());
+        auto pvs = from_memory(file->bytes());
+        if (!pvs) return fail(pvs.error().code, pvs.error().item, path + ": " + pvs.error().message);
+        return pvs;
+    });
+}
+
+}  // namespace crofton::pvs

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// `crofton merge`: parts of a bake as one.
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+struct Options {
+    std::vector<std::string> parts;
+    std::string out;
+    std::uint32_t shards = 0;
+};
+
+Result<int> run(const Options& options) {
+    std::vector<bake::MappedFile> files;
+    std::vector<std::span<const std::byte>> states;
+    for (const std::string& path : options.parts) {
+        auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read});
+        if (!file) return tl::unexpected(file.error());
+        files.push_back(std::move(*file));
+        states.push_back(files.back().bytes());
+    }
+    const auto sum = pvs::merge_states(states);
+    if (!sum) {
+        const bool names_part = sum.error().item < options.parts.size();
+        return fail(sum.error().code, kNoItem,
+                    (names_part ? options.parts[sum.error().item] + ": " : std::string()) + sum.error().message);
+    }
+    if (auto written = write_file(options.out, {reinterpret_cast<const char*>(sum->data()), sum->size()}); !written)
+        return tl::unexpected(written.error());
+    const std::uint32_t shards = options.shards ? options.shards : static_cast<std::uint32_t>(options.parts.size());
+    const auto missing = pvs::missing_shards(*sum, shards);
+    if (!missing) return tl::unexpected(missing.error());
+    if (missing->empty()) return kSuccess;
+    std::fprintf(stderr, "crofton: %s: lines are missing; run again:", options.out.c_str());
+    for (const std::uint32_t i : *missing) std::fprintf(stderr, " --shard %u/%u", i, shards);
+    std::fputs("\n", stderr);
+    return kCheckFailed;
+}
+
+}  // namespace
+
+void add_merge_command(CommandLine& line) {
+    auto options = std::make_shared<Options>();
+    Command command = line.command("merge", "Add up the parts of a bake that ran as shards");
+    command.option("parts", options->parts, "Files that `crofton pvs --shard i/n --state FILE` wrote").required();
+    command.option("--out", options->out, "The sum: the bytes that one run would have saved")
+        .writable_file()
+        .required();
+    command.option("--shards", options->shards,
+                   "Into how many parts the work was split; without, as many as are given");
+    command.footer(
+        "A part given twice counts once. Exit status: 0 all lines are there, 1 some are missing (the sum is written, "
+        "and "
+        "the shards to run again are named), 2 a part that is damaged or of another bake.\n\n"
+        "Example:\n"
+        "  crofton merge part0 part1 part2 part3 --out whole.state");
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? *done : report_error("", done.error());
+    });
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+// `crofton pvs`: what can be seen from each cell of a level, baked by global lines.
+#include <chrono>
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/executor.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "pipeline/pvs_scene.hpp"
+#include "progress_bar.hpp"
+#include "pvs_cells.hpp"
+#include "pvs_svg.hpp"
+#include "read_options.hpp"
+#include "report.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kSaveEvery = 20.0;  // seconds
+
+struct Options {
+    ReadOptions read;
+    std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
+    double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_reach = 0.5;
+    std::uint64_t seed = 1;
+    std::uint32_t instances = 0, halvings = 4;
+    unsigned threads = 1;
+    bool with_scene = false;
+};
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Job {
+    const Options& options;
+    assets::SceneSource source;
+    pipeline::PvsScene scene;
+    pvs::Cells cells;
+    pvs::Shard shard;
+    double trace_seconds = 0.0, proof_seconds = 0.0;
+};
+
+Result<Job> make_job(const Options& options, Executor& executor) {
+    const auto shard = shard_from(options.shard);
+    if (!shard) return tl::unexpected(shard.error());
+    if (!options.shard.empty() && options.state.empty())
+        return fail(ErrorCode::invalid_argument, kNoItem, "--shard needs --state: the part to write");
+    auto source = assets::load_scene(options.scene, {.map = options.map,
+                                                     .seed = options.seed,
+                                                     .instances = options.instances,
+                                                     .limits = options.read.limits,
+                                                     .strict = options.read.strict});
+    if (!source) return tl::unexpected(source.error());
+    print_warnings(source->warnings);
+    source->scene.update(executor);
+    Aabb eyes = pipeline::eyes_of(source->scene, options.height);
+    if (!options.eyes.empty()) {
+        double x[6];
+        if (auto read = read_numbers("--eyes", options.eyes, x); !read) return tl::unexpected(read.error());
+        eyes = {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+    }
+    auto cells = cells_from(options.cells, eyes, options.read.limits);
+    if (!cells) return tl::unexpected(cells.error());
+    auto scene = pipeline::make_pvs_scene(*source, !options.out.empty() || !options.svg.empty(), executor);
+    if (!scene) return tl::unexpected(scene.error());
+    return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard};
+}
+
+struct Progress {
+    ProgressBar bar{"pvs", 1000};
+    static bool go_on(void* user, double share) {
+        static_cast<Progress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
+        return !interrupted();
+    }
+};
+
+Result<void> save(const std::string& path, const pvs::Bake& bake) {
+    if (path.empty()) return {};
+    const auto bytes = bake.state();
+    if (!bytes) return tl::unexpected(bytes.error());
+    return write_file(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+}
+
+Result<void> load_state(const std::string& path, pvs::Bake& bake, const Options& options) {
+    if (path.empty() || !std::filesystem::exists(path)) return {};
+    const auto file =
+        bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = options.read.limits.bytes});
+    if (!file) return tl::unexpected(file.error());
+    if (auto added = bake.add_state(file->bytes()); !added)
+        return fail(added.error().code, kNoItem, path + ": " + added.error().message);
+    return {};
+}
+
+// Traces until the shard, the time or the user's patience ends; what there is has been saved then.
+Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
+    if (auto loaded = load_state(job.options.state, bake, job.options); !loaded) return loaded;
+    Progress progress;
+    const auto start = Clock::now();
+    for (bool done = false; !done;) {
+        const std::uint64_t before = bake.lines_done();
+        double seconds = kSaveEvery;
+        if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
+        const auto ran =
+            bake.run({.seconds = seconds, .shard = job.shard, .go_on = Progress::go_on, .user = &progress}, executor);
+        if (!ran) return ran;
+        done = interrupted() || bake.lines_done() == before ||
+               (job.options.seconds > 0.0 && seconds_since(start) >= job.options.seconds);
+        job.trace_seconds = seconds_since(start);
+        if (auto saved = save(job.options.state, bake); !saved) return saved;
+    }
+    return {};
+}
+
+Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& executor, std::size_t& file_bytes) {
+    const Options& options = job.options;
+    if (!options.out.empty()) {
+        Vector<std::byte> scene_file;
+        if (options.with_scene) {
+            auto baked = bake::bake(job.source.scene, executor);
+            if (!baked) return tl::unexpected(baked.error());
+            scene_file = std::move(*baked);
+        }
+        const auto file = sets.to_file(scene_file);
+        if (!file) return tl::unexpected(file.error());
+        file_bytes = file->size() - scene_file.size();
+        if (auto written = write_file(options.out, {reinterpret_cast<const char*>(file->data()), file->size()});
+            !written)
+            return written;
+    }
+    if (options.svg.empty()) return {};
+    glm::dvec3 eye = sets.cells().bounds().center();
+    if (!options.eye.empty()) {
+        double x[3];
+        if (auto read = read_numbers("--eye", options.eye, x); !read) return read;
+        eye = {x[0], x[1], x[2]};
+    }
+    const std::uint32_t cell = sets.cells().find(eye);
+    if (cell == pvs::kNoCell) return fail(ErrorCode::out_of_range, kNoItem, "--eye: no cell holds it");
+    return write_file(options.svg, pvs_svg(sets, job.scene.subject, cell));
+}
+
+Json figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::size_t file_bytes) {
+    const pvs::PairCounts counts = sets.counts();
+    std::size_t kinds[4] = {};
+    for (std::size_t c = 0; c < sets.cells().size(); ++c) ++kinds[static_cast<std::size_t>(sets.kind(c))];
+    const auto share = [&](std::uint64_t pairs) {
+        return static_cast<double>(pairs) / static_cast<double>(std::max<std::uint64_t>(1, counts.all()));
+    };
+    const Aabb& bounds = sets.cells().bounds();
+    return {{"scene", job.source.name},
+            {"cells", sets.cells().size()},
+            {"cells_unknown", kinds[0]},
+            {"cells_solid", kinds[1]},
+            {"cells_inner", kinds[2]},
+            {"cells_open", kinds[3]},
+            {"eyes", {bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z}},
+            {"objects", sets.object_count()},
+            {"triangles", job.scene.subject.object_of.size()},
+            {"occluders", job.scene.occluders.size()},
+            {"pairs", counts.all()},
+            {"seen", share(counts.seen)},
+            {"hidden", share(counts.hidden)},
+            {"unseen", share(counts.unseen)},
+            {"lines_planned", bake.lines_planned()},
+            {"lines", bake.lines_done()},
+            {"epsilon", sets.epsilon()},
+            {"confidence", sets.confidence()},
+            {"bytes", file_bytes},
+            {"bits_a_pair", 8.0 * static_cast<double>(file_bytes) /
+                                static_cast<double>(sets.cells().size() * std::max(1u, sets.object_count()))},
+            {"trace_seconds", job.trace_seconds},
+            {"proof_seconds", job.proof_seconds}};
+}
+
+void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, std::size_t file_bytes) {
+    const pvs::PairCounts counts = sets.counts();
+    std::size_t solid = 0, open = 0;
+    for (std::size_t c = 0; c < sets.cells().size(); ++c) {
+        solid += sets.kind(c) == pvs::CellKind::solid;
+        open += sets.kind(c) == pvs::CellKind::open;
+    }
+    const auto percent = [&](std::uint64_t pairs) {
+        return 100.0 * static_cast<double>(pairs) / static_cast<double>(std::max<std::uint64_t>(1, counts.all()));
+    };
+    std::printf(
+        "%s: %zu cells (%zu solid, %zu that see out of the scene), %u objects, %llu of %llu lines in %.1f s\n"
+        "no pair above %.3g of its cell's lines is missed, with confidence %g\n"
+        "pairs: %.1f %% seen, %.1f %% proved hidden (%.1f s), %.1f %% unseen\n",
+        job.source.name.c_str(), sets.cells().size(), solid, open, sets.object_count(),
+        static_cast<unsigned long long>(bake.lines_done()), static_cast<unsigned long long>(bake.lines_planned()),
+        job.trace_seconds, sets.epsilon(), sets.confidence(), percent(counts.seen), percent(counts.hidden),
+        job.proof_seconds, percent(counts.unseen));
+    const double pairs = static_cast<double>(sets.cells().size()) * std::max(1u, sets.object_count());
+    if (file_bytes > 0)
+        std::printf("%.1f kB, %.3f bits a pair\n", 1e-3 * static_cast<double>(file_bytes),
+                    8.0 * static_cast<double>(file_bytes) / pairs);
+}
+
+Result<int> run(const Options& options) {
+    catch_interrupts();
+    ThreadPool pool(options.threads);
+    auto job = make_job(options, pool);
+    if (!job) return tl::unexpected(job.error());
+    auto bake = pvs::Bake::create(job->scene.subject, job->cells,
+                                  {.epsilon = options.epsilon,
+                                   .confidence = options.confidence,
+                                   .seed = options.seed,
+                                   .sides = options.sides == "front" ? occlude::Sides::front : occlude::Sides::both});
+    if (!bake) return tl::unexpected(bake.error());
+    if (auto traced = trace(*job, *bake, pool); !traced) return tl::unexpected(traced.error());
+    if (interrupted())
+        std::fprintf(stderr, "crofton: interrupted after %llu of %llu lines%s\n",
+                     static_cast<unsigned long long>(bake->lines_done()),
+                     static_cast<unsigned long long>(bake->lines_planned()),
+                     options.state.empty() ? "; with --state the next run would go on from here"
+                                           : ": the next run goes on from here");
+    const auto start = Clock::now();
+    const auto sets =
+        pvs::Pvs::finish(*bake, options.shard.empty() ? job->scene.occluders : std::vector<pvs::PlacedOccluder>{},
+                         {.near_reach = options.near_reach, .halvings = options.halvings}, pool);
+    if (!sets) return tl::unexpected(sets.error());
+    job->proof_seconds = seconds_since(start);
+    std::size_t file_bytes = 0;
+    if (auto written = write_outputs(*job, *sets, pool, file_bytes); !written) return tl::unexpected(written.error());
+    if (options.json != "-") print_figures(*job, *bake, *sets, file_bytes);
+    if (!options.json.empty())
+        if (auto written = write_json(options.json, figures(*job, *bake, *sets, file_bytes)); !written)
+            return tl::unexpected(written.error());
+    return interrupted() ? kInterrupted : kSuccess;
+}
+
+}  // namespace
+
+void add_pvs_command(CommandLine& line) {
+    auto options = std::make_shared<Options>();
+    Command command = line.command("pvs", "Bake what can be seen from each cell of a level, by global lines");
+    command.footer(
+        "Cells are NXxNYxNZ equal boxes over the places of eyes, or a file with a box a line: six numbers, min and "
+        "max.\n"
+        "Exit status: 0 done, 2 bad usage or input, 130 interrupted (what there is has been written).\n\n"
+        "Examples:\n"
+        "  crofton pvs town --cells 64x2x64 --out town_pvs.crofton --svg town.svg\n"
+        "  crofton pvs level.wad --map MAP01 --cells 32x1x32 --state map01.state --seconds 60 --out map01.crofton\n"
+        "  crofton pvs town --shard 3/8 --state part3 && crofton merge part* --out town.state\n"
+        "  crofton pvs town --state town.state --out town_pvs.crofton");
+    command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
+    command.option("--cells", options->cells, "NXxNYxNZ, or a file of boxes").show_default();
+    command.option("--eyes", options->eyes,
+                   "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
+    command.option("--height", options->height, "Of the grid over the lowest point there, without --eyes")
+        .positive()
+        .show_default();
+    command.option("--epsilon", options->epsilon, "Of the lines through a cell: pairs above it are not missed")
+        .show_default();
+    command.option("--confidence", options->confidence, "That none of them is").show_default();
+    command.option("--seconds", options->seconds, "Trace no longer than this").positive();
+    command.option("--sides", options->sides, "Of triangles that are drawn: both or front")
+        .one_of({"both", "front"})
+        .show_default();
+    const Option shard = command.option("--shard", options->shard, "i/n: trace part i of n only; needs --state");
+    command.option("--state", options->state, "Save to this file, and go on from it where it exists").writable_file();
+    command.option("--near", options->near_reach, "How far a point of a camera's near plane may be from the eye")
+        .not_negative()
+        .show_default();
+    command.option("--halvings", options->halvings, "Of pairs that no single body hides: more prove more")
+        .whole_between(0, 16)
+        .show_default();
+    command.option("--out", options->out, "Write the sets to this .crofton file").writable_file().excludes(shard);
+    command.flag("--with-scene", options->with_scene, "Put the baked scene into the same file");
+    command.option("--svg", options->svg, "Write a map with what one cell sees").writable_file().excludes(shard);
+    command.option("--eye", options->eye, "x,y,z: the map's cell holds it; without, the middle one");
+    command.option("--seed", options->seed, "Of the lines and of the town").show_default();
+    command.option("--instances", options->instances, "Size of the town, roughly");
+    command.option("--map", options->map, "Which level of a .wad");
+    command.option("--threads", options->threads, "Worker threads; 0: one per core")
+        .whole_between(0, 256)
+        .show_default();
+    command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
+    add_read_options(command, options->read);
+    command.action([options] {
+        const auto done = run(*options);
+        return done ? *done : report_error("", done.error());
+    });
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "pvs_svg.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <vector>
+
+namespace crofton::cli {
+namespace {
+
+constexpr double kWidth = 1200.0;
+
+class Map {
+  public:
+    Map(const pvs::Pvs& pvs, const pvs::Subject& subject, std::uint32_t cell)
+        : pvs_(pvs), subject_(subject), cell_(cell), bounds_(pvs.cells().bounds()) {
+        const glm::dvec3 room = 0.1 * (bounds_.max - bounds_.min);
+        bounds_.min -= room, bounds_.max += room;
+        scale_ = kWidth / (bounds_.max.x - bounds_.min.x);
+    }
+
+    std::string draw() {
+        const double height = scale_ * (bounds_.max.z - bounds_.min.z);
+        print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n", kWidth,
+              height, kWidth, height);
+        svg_ += "<rect width='100%' height='100%' fill='#ffffff'/>\n";
+        objects(pvs::PairState::hidden, "#d4d8dd");
+        objects(pvs::PairState::unseen, "#f0d48a");
+        objects(pvs::PairState::seen, "#4caf78");
+        cells();
+        svg_ += "</svg>\n";
+        return std::move(svg_);
+    }
+
+  private:
+    template <class... Numbers>
+    void print(const char* format, Numbers... numbers) {
+        char text[256];
+        std::snprintf(text, sizeof text, format, numbers...);
+        svg_ += text;
+    }
+
+    // Corner 0 and its neighbours' order: around the box seen along its axis that is nearest to the vertical.
+    void objects(pvs::PairState state, const char* color) {
+        for (std::uint32_t o = 0; o < subject_.boxes.size(); ++o) {
+            if (!pvs_.is_baked(o) || pvs_.state(cell_, o) != state) continue;
+            const Obb& box = subject_.boxes[o];
+            int up = 0;
+            for (int k = 1; k < 3; ++k)
+                if (std::abs(box.axes[k].y) > std::abs(box.axes[up].y)) up = k;
+            const glm::dvec3 a = glm::dvec3(box.axes[(up + 1) % 3]) * double(box.half_extents[(up + 1) % 3]);
+            const glm::dvec3 b = glm::dvec3(box.axes[(up + 2) % 3]) * double(box.half_extents[(up + 2) % 3]);
+            svg_ += "<path d='";
+            const std::array<glm::dvec3, 4> ring = {box.center - a - b, box.center + a - b, box.center + a + b,
+                                                    box.center - a + b};
+            for (std::size_t i = 0; i < 4; ++i) print(i ? "L%.1f %.1f" : "M%.1f %.1f", x(ring[i]), z(ring[i]));
+            print("Z' fill='%s' stroke='#00000055' stroke-width='0.5'/>\n", color);
+        }
+    }
+
+    void cells() {
+        const Aabb own = pvs_.cells().box(cell_);
+        for (std::size_t c = 0; c < pvs_.cells().size(); ++c) {
+            const Aabb box = pvs_.cells().box(c);
+            if (box.max.y <= own.min.y || box.min.y >= own.max.y || c == cell_) continue;
+            rectangle(box, pvs_.kind(c) == pvs::CellKind::solid ? "#00000066" : "none", "#5577aa55", 0.4);
+        }
+        rectangle(own, "#d0202088", "#d02020", 2.0);
+    }
+
+    void rectangle(const Aabb& box, const char* fill, const char* stroke, double width) {
+        print("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f'", x(box.min), z(box.min),
+              scale_ * (box.max.x - box.min.x), scale_ * (box.max.z - box.min.z));
+        print(" fill='%s' stroke='%s' stroke-width='%.1f'/>\n", fill, stroke, width);
+    }
+
+    [[nodiscard]] double x(const glm::dvec3& p) const { return scale_ * (p.x - bounds_.min.x); }
+    [[nodiscard]] double z(const glm::dvec3& p) const { return scale_ * (p.z - bounds_.min.z); }
+
+    const pvs::Pvs& pvs_;
+    const pvs::Subject& subject_;
+    std::uint32_t cell_;
+    Aabb bounds_;
+    double scale_ = 1.0;
+    std::string svg_;
+};
+
+}  // namespace
+
+std::string pvs_svg(const pvs::Pvs& pvs, const pvs::Subject& subject, std::uint32_t cell) {
+    return Map(pvs, subject, cell).draw();
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "pvs_scene.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "camera_path.hpp"
+
+namespace crofton::pipeline {
+
+Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders, Executor& executor) {
+    const scene::Scene& scene = source.scene;
+    auto subject = pvs::subject_of(scene, source.movers);
+    if (!subject) return tl::unexpected(subject.error());
+    PvsScene result;
+    result.subject = std::move(*subject);
+    if (!with_occluders) return result;
+    result.found = find_scene_occluders(scene, executor);
+    std::set<scene::NodeId> moving;
+    for (const scene::InstanceId id : source.movers)
+        if (!scene.is_removed(id)) moving.insert(scene.node_of(id));
+    for (const SceneOccluders::Object& object : result.found.objects) {
+        if (moving.count(object.node)) continue;
+        for (const occlude::FoundOccluder& occluder : result.found.kinds[object.kind].found.occluders)
+            result.occluders.push_back({&occluder, scene.world(object.node)});
+    }
+    return result;
+}
+
+Aabb eyes_of(const scene::Scene& scene, double height) {
+    Aabb eyes = focus_of(scene);
+    if (!eyes.is_empty()) eyes.max.y = eyes.min.y + height;
+    return eyes;
+}
+
+}  // namespace crofton::pipeline

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// What a bake of visible sets needs of a scene that does not say so itself.
+#pragma once
+#include <crofton/core/executor.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <vector>
+
+#include "assets/scene_source.hpp"
+#include "scene_occluders.hpp"
+
+namespace crofton::pipeline {
+
+struct PvsScene {
+    pvs::Subject subject;  // objects are instances; the source's movers are left out
+    SceneOccluders found;
+    std::vector<pvs::PlacedOccluder> occluders;  // in `found`; none of movers
+};
+
+// The scene has been updated. Errors: as pvs::subject_of.
+[[nodiscard]] Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders,
+                                              Executor& executor = serial_executor());
+
+// A grid of cells for eyes up to `height` above the lowest point of where the scene is dense (focus_of). y is up.
+[[nodiscard]] Aabb eyes_of(const scene::Scene& scene, double height);
+
+}  // namespace crofton::pipeline
