@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
 #include <cstdlib>
+#include <error_of.hpp>
 #include <limits>
 
 #include "oracle/exact_convex.hpp"
@@ -68,10 +69,10 @@ TEST_SUITE("convex/query") {
         bad.translation.x = std::numeric_limits<double>::quiet_NaN();
         CHECK_FALSE(intersects({box, at({})}, {box, bad}));
         CHECK_FALSE(penetration({box, at({})}, {box, bad}).overlapping);
-        CHECK(validate_pose(bad).error().code == ErrorCode::non_finite);
+        CHECK(error_of(validate_pose(bad)).code == ErrorCode::non_finite);
         RigidTransform mirror = at({});
         mirror.rotation[0].x = -1.0;
-        CHECK(validate_pose(mirror, 7).error().item == 7);
+        CHECK(error_of(validate_pose(mirror, 7)).item == 7);
     }
 
     TEST_CASE("points, segments, discs and coincident bodies have answers") {
