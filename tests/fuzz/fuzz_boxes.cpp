@@ -39,7 +39,7 @@ void check_pair(fuzz::Shapes& in) {
     // Moved by more than the depth along its axis, they are apart.
     if (meet && depth.depth < 1e6) {
         Obb away = b;
-        away.center += (depth.depth + 1e-6 * (size + glm::length(b.center))) * depth.axis;
+        away.center += (depth.depth + 1e-9 + 1e-6 * (size + glm::length(b.center))) * depth.axis;
         demand(!oracle::boxes_meet_by_integers(a, away), "the depth parts them");
     }
 }

@@ -12,16 +12,27 @@ using namespace crofton;
 using namespace crofton::convex;
 using fuzz::demand;
 
+// What the oracle knows. Balls and capsules without a radius are polytopes, too, of one and two corners.
+bool has_triangles(const Body& body) {
+    return body.is_polytope() && (body.kind() == Kind::box || body.kind() == Kind::triangle || body.hull() != nullptr);
+}
+
 void check_meeting(const Placed& a, const Placed& b, double size, PairCache& cache) {
     const bool meet = intersects(a, b);
-    demand(intersects(b, a) == meet, "meeting is symmetric");
     const Distance d = distance(a, b);
-    demand((d.distance == 0.0) == meet, "a distance of 0");
-    demand(d.lower <= d.upper && d.lower <= d.distance && d.distance <= d.upper, "bounds of a distance");
     const Penetration p = penetration(a, b);
-    demand(p.overlapping == meet && p.lower <= p.upper, "bounds of a depth");
-    demand(intersects(a, b, &cache) == meet, "the answer of a pair that remembers");
-    if (a.body.is_polytope() && b.body.is_polytope()) {
+    demand(d.lower <= d.upper && d.lower <= d.distance && d.distance <= d.upper, "bounds of a distance");
+    demand(p.lower <= p.upper, "bounds of a depth");
+    // Of round bodies a gap or an overlap of little more than rounding may be told either way.
+    const bool exact = has_triangles(a.body) && has_triangles(b.body);
+    const bool is_clear = exact || d.distance > 1e-7 * size || p.depth > 1e-7 * size;
+    if (is_clear) {
+        demand(intersects(b, a) == meet, "meeting is symmetric");
+        demand((d.distance == 0.0) == meet, "a distance of 0");
+        demand(p.overlapping == meet, "a depth of bodies that meet");
+        demand(intersects(a, b, &cache) == meet, "the answer of a pair that remembers");
+    }
+    if (exact) {
         const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
         const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
         const Penetration guess = penetration({a.body, near_a}, {b.body, near_b});
@@ -32,7 +43,8 @@ void check_meeting(const Placed& a, const Placed& b, double size, PairCache& cac
         demand(p.upper - p.lower <= 1e-9 * size, "a depth that is not proven well enough");
     }
     const Manifold m = contact_manifold(a, b, {}, &cache);
-    demand(meet ? m.count >= 1 && m.count <= 4 : m.count == 0, "points of contact");
+    demand(m.count >= 0 && m.count <= 4, "how many points of contact");
+    if (is_clear) demand((m.count > 0) == meet, "points of contact");
     for (int i = 0; i < m.count; ++i)
         demand(std::isfinite(glm::dot(m.points[i].position, glm::dvec3(1.0))) &&
                    m.points[i].depth <= m.depth + 1e-6 * size,

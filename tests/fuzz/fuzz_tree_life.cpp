@@ -26,7 +26,6 @@ Ids sorted(std::span<const boxtree::ItemId> ids) {
     return result;
 }
 
-// Queries of cull want no tight bounds.
 void check_views(fuzz::Shapes& in, const fuzz::LivingTree& living) {
     const auto mode = static_cast<cull::CullMode>(in.below(2));
     std::vector<cull::View> views(1 + in.below(5));
@@ -117,6 +116,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (int step = 0; step < 60 && in.more(); ++step) {
         switch (in.below(12)) {
             case 0:
+                living.settle(in);
                 check_views(in, living);
                 break;
             case 1:

@@ -49,12 +49,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const Ray ray = in.flag() ? in.ray_through(a[in.below(3)]) : in.ray_through((a[0] + a[1] + a[2]) / 3.0);
     const auto hit = mesh::raycast(ray, a), line = crossing(ray, a);
-    // t is rounded, and with it what becomes of a triangle at the ray's ends.
-    double size_of_a = glm::length(ray.origin);
-    for (const glm::dvec3& p : a) size_of_a += glm::length(p);
-    const double rounding = 1e-9 * (1.0 + size_of_a / glm::length(ray.direction));
     if (!line) return demand(!hit, "a ray that misses hits"), 0;
-    if (*line > rounding && *line < ray.max_t - rounding) demand(hit.has_value(), "a ray passes through");
-    if (*line < -rounding || *line > ray.max_t + rounding) demand(!hit, "a ray hits beyond its ends");
+    // t is rounded, as far as between the nearest and the farthest corner.
+    double low = *line, high = *line;
+    for (const glm::dvec3& p : a) {
+        const double t = glm::dot(p - ray.origin, ray.direction) / glm::dot(ray.direction, ray.direction);
+        low = std::min(low, t);
+        high = std::max(high, t);
+    }
+    const double rounding = 1e-9 * (1.0 + std::max(std::fabs(low), std::fabs(high)));
+    if (low > rounding && high < ray.max_t - rounding) demand(hit.has_value(), "a ray passes through");
+    if (high < -rounding || low > ray.max_t + rounding) demand(!hit, "a ray hits beyond its ends");
     return 0;
 }

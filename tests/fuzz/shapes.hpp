@@ -171,15 +171,15 @@ class Shapes {
             camera.far_distance = std::numeric_limits<double>::infinity();
         return validate(camera) ? camera : Camera{};
     }
-    // A camera's, or any half-spaces: bounded, unbounded, empty.
+    // A camera's, or any half-spaces: bounded, unbounded, empty; some with normals that are not of unit length.
     Frustum frustum() {
         if (below(4) != 0) return *frustum_of(camera());
         Frustum frustum;
         frustum.origin = point();
         frustum.plane_count = below(8);
         for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
-            frustum.planes[i].normal = direction();
-            if (flag()) frustum.planes[i].normal = glm::normalize(frustum.planes[i].normal);
+            frustum.planes[i].normal = direction() / 16.0;  // of components that are valid
+            if (below(4) != 0) frustum.planes[i].normal = glm::normalize(frustum.planes[i].normal);
             frustum.planes[i].offset = coordinate();
         }
         return frustum;

@@ -47,6 +47,18 @@ TEST_SUITE("triangulate/minimum_weight") {
         CHECK(result->optimal);
     }
 
+    TEST_CASE("a ring that goes round twice is not convex, though each corner turns to one side") {
+        // Found by fuzz_triangulate: its second round touches the first one, and cuts a triangle out of it.
+        const Polygon p = polygon({{{-0.125, 0}, {0, 5}, {5, -0.125}, {0, 0}, {0, 1}, {1.5, 0}}});
+        for (const auto method :
+             {triangulate::Method::ear, triangulate::Method::delaunay, triangulate::Method::minimum_weight}) {
+            const auto result = triangulate::triangulate(p, {.method = method});
+            REQUIRE(result.has_value());
+            CHECK(result->triangles.size() == 5);
+            CHECK(oracle::check_triangulation(p, result->triangles, true) == "");
+        }
+    }
+
     TEST_CASE("where Delaunay is not minimal: the flat kite of five points") {
         // Checked by hand: the pentagon has five triangulations, each two diagonals from one corner.
         const glm::dvec2 p[] = {{0, 0}, {10, 0}, {11, 3}, {5, 4}, {-1, 3}};
