@@ -2,6 +2,7 @@
 // Damaged files of every format: any answer is right but a crash, a hang or a loaded scene that breaks its promises.
 #include <doctest/doctest.h>
 #include <assets/scene_source.hpp>
+#include <error_of.hpp>
 #include <random>
 
 #include "test_files.hpp"
@@ -15,7 +16,7 @@ void try_file(const std::string& name, const std::string& contents) {
     const TemporaryFile file(name, contents);
     auto source = assets::load_scene(file.path());
     if (!source) {
-        CHECK(source.error().message.find(name) != std::string::npos);
+        CHECK(error_of(source).message.find(name) != std::string::npos);
         return;
     }
     source->scene.update();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <assets/gltf_document.hpp>
+#include <error_of.hpp>
 #include <filesystem>
 
 #include "gltf_asset.hpp"
@@ -26,7 +27,7 @@ std::string message(const std::string& name, const std::string& contents) {
     const TemporaryFile file(name, contents);
     const auto document = assets::read_gltf_document(file.path());
     if (document) return "read";
-    CHECK(document.error().message.find(name) != std::string::npos);
+    CHECK(error_of(document).message.find(name) != std::string::npos);
     return document.error().message;
 }
 
@@ -186,6 +187,6 @@ TEST_SUITE("assets/gltf_document") {
         std::string storage;
         const auto elements = assets::accessor_elements(*assets::read_gltf_document(file.path()), 2, 3, storage);
         REQUIRE_FALSE(elements.has_value());
-        CHECK(says(elements.error().message, "replaces element 3 of 3"));
+        CHECK(says(error_of(elements).message, "replaces element 3 of 3"));
     }
 }

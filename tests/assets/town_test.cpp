@@ -4,6 +4,7 @@
 #include <assets/scene_source.hpp>
 #include <cmath>
 #include <cstring>
+#include <error_of.hpp>
 
 using namespace crofton;
 using assets::load_scene;
@@ -40,7 +41,7 @@ TEST_SUITE("assets/town") {
         options.instances = 1'000'001;
         const auto source = load_scene("town", options);
         REQUIRE_FALSE(source.has_value());
-        CHECK(source.error().code == ErrorCode::out_of_range);
+        CHECK(error_of(source).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("every seed makes a town of about 3,000 instances and 300,000 triangles") {

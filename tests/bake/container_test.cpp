@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/bake/container.hpp>
+#include <error_of.hpp>
 
 #include <array>
 #include <string>
@@ -23,8 +24,8 @@ Vector<std::byte> sample_file() {
 void check_refused(const Vector<std::byte>& file, ErrorCode code, const char* part) {
     const auto reader = Reader::open(file);
     REQUIRE_FALSE(reader);
-    CHECK(reader.error().code == code);
-    CHECK(reader.error().message.find(part) != std::string::npos);
+    CHECK(error_of(reader).code == code);
+    CHECK(error_of(reader).message.find(part) != std::string::npos);
 }
 
 template <class T>
@@ -94,7 +95,7 @@ TEST_SUITE("bake/container") {
         CHECK(reader->section<double>("nothing")->empty());
         CHECK_FALSE(reader->section<std::uint64_t>("numbers"));
         CHECK_FALSE(reader->section<char>("letters"));
-        CHECK(reader->section<char>("letters").error().message.find("missing") != std::string::npos);
+        CHECK(error_of(reader->section<char>("letters")).message.find("missing") != std::string::npos);
     }
 
     TEST_CASE("a file of no sections is a file") {

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <array>
 #include <crofton/bake/baked_scene.hpp>
+#include <error_of.hpp>
 
 #include "forge.hpp"
 
@@ -27,7 +28,7 @@ void check_refused(const Vector<std::byte>& file, std::string_view why) {
     const auto reader = Reader::open(file);
     REQUIRE_FALSE(reader);
     INFO(reader.error().message);
-    CHECK(reader.error().message.find(why) != std::string::npos);
+    CHECK(error_of(reader).message.find(why) != std::string::npos);
 }
 
 // Two meshes on two nodes: a triangle with colours, and a rectangle with a hole.
@@ -57,7 +58,7 @@ void check_scene_refused(const Vector<std::byte>& file, std::string_view why) {
     const auto baked = BakedScene::from_memory(file);
     REQUIRE_FALSE(baked);
     INFO(baked.error().message);
-    CHECK(baked.error().message.find(why) != std::string::npos);
+    CHECK(error_of(baked).message.find(why) != std::string::npos);
 }
 
 }  // namespace

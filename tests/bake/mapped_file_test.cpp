@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/bake/baked_scene.hpp>
+#include <error_of.hpp>
 
 #include <sys/stat.h>
 
@@ -16,8 +17,8 @@ TEST_SUITE("bake/mapped_file") {
     TEST_CASE("a missing file and a folder are errors that name them") {
         const auto missing = MappedFile::open("no such file");
         REQUIRE_FALSE(missing);
-        CHECK(missing.error().code == crofton::ErrorCode::io);
-        CHECK(missing.error().message.find("no such file") != std::string::npos);
+        CHECK(error_of(missing).code == crofton::ErrorCode::io);
+        CHECK(error_of(missing).message.find("no such file") != std::string::npos);
         CHECK_FALSE(MappedFile::open("."));
     }
 
@@ -59,11 +60,11 @@ TEST_SUITE("bake/mapped_file") {
             CHECK(MappedFile::open(file.path(), {.access = access, .largest = 1000}));
             const auto large = MappedFile::open(file.path(), {.access = access, .largest = 999});
             REQUIRE_FALSE(large);
-            CHECK(large.error().code == crofton::ErrorCode::out_of_range);
-            CHECK(large.error().message.find("1000 bytes, where the limit is 999") != std::string::npos);
+            CHECK(error_of(large).code == crofton::ErrorCode::out_of_range);
+            CHECK(error_of(large).message.find("1000 bytes, where the limit is 999") != std::string::npos);
             const auto waiting = MappedFile::open(pipe, {.access = access});
             REQUIRE_FALSE(waiting);
-            CHECK(waiting.error().message.find("not a regular file") != std::string::npos);
+            CHECK(error_of(waiting).message.find("not a regular file") != std::string::npos);
         }
         std::filesystem::remove(pipe);
     }

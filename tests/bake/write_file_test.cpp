@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <crofton/bake/baked_scene.hpp>
+#include <error_of.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -75,13 +76,13 @@ TEST_SUITE("bake/write_file") {
         const Folder folder;
         const auto nowhere = write(folder.file("no/such/file"), "x");
         REQUIRE_FALSE(nowhere);
-        CHECK(nowhere.error().code == ErrorCode::io);
-        CHECK(nowhere.error().message.find("no/such/file: cannot create: No such file") != std::string::npos);
+        CHECK(error_of(nowhere).code == ErrorCode::io);
+        CHECK(error_of(nowhere).message.find("no/such/file: cannot create: No such file") != std::string::npos);
         std::filesystem::create_directory(folder.file("folder"));
         CHECK_FALSE(write(folder.file("folder"), "x"));
         const auto full = write("/dev/full", "x");
         REQUIRE_FALSE(full);
-        CHECK(full.error().message.find("/dev/full: cannot write: No space left") != std::string::npos);
+        CHECK(error_of(full).message.find("/dev/full: cannot write: No space left") != std::string::npos);
         CHECK(write("/dev/null", "x"));
         int ends[2];
         REQUIRE(pipe(ends) == 0);
@@ -165,7 +166,7 @@ TEST_SUITE("bake/write_file") {
         REQUIRE(mkfifo((path + ".partial").c_str(), 0600) == 0);
         const auto refused = write(path, "newer");
         REQUIRE_FALSE(refused);
-        CHECK(refused.error().message.find(".partial is in the way") != std::string::npos);
+        CHECK(error_of(refused).message.find(".partial is in the way") != std::string::npos);
         CHECK(contents(path) == "new");
         std::filesystem::remove(path + ".partial");
         const std::string victim = folder.file("victim");

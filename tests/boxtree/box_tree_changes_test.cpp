@@ -5,6 +5,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/rebuilder.hpp>
 #include <crofton/boxtree/structure.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
@@ -21,13 +22,13 @@ TEST_SUITE("boxtree/box_tree changes") {
         const Vector<std::byte> before = tree.serialise();
         Obb bad;
         bad.center.x = std::nan("");
-        CHECK(tree.move(7, bad).error().item == 7);
+        CHECK(error_of(tree.move(7, bad)).item == 7);
         CHECK(!tree.insert(bad).has_value());
-        CHECK(tree.move(50, Obb{}).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(tree.move(50, Obb{})).code == ErrorCode::out_of_range);
         CHECK(!tree.remove(50).has_value());
         const std::vector<ItemId> ids{3, 4};
         const std::vector<Obb> moved{Obb{}, bad};
-        CHECK(tree.move(ids, moved).error().item == 4);
+        CHECK(error_of(tree.move(ids, moved)).item == 4);
         CHECK(tree.serialise() == before);
         CHECK(tree.remove(7).has_value());
         CHECK(!tree.remove(7).has_value());
@@ -232,7 +233,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(found.validate().has_value());
         CHECK(holds_all(found));
         const std::vector<ItemId> unknown{40000};
-        CHECK(BoxTree::build(crowd.boxes, {.moving = unknown}).error().item == 40000);
+        CHECK(error_of(BoxTree::build(crowd.boxes, {.moving = unknown})).item == 40000);
     }
 
     TEST_CASE(
@@ -296,7 +297,7 @@ TEST_SUITE("boxtree/box_tree changes") {
             };
             for (const std::vector<Obb>& boxes : bad) {
                 CHECK(!validate(boxes[at]).has_value());
-                CHECK(tree.move(items, boxes).error().item == 99 - at);
+                CHECK(error_of(tree.move(items, boxes)).item == 99 - at);
             }
         }
         tree.refit();
@@ -321,7 +322,7 @@ TEST_SUITE("boxtree/box_tree changes") {
         CHECK(back->serialise() == bytes);
         CHECK(holds_all(*back));
         for (const std::size_t size : {std::size_t{0}, std::size_t{50}, bytes.size() - 1})
-            CHECK(BoxTree::deserialise(std::span(bytes).first(size)).error().code == ErrorCode::parse);
+            CHECK(error_of(BoxTree::deserialise(std::span(bytes).first(size))).code == ErrorCode::parse);
         oracle::NearMisses random(9);
         int accepted = 0;
         for (int trial = 0; trial < 3000; ++trial) {

@@ -4,6 +4,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
 #include <oracle/least_cuts.hpp>
@@ -28,7 +29,7 @@ TEST_SUITE("boxtree/box_tree") {
             if (fault == 4) bad.center.z = 1e31;
             const auto tree = BoxTree::build(boxes);
             REQUIRE(!tree.has_value());
-            CHECK(tree.error().item == 13);
+            CHECK(error_of(tree).item == 13);
         }
         const std::vector<std::uint32_t> too_few(3);
         CHECK(oracle::code_of(BoxTree::build(good, too_few)) == ErrorCode::invalid_argument);

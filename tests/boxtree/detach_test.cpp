@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
+#include <error_of.hpp>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
 #include <set>
@@ -18,19 +19,19 @@ TEST_SUITE("boxtree/detach") {
         "nothing") {
         const oracle::Crowd crowd = oracle::random_crowd(100, 0.0, 1);
         const std::vector<ItemId> unknown{100}, detached{7, 9, 7};
-        CHECK(BoxTree::build(crowd.boxes, {.detached = unknown}).error().item == 100);
+        CHECK(error_of(BoxTree::build(crowd.boxes, {.detached = unknown})).item == 100);
         BoxTree tree = *BoxTree::build(crowd.boxes, crowd.layers, {.detached = detached});
         CHECK(tree.item_count() == 98);
         CHECK(tree.structure().slot_of(7) == boxtree::kNone);
-        CHECK(tree.detach(7).error().item == 7);
-        CHECK(tree.detach(100).error().item == 100);
-        CHECK(tree.move(7, Obb{}).error().item == 7);
-        CHECK(tree.attach(8, Obb{}).error().item == 8);
-        CHECK(tree.attach(5000, Obb{}).error().item == 5000);
+        CHECK(error_of(tree.detach(7)).item == 7);
+        CHECK(error_of(tree.detach(100)).item == 100);
+        CHECK(error_of(tree.move(7, Obb{})).item == 7);
+        CHECK(error_of(tree.attach(8, Obb{})).item == 8);
+        CHECK(error_of(tree.attach(5000, Obb{})).item == 5000);
         const Vector<std::byte> before = tree.serialise();
         Obb bad;
         bad.center.x = std::nan("");
-        CHECK(tree.attach(7, bad).error().item == 7);
+        CHECK(error_of(tree.attach(7, bad)).item == 7);
         CHECK(tree.serialise() == before);
         CHECK(tree.is_detached(7));
         CHECK(tree.remove(9).has_value());

@@ -5,6 +5,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/crofton.hpp>
 #include <cstring>
+#include <error_of.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -179,11 +180,11 @@ inline void change(BothWorlds& both, oracle::NearMisses& random) {
     const auto placed = world.set_transforms(handles, transforms);
     REQUIRE((crofton_world_set_transforms(c, &moved[0].object, sizeof(Moved), &moved[0].transform, sizeof(Moved),
                                           moved.size()) == CROFTON_OK) == placed.has_value());
-    if (!placed) CHECK(crofton_last_error_item() == placed.error().item);
+    if (!placed) CHECK(crofton_last_error_item() == error_of(placed).item);
     const auto boxed = world.set_bounds(handles, boxes);
     REQUIRE((crofton_world_set_boxes(c, &moved[0].object, sizeof(Moved), &moved[0].box, sizeof(Moved), moved.size()) ==
              CROFTON_OK) == boxed.has_value());
-    if (!boxed) CHECK(crofton_last_error_item() == boxed.error().item);
+    if (!boxed) CHECK(crofton_last_error_item() == error_of(boxed).item);
     for (int i = 0; i < 6; ++i) {
         const std::size_t o = any(both.objects.size()), n = any(both.nodes.size()), p = any(both.nodes.size());
         const crofton_object object = both.objects[o];

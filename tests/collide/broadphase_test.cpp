@@ -5,6 +5,7 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/executor.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
 #include <vector>
@@ -88,7 +89,7 @@ TEST_SUITE("collide/broadphase") {
         Broadphase broadphase({.max_pairs = 1000});
         const auto result = broadphase.update(boxes);
         REQUIRE_FALSE(result.has_value());
-        CHECK(result.error().code == ErrorCode::budget_exceeded);
+        CHECK(error_of(result).code == ErrorCode::budget_exceeded);
         CHECK(broadphase.pairs().empty());
         boxes.resize(10);
         REQUIRE(broadphase.update(boxes).has_value());
@@ -248,8 +249,8 @@ TEST_SUITE("collide/broadphase") {
         const std::vector<std::uint32_t> wild{4, 300};
         const auto result = broadphase.update_moved(boxes, wild);
         REQUIRE_FALSE(result.has_value());
-        CHECK(result.error().code == ErrorCode::out_of_range);
-        CHECK(result.error().item == 300);
+        CHECK(error_of(result).code == ErrorCode::out_of_range);
+        CHECK(error_of(result).item == 300);
         CHECK(same(broadphase.pairs(), pairs));
         // All boxes far away: the order is worn out, and made anew.
         auto far = boxes;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <numbers>
 
@@ -27,14 +28,14 @@ TEST_SUITE("convex/cast") {
         const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, -1, 0}, 0}).value();
         const RigidTransform here = at({}), there = at({5, 5, 5});
         const auto code = [&](const Motion& m, const CastOptions& o) {
-            return cast({box, here}, m, {box, there}, {}, o).error().code;
+            return error_of(cast({box, here}, m, {box, there}, {}, o)).code;
         };
         CHECK(code(flying({NAN, 0, 0}), {}) == ErrorCode::non_finite);
         CHECK(code(flying({}, {1e6, 0, 0}), {}) == ErrorCode::out_of_range);
         CHECK(code({}, {.duration = -1.0}) == ErrorCode::invalid_argument);
         CHECK(code({}, {.tolerance = 0.0}) == ErrorCode::invalid_argument);
         CHECK(code({}, {.max_steps = 0}) == ErrorCode::invalid_argument);
-        CHECK(cast({box, there}, {}, {floor, here}, flying({}, {1, 0, 0})).error().item == 1);
+        CHECK(error_of(cast({box, there}, {}, {floor, here}, flying({}, {1, 0, 0}))).item == 1);
     }
 
     TEST_CASE("a cast of zero length tells whether the bodies are within the tolerance now") {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
 #include <cstdlib>
+#include <error_of.hpp>
 #include <limits>
 
 #include "oracle/exact_convex.hpp"
@@ -68,10 +69,10 @@ TEST_SUITE("convex/query") {
         bad.translation.x = std::numeric_limits<double>::quiet_NaN();
         CHECK_FALSE(intersects({box, at({})}, {box, bad}));
         CHECK_FALSE(penetration({box, at({})}, {box, bad}).overlapping);
-        CHECK(validate_pose(bad).error().code == ErrorCode::non_finite);
+        CHECK(error_of(validate_pose(bad)).code == ErrorCode::non_finite);
         RigidTransform mirror = at({});
         mirror.rotation[0].x = -1.0;
-        CHECK(validate_pose(mirror, 7).error().item == 7);
+        CHECK(error_of(validate_pose(mirror, 7)).item == 7);
     }
 
     TEST_CASE("points, segments, discs and coincident bodies have answers") {
@@ -112,6 +113,25 @@ TEST_SUITE("convex/query") {
         CHECK(penetration({round, at({})}, {round, at({2.75, 0, 0})}).depth == doctest::Approx(0.25));
         CHECK(closest_point({box, at({})}, {4, 0, 0}).distance == doctest::Approx(3.0));
         CHECK(closest_point({box, at({})}, {4, 0, 0}).on_b.x == doctest::Approx(1.0));
+    }
+
+    TEST_CASE("bodies apart by less than rounding tells have bounds that hold their distance") {
+        // Found by fuzz_convex: the four corners seemed to contain the origin, and the bound stayed 0.
+        const Body a = Body::box({0x1.fp+1f, 0x1p-3f, 0x1.8p-2f}).value();
+        const Body b = Body::box({0x1.2p+0f, 0x1.8p+1f, 0x1.8p-2f}).value();
+        const RigidTransform pose_a = at({-0x1.ap+2, 0x1.b4p+3, 0x1.dfffffffffffdp+2});
+        const RigidTransform pose_b = {glm::dmat3(0x1.5e0d3f2958c0cp-1, -0x1.5ba0bc7f81bbcp-1, 0x1.11f41b2b7d1c7p-2,
+                                                  0x1.23b5b4a274a0ap-1, 0x1.11f41b2b7d1c8p-2, -0x1.8dda4a0336898p-1,
+                                                  0x1.d2f60d05708a7p-2, 0x1.5e0d3f2958c0cp-1, 0x1.23b5b4a274a0ap-1),
+                                       {0x1.8fc4ecdcda94p-6, 0x1.b971e4c614bp+3, 0x1.53bdd29f77cfcp+2}};
+        const Placed pa{a, pose_a}, pb{b, pose_b};
+        const bool meet = intersects(pa, pb);
+        CHECK(meet == oracle::meet_by_axes(oracle::exact_polytope(pa), oracle::exact_polytope(pb)));
+        const Distance d = distance(pa, pb);
+        CHECK((d.distance == 0.0) == meet);
+        CHECK(d.lower <= d.distance);
+        CHECK(d.distance <= d.upper);
+        CHECK(d.upper < 1e-9);
     }
 
     TEST_CASE("touching exactly counts: kissing boxes, a corner on a face, an edge across an edge") {

@@ -8,6 +8,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/lights.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <oracle/exact_bounds.hpp>
@@ -76,7 +77,7 @@ struct RandomLights {
 TEST_SUITE("cull/froxels") {
     TEST_CASE("grids that cannot be are refused with a reason") {
         const auto code = [](const Camera& camera, const cull::FroxelOptions& options) {
-            return cull::FroxelGrid::build(camera, options).error().code;
+            return error_of(cull::FroxelGrid::build(camera, options)).code;
         };
         const Camera camera;
         CHECK(code(camera, {0, 9, 24}) == ErrorCode::out_of_range);
@@ -93,7 +94,7 @@ TEST_SUITE("cull/froxels") {
         const double same[] = {1.0, 2.0, 2.0}, behind[] = {-1.0, 2.0, 3.0}, unknown[] = {1.0, std::nan(""), 3.0};
         CHECK(code(camera, {4, 4, 2, same}) == ErrorCode::out_of_range);
         CHECK(code(camera, {4, 4, 2, behind}) == ErrorCode::out_of_range);
-        CHECK(cull::FroxelGrid::build(camera, {4, 4, 2, unknown}).error().item == 1);
+        CHECK(error_of(cull::FroxelGrid::build(camera, {4, 4, 2, unknown})).item == 1);
         CHECK(code(camera, {4, 4, 3, same}) == ErrorCode::invalid_argument);
         const double depths[] = {1.0, 2.0, 1e6};
         CHECK(cull::FroxelGrid::build(endless, {4, 4, 2, depths}).has_value());
@@ -110,7 +111,7 @@ TEST_SUITE("cull/froxels") {
             const std::vector<cull::SpotLight> spots{{}, spot};
             const auto result = cull::find_lights(grid, points, spots, lights);
             REQUIRE(!result.has_value());
-            CHECK(result.error().item == item);
+            CHECK(error_of(result).item == item);
             CHECK(lights.lights().size() == 1);
         };
         expect({{std::nan(""), 0.0, 0.0}, 1.0}, {}, 1);

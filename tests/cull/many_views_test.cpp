@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
+#include <error_of.hpp>
 #include <map>
 #include <oracle/random_boxes.hpp>
 #include <vector>
@@ -82,9 +83,9 @@ TEST_SUITE("cull/many_views") {
 TEST_SUITE("cull/shadow_volume") {
     TEST_CASE("a light that is no direction, not finite or a view of too many planes is refused") {
         const Frustum view = *frustum_of(Camera{});
-        CHECK(cull::shadow_volume(view, glm::dvec3(0.0)).error().code == ErrorCode::degenerate);
-        CHECK(cull::shadow_volume(view, {std::nan(""), 0.0, 1.0}).error().code == ErrorCode::non_finite);
-        CHECK(cull::shadow_volume(*cull::shadow_volume(view, {0.3, 1.0, 0.2}), {1.0, 0.0, 0.0}).error().code ==
+        CHECK(error_of(cull::shadow_volume(view, glm::dvec3(0.0))).code == ErrorCode::degenerate);
+        CHECK(error_of(cull::shadow_volume(view, {std::nan(""), 0.0, 1.0})).code == ErrorCode::non_finite);
+        CHECK(error_of(cull::shadow_volume(*cull::shadow_volume(view, {0.3, 1.0, 0.2}), {1.0, 0.0, 0.0})).code ==
               ErrorCode::invalid_argument);
     }
 

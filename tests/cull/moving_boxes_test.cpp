@@ -6,6 +6,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <map>
 #include <oracle/random_boxes.hpp>
@@ -120,14 +121,14 @@ TEST_SUITE("cull/moving_boxes") {
                 spoil(bad.back(), fault);
                 const auto result = crowd.moving.update(crowd.tree, crowd.items, bad);
                 REQUIRE(!result.has_value());
-                CHECK(result.error().item == crowd.items[at]);
-                CHECK(result.error().message == validate(bad[at]).error().message);
+                CHECK(error_of(result).item == crowd.items[at]);
+                CHECK(error_of(result).message == error_of(validate(bad[at])).message);
             }
         std::vector<ItemId> others = crowd.items;
         others[5] = 1;  // rests
-        CHECK(crowd.moving.update(crowd.tree, others, crowd.boxes).error().item == 1);
+        CHECK(error_of(crowd.moving.update(crowd.tree, others, crowd.boxes)).item == 1);
         others[5] = 5000;
-        CHECK(crowd.moving.update(crowd.tree, others, crowd.boxes).error().item == 5000);
+        CHECK(error_of(crowd.moving.update(crowd.tree, others, crowd.boxes)).item == 5000);
         CHECK(!crowd.moving.update(crowd.tree, std::span(others).first(9), crowd.boxes).has_value());
         oracle::NearMisses random(2);
         const std::vector<cull::View> views{view_near(random, 0), view_near(random, 1), view_near(random, 2)};

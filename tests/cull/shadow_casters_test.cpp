@@ -7,6 +7,7 @@
 #include <crofton/cull/classify.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/cull/lights.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
@@ -96,7 +97,7 @@ TEST_SUITE("cull/shadow_casters") {
         unknown.planes[0].offset = std::nan("");
         CHECK(!set.set_sun(unknown, receivers, {0.0, 1.0, 0.0}).has_value());
         receivers[1].center.x = std::nan("");
-        CHECK(set.set_sun(view, receivers, {0.0, 1.0, 0.0}).error().item == 1);
+        CHECK(error_of(set.set_sun(view, receivers, {0.0, 1.0, 0.0})).item == 1);
         CHECK(!set.wants(box));
         CHECK(set.wants(receivers[1]));
         REQUIRE(set.set_sun(view, {}, {0.0, 1.0, 0.0}).has_value());

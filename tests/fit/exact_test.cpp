@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/fit/fit.hpp>
 #include <cstdio>
+#include <error_of.hpp>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -65,13 +66,13 @@ TEST_SUITE("fit/exact") {
         const Points points(4, glm::dvec3(1.0));
         const auto no_gap = fit::fit_exact(view(points), {.gap = 0.0});
         REQUIRE(!no_gap.has_value());
-        CHECK(no_gap.error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(no_gap).code == ErrorCode::invalid_argument);
         CHECK(!fit::fit_exact(view(points), {.gap = std::numeric_limits<double>::quiet_NaN()}));
         CHECK(!fit::fit_exact(view(points), {.time_budget_seconds = -1.0}));
         Points bad = points;
         bad[2].x = std::numeric_limits<double>::infinity();
-        CHECK(fit::fit_exact(view(bad)).error().item == 2);
-        CHECK(fit::fit_exact(view({})).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::fit_exact(view(bad))).item == 2);
+        CHECK(error_of(fit::fit_exact(view({}))).code == ErrorCode::empty);
     }
 
     TEST_CASE("points, segments and flat sets are proved as quickly as others") {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/core/executor.hpp>
 #include <crofton/fit/fit.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <random>
 #include <vector>
@@ -53,13 +54,13 @@ TEST_SUITE("fit/fit_many") {
         ThreadPool pool(3);
         const auto done = fit::fit_many(input.clusters(), {}, pool, boxes);
         REQUIRE(!done);
-        CHECK(done.error().item == 41);
-        CHECK(done.error().code == ErrorCode::non_finite);
+        CHECK(error_of(done).item == 41);
+        CHECK(error_of(done).code == ErrorCode::non_finite);
         CHECK(boxes[41].half_extents == glm::vec3(0.0f));
         CHECK(boxes[71].half_extents == glm::vec3(0.0f));
         for (std::size_t i : {0u, 40u, 42u, 99u}) CHECK(boxes[i].half_extents != glm::vec3(0.0f));
         input.ends[0] = 0;
-        CHECK(fit::fit_many(input.clusters(), {}, pool, boxes).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::fit_many(input.clusters(), {}, pool, boxes)).code == ErrorCode::empty);
         CHECK(fit::fit_many({}, {}, pool, {}).has_value());
         CHECK(!fit::fit_many(input.clusters(), {.criterion = {0.0, 0.0, 0.0}}, pool, boxes));
     }

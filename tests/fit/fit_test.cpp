@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <error_of.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <random>
@@ -59,19 +60,19 @@ TEST_SUITE("fit/fit") {
     }
 
     TEST_CASE("no points, NaN, infinite or huge points are refused by their first index") {
-        CHECK(fit::fit_obb(std::span<const glm::vec3>()).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::fit_obb(std::span<const glm::vec3>())).code == ErrorCode::empty);
         std::vector<glm::vec3> points(10, glm::vec3(1.0f));
         points[7].y = std::numeric_limits<float>::quiet_NaN();
         points[8].x = std::numeric_limits<float>::infinity();
         auto result = fit::fit_obb(view(points));
         REQUIRE(!result);
-        CHECK(result.error().code == ErrorCode::non_finite);
-        CHECK(result.error().item == 7);
+        CHECK(error_of(result).code == ErrorCode::non_finite);
+        CHECK(error_of(result).item == 7);
         points[3].z = -std::numeric_limits<float>::infinity();
-        CHECK(fit::fit_obb(view(points)).error().item == 3);
+        CHECK(error_of(fit::fit_obb(view(points))).item == 3);
         points[1].z = 2e30f;
-        CHECK(fit::fit_obb(view(points)).error().item == 1);
-        CHECK(fit::fit_obb(view(points)).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(fit::fit_obb(view(points))).item == 1);
+        CHECK(error_of(fit::fit_obb(view(points))).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("a criterion with no weight or a negative one is refused") {
@@ -249,7 +250,7 @@ TEST_SUITE("fit/fit") {
     TEST_CASE("merge holds every corner of every box and one box is its own merge") {
         std::mt19937 random(17);
         std::normal_distribution<double> normal;
-        CHECK(fit::merge({}, measure::minimal_area()).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::merge({}, measure::minimal_area())).code == ErrorCode::empty);
         for (int run = 0; run < 100; ++run) {
             std::vector<Obb> boxes(1 + static_cast<std::size_t>(run % 4));
             for (Obb& box : boxes) {

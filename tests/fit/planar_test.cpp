@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/predicates.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -124,14 +125,14 @@ double triangle_by_brute_force(const Points& points, PlanarCriterion criterion, 
 
 TEST_SUITE("fit/planar") {
     TEST_CASE("no points and bad points are refused by their first index") {
-        CHECK(fit::minimal_rectangle({}, PlanarCriterion::area).error().code == ErrorCode::empty);
-        CHECK(fit::minimal_disc({}).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::minimal_rectangle({}, PlanarCriterion::area)).code == ErrorCode::empty);
+        CHECK(error_of(fit::minimal_disc({})).code == ErrorCode::empty);
         Points points(4, glm::dvec2(1.0));
         points[2].x = std::numeric_limits<double>::quiet_NaN();
-        CHECK(fit::minimal_rectangle(view(points), PlanarCriterion::area).error().item == 2);
-        CHECK(fit::minimal_disc(view(points)).error().item == 2);
+        CHECK(error_of(fit::minimal_rectangle(view(points), PlanarCriterion::area)).item == 2);
+        CHECK(error_of(fit::minimal_disc(view(points))).item == 2);
         points[1].y = 1e31;
-        CHECK(fit::minimal_disc(view(points)).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(fit::minimal_disc(view(points))).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("a point and a segment have rectangles and discs of no more than their size") {
@@ -203,7 +204,7 @@ TEST_SUITE("fit/planar") {
     }
 
     TEST_CASE("triangles: bad points are refused, a point and a segment have no area, and a triangle is its own best") {
-        CHECK(fit::minimal_triangle({}, PlanarCriterion::area).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::minimal_triangle({}, PlanarCriterion::area)).code == ErrorCode::empty);
         Points points = {{0.0, 0.0}, {4.0, 0.0}, {1.0, 3.0}, {1.5, 1.0}};
         for (const PlanarCriterion criterion : {PlanarCriterion::area, PlanarCriterion::perimeter}) {
             const auto own = fit::minimal_triangle(view(points), criterion);
@@ -217,9 +218,9 @@ TEST_SUITE("fit/planar") {
             CHECK((*fit::minimal_triangle(view(point), criterion))[1] == glm::dvec2(7.0));
         }
         points[3].y = std::numeric_limits<double>::infinity();
-        CHECK(fit::minimal_triangle(view(points), PlanarCriterion::perimeter).error().item == 3);
+        CHECK(error_of(fit::minimal_triangle(view(points), PlanarCriterion::perimeter)).item == 3);
         points[3].y = 2e30;
-        CHECK(fit::minimal_triangle(view(points), PlanarCriterion::area).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(fit::minimal_triangle(view(points), PlanarCriterion::area)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE(

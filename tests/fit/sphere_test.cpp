@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <random>
 #include <vector>
@@ -40,12 +41,12 @@ double by_descent(const Points& points) {
 
 TEST_SUITE("fit/sphere") {
     TEST_CASE("no points and bad points are refused by their first index") {
-        CHECK(fit::minimal_sphere({}).error().code == ErrorCode::empty);
+        CHECK(error_of(fit::minimal_sphere({})).code == ErrorCode::empty);
         Points points(4, glm::dvec3(1.0));
         points[2].y = std::nan("");
-        CHECK(sphere_of(points).error().item == 2);
+        CHECK(error_of(sphere_of(points)).item == 2);
         points[1].z = -2e30;
-        CHECK(sphere_of(points).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(sphere_of(points)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("a point, a segment, a regular tetrahedron and a box far away have the spheres one knows") {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -32,24 +33,24 @@ TEST_SUITE("geometry/frustum") {
     TEST_CASE("bad cameras and matrices are refused by name") {
         Camera camera;
         camera.up = camera.forward;
-        CHECK(frustum_of(camera).error().code == ErrorCode::degenerate);
+        CHECK(error_of(frustum_of(camera)).code == ErrorCode::degenerate);
         camera = {};
         camera.position.y = std::nan("");
-        CHECK(frustum_of(camera).error().code == ErrorCode::non_finite);
+        CHECK(error_of(frustum_of(camera)).code == ErrorCode::non_finite);
         camera = {};
         camera.near_distance = 0.0;
-        CHECK(frustum_of(camera).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(frustum_of(camera)).code == ErrorCode::out_of_range);
         glm::dmat4 matrix(1.0);
         matrix[2][2] = 0.0;
-        CHECK(frustum_of(matrix, DepthRange::zero_to_one).error().code == ErrorCode::degenerate);
+        CHECK(error_of(frustum_of(matrix, DepthRange::zero_to_one)).code == ErrorCode::degenerate);
         matrix[1][3] = std::nan("");
-        CHECK(frustum_of(matrix, DepthRange::zero_to_one).error().code == ErrorCode::non_finite);
+        CHECK(error_of(frustum_of(matrix, DepthRange::zero_to_one)).code == ErrorCode::non_finite);
     }
 
     TEST_CASE("an up that is nearly forward is refused, a little farther off it is good") {
         Camera camera;
         camera.up = camera.forward + glm::dvec3(1e-10, 0.0, 0.0);
-        CHECK(frustum_of(camera).error().code == ErrorCode::degenerate);
+        CHECK(error_of(frustum_of(camera)).code == ErrorCode::degenerate);
         camera.up = camera.forward + glm::dvec3(1e-8, 0.0, 0.0);
         CHECK(frustum_of(camera).has_value());
     }
@@ -63,7 +64,7 @@ TEST_SUITE("geometry/frustum") {
                 for (int c = 0; c < 4; ++c) flat[c][r] = matrix[c][3] + off * matrix[c][r];
                 const auto frustum = frustum_of(flat, DepthRange::minus_one_to_one);
                 CHECK(frustum.has_value() == (off == 1e-8));
-                if (!frustum) CHECK(frustum.error().code == ErrorCode::degenerate);
+                if (!frustum) CHECK(error_of(frustum).code == ErrorCode::degenerate);
             }
     }
 
@@ -76,7 +77,7 @@ TEST_SUITE("geometry/frustum") {
                 for (int c = 0; c < 4; ++c) matrix[c][r] = rows[r][c];
             return matrix;
         };
-        CHECK(frustum_of(with_side(-1.0), DepthRange::zero_to_one).error().code == ErrorCode::empty);
+        CHECK(error_of(frustum_of(with_side(-1.0), DepthRange::zero_to_one)).code == ErrorCode::empty);
         const auto open = frustum_of(with_side(1.0), DepthRange::zero_to_one);
         REQUIRE(open.has_value());
         CHECK(open->plane_count == 5);

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
+#include <error_of.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
@@ -29,13 +30,13 @@ TEST_SUITE("geometry/obb") {
         Obb box;
         CHECK(validate(box).has_value());
         box.half_extents.y = nan;
-        CHECK(validate(box, 5).error().item == 5);
-        CHECK(validate(box, 5).error().code == ErrorCode::non_finite);
+        CHECK(error_of(validate(box, 5)).item == 5);
+        CHECK(error_of(validate(box, 5)).code == ErrorCode::non_finite);
         box.half_extents.y = -1.0f;
         CHECK(oracle::code_of(validate(box)) == ErrorCode::invalid_argument);
         box = Obb{};
         box.center.x = std::numeric_limits<double>::infinity();
-        CHECK(validate(box).error().code == ErrorCode::non_finite);
+        CHECK(error_of(validate(box)).code == ErrorCode::non_finite);
         box = Obb{};
         box.axes[0] = glm::vec3(1.0f, 0.1f, 0.0f);
         CHECK(oracle::code_of(validate(box)) == ErrorCode::invalid_argument);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
@@ -85,13 +86,13 @@ TEST_SUITE("mesh/mesh_mesh") {
         RigidTransform pose;
         CHECK(validate(pose).has_value());
         pose.rotation[0][0] = 2.0;
-        CHECK(validate(pose, 3).error().item == 3);
+        CHECK(error_of(validate(pose, 3)).item == 3);
         pose = {};
         pose.translation.z = std::numeric_limits<double>::quiet_NaN();
-        CHECK(validate(pose).error().code == ErrorCode::non_finite);
+        CHECK(error_of(validate(pose)).code == ErrorCode::non_finite);
         pose = {};
         pose.translation.z = 1e19;
-        CHECK(validate(pose).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(validate(pose)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("the same pairs of triangles as brute force, for generic, coincident and face-to-face poses") {

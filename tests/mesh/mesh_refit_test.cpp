@@ -7,6 +7,7 @@
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <cstring>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
@@ -122,8 +123,8 @@ TEST_SUITE("mesh/mesh_refit") {
         bad.positions[40].x = 3e12f;
         const auto result = tree.refit(bad.positions);
         REQUIRE_FALSE(result.has_value());
-        CHECK(result.error().code == ErrorCode::non_finite);
-        CHECK(result.error().item == 17);
+        CHECK(error_of(result).code == ErrorCode::non_finite);
+        CHECK(error_of(result).item == 17);
         CHECK(same_bits(tree, before));
         // A vertex of no triangle may be anything.
         TriangleMesh loose = mesh;

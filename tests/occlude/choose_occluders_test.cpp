@@ -5,6 +5,7 @@
 #include <counting_memory.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/occlude/occlusion.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -71,17 +72,17 @@ TEST_SUITE("occlude/choose_occluders") {
         OccluderCandidates candidates;
         OccluderCandidate bad = candidate_of(Obb{});
         bad.center.y = kNotANumber;
-        CHECK(candidates.add(bad).error().code == ErrorCode::non_finite);
+        CHECK(error_of(candidates.add(bad)).code == ErrorCode::non_finite);
         bad = candidate_of(Obb{});
         bad.areas[2].x = std::numeric_limits<float>::infinity();
-        CHECK(candidates.add(bad).error().code == ErrorCode::non_finite);
+        CHECK(error_of(candidates.add(bad)).code == ErrorCode::non_finite);
         bad = candidate_of(Obb{});
         bad.center.x = 2e15;
-        CHECK(candidates.add(bad).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(candidates.add(bad)).code == ErrorCode::out_of_range);
         bad.center.x = 0.0;
         bad.radius = -1.0;
-        CHECK(candidates.add(bad).error().code == ErrorCode::out_of_range);
-        CHECK(candidates.set(0, candidate_of(Obb{})).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(candidates.add(bad)).code == ErrorCode::out_of_range);
+        CHECK(error_of(candidates.set(0, candidate_of(Obb{}))).code == ErrorCode::out_of_range);
         CHECK(candidates.size() == 0);
         OccluderChoice choice;
         Camera camera;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/occlude/occluder.hpp>
+#include <error_of.hpp>
 #include <limits>
 
 using namespace crofton;
@@ -27,15 +28,15 @@ TEST_SUITE("occlude/occluder") {
         Obb bad = box;
         bad.center.y = std::numeric_limits<double>::quiet_NaN();
         const auto refused = set.place(bad);
-        CHECK(refused.error().code == ErrorCode::non_finite);
-        CHECK(refused.error().item == 1);
+        CHECK(error_of(refused).code == ErrorCode::non_finite);
+        CHECK(error_of(refused).item == 1);
         bad = box;
         bad.half_extents.z = 0.0f;
-        CHECK(set.place(bad).error().code == ErrorCode::degenerate);
+        CHECK(error_of(set.place(bad)).code == ErrorCode::degenerate);
         CHECK(set.size() == 1);
-        CHECK(set.move(0, bad).error().code == ErrorCode::degenerate);
-        CHECK(set.move(1, box).error().code == ErrorCode::out_of_range);
-        CHECK(set.move(0, scene::Transform{}).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(set.move(0, bad)).code == ErrorCode::degenerate);
+        CHECK(error_of(set.move(1, box)).code == ErrorCode::out_of_range);
+        CHECK(error_of(set.move(0, scene::Transform{})).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("meshes that are open, inside out, flat or not finite are refused by name") {
@@ -43,25 +44,25 @@ TEST_SUITE("occlude/occluder") {
         CHECK(set.add_mesh(cube()));
         TriangleMesh open = cube();
         open.indices.resize(open.indices.size() - 3);
-        CHECK(set.add_mesh(open).error().code == ErrorCode::invalid_argument);
-        CHECK(set.add_mesh(open).error().item == 0);  // {1, 3, 7}, across the edge from 3 to 1
+        CHECK(error_of(set.add_mesh(open)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(set.add_mesh(open)).item == 0);  // {1, 3, 7}, across the edge from 3 to 1
         TriangleMesh inside_out = cube();
         for (std::size_t i = 0; i < inside_out.indices.size(); i += 3)
             std::swap(inside_out.indices[i], inside_out.indices[i + 1]);
-        CHECK(set.add_mesh(inside_out).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(set.add_mesh(inside_out)).code == ErrorCode::invalid_argument);
         TriangleMesh flat = cube();
         for (glm::vec3& p : flat.positions) p.z = 0.5f;
-        CHECK(set.add_mesh(flat).error().code == ErrorCode::degenerate);
+        CHECK(error_of(set.add_mesh(flat)).code == ErrorCode::degenerate);
         TriangleMesh bad = cube();
         bad.positions[3].x = std::numeric_limits<float>::infinity();
-        CHECK(set.add_mesh(bad).error().code == ErrorCode::non_finite);
-        CHECK(set.add_mesh(bad).error().item == 3);
+        CHECK(error_of(set.add_mesh(bad)).code == ErrorCode::non_finite);
+        CHECK(error_of(set.add_mesh(bad)).item == 3);
         bad = cube();
         bad.indices[5] = 8;
-        CHECK(set.add_mesh(bad).error().code == ErrorCode::out_of_range);
-        CHECK(set.add_mesh(TriangleMesh{}).error().code == ErrorCode::degenerate);
+        CHECK(error_of(set.add_mesh(bad)).code == ErrorCode::out_of_range);
+        CHECK(error_of(set.add_mesh(TriangleMesh{})).code == ErrorCode::degenerate);
         CHECK(set.add_surface(open, occlude::Sides::front));
-        CHECK(set.add_convex(flat.positions).error().code == ErrorCode::degenerate);
+        CHECK(error_of(set.add_convex(flat.positions)).code == ErrorCode::degenerate);
         CHECK(set.add_convex(bad.positions));
         CHECK(set.shape_count() == 3);
     }
@@ -71,10 +72,10 @@ TEST_SUITE("occlude/occluder") {
         const auto shape = *set.add_mesh(cube());
         scene::Transform transform;
         transform.linear[1] = glm::dvec3(0.0);
-        CHECK(set.place(shape, transform).error().code == ErrorCode::degenerate);
-        CHECK(set.place(shape + 1, {}).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(set.place(shape, transform)).code == ErrorCode::degenerate);
+        CHECK(error_of(set.place(shape + 1, {})).code == ErrorCode::out_of_range);
         CHECK(set.size() == 0);
         CHECK(*set.place(shape, {}) == 0);
-        CHECK(set.move(0, Obb{}).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(set.move(0, Obb{})).code == ErrorCode::invalid_argument);
     }
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/geometry/box.hpp>
 #include <crofton/occlude/occluder.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
@@ -47,19 +48,19 @@ TEST_SUITE("occlude/occlusion_worth") {
     TEST_CASE("bad scenes and points are named") {
         const auto points = corners_of(unit_box());
         SeenScene scene;
-        CHECK(occlusion_worth(points, scene).error().code == ErrorCode::invalid_argument);  // no eyes
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::invalid_argument);  // no eyes
         scene.eyes = {glm::dvec3(-1), glm::dvec3(std::numeric_limits<double>::infinity())};
-        CHECK(occlusion_worth(points, scene).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::invalid_argument);
         scene.eyes = {glm::dvec3(-1), glm::dvec3(1)};
-        CHECK(occlusion_worth({}, scene).error().code == ErrorCode::empty);
+        CHECK(error_of(occlusion_worth({}, scene)).code == ErrorCode::empty);
         scene.samples = 0;
-        CHECK(occlusion_worth(points, scene).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
         scene.samples = 8;
         scene.range = 0.0;
-        CHECK(occlusion_worth(points, scene).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
         scene.range = 10.0;
         scene.object.mean_curvature = std::numeric_limits<double>::quiet_NaN();
-        CHECK(occlusion_worth(points, scene).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(occlusion_worth(points, scene)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("of points, from one eye: the pyramid behind a square, cut at the range") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <cmath>
+#include <error_of.hpp>
 
 #include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
@@ -16,14 +17,14 @@ static Json parsed(const std::string& text) {
 
 TEST_SUITE("pipeline/camera_path") {
     TEST_CASE("entries that are no cameras are refused with their number") {
-        CHECK(camera_from_json(parsed("[1]"), 4).error().item == 4);
-        CHECK(camera_from_json(parsed(R"({"position": [1, 2]})"), 5).error().item == 5);
-        CHECK(camera_from_json(parsed(R"({"near": -1})"), 6).error().code == ErrorCode::out_of_range);
-        CHECK(camera_from_json(parsed(R"({"up": [0, 0, 1]})"), 7).error().code == ErrorCode::degenerate);
+        CHECK(error_of(camera_from_json(parsed("[1]"), 4)).item == 4);
+        CHECK(error_of(camera_from_json(parsed(R"({"position": [1, 2]})"), 5)).item == 5);
+        CHECK(error_of(camera_from_json(parsed(R"({"near": -1})"), 6)).code == ErrorCode::out_of_range);
+        CHECK(error_of(camera_from_json(parsed(R"({"up": [0, 0, 1]})"), 7)).code == ErrorCode::degenerate);
     }
 
     TEST_CASE("an empty scene, an unknown kind and a missing file are refused") {
-        CHECK(make_camera_path({}, Aabb{}, {}).error().code == ErrorCode::empty);
+        CHECK(error_of(make_camera_path({}, Aabb{}, {})).code == ErrorCode::empty);
         CHECK_FALSE(make_camera_path({.kind = "sideways"}, Aabb{{0, 0, 0}, {1, 1, 1}}, {}).has_value());
     }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
+#include <error_of.hpp>
 #include <limits>
 
 #include "shapes.hpp"
@@ -53,10 +54,10 @@ Difference compare(const TriangleMesh& mesh, double cell_area, const std::array<
 
 TEST_SUITE("radiosity/bundle_tracer") {
     TEST_CASE("invalid and empty meshes are refused") {
-        CHECK(BundleTracer::build({}).error().code == ErrorCode::empty);
+        CHECK(error_of(BundleTracer::build({})).code == ErrorCode::empty);
         TriangleMesh mesh = shapes::soup(3, 1.0f, 1);
         mesh.indices[4] = 99;
-        CHECK(BundleTracer::build(mesh).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(BundleTracer::build(mesh)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("a bundle's crossings are those of its lines one by one, for triangles below and far above a cell") {

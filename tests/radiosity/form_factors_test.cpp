@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/core/executor.hpp>
 #include <crofton/radiosity/patches.hpp>
+#include <error_of.hpp>
 
 #include "shapes.hpp"
 
@@ -91,7 +92,7 @@ TEST_SUITE("radiosity/form_factors") {
         for (std::uint32_t i = 0; i < 16'385; ++i) s.triangle({0, 0, static_cast<float>(i)}, {1, 0, 0}, {0, 1, 0}, i);
         const Case c = make_case(s, 16'385);
         const LineSource source(c.tracer.bounds(), LineMethod::walls, 1);
-        CHECK(factors_by_global_lines(c.tracer, c.patches, source, 1).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(factors_by_global_lines(c.tracer, c.patches, source, 1)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("a wrong density gives a detectably wrong factor") {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/core/executor.hpp>
 #include <crofton/radiosity/lines.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -31,13 +32,13 @@ double crossing(const TriangleMesh& mesh, std::size_t t, const Line& line) {
 
 TEST_SUITE("radiosity/line_tracer") {
     TEST_CASE("invalid and empty meshes are refused") {
-        CHECK(LineTracer::build({}).error().code == ErrorCode::empty);
+        CHECK(error_of(LineTracer::build({})).code == ErrorCode::empty);
         TriangleMesh mesh = shapes::soup(3, 1.0f, 1);
         mesh.indices[4] = 99;
-        CHECK(LineTracer::build(mesh).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(LineTracer::build(mesh)).code == ErrorCode::out_of_range);
         mesh = shapes::soup(3, 1.0f, 1);
         mesh.positions[5].y = std::numeric_limits<float>::quiet_NaN();
-        CHECK(LineTracer::build(mesh).error().item == 5);
+        CHECK(error_of(LineTracer::build(mesh)).item == 5);
     }
 
     TEST_CASE("a million identical triangles make a tree, and a line through them meets each") {

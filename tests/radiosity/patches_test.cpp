@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/radiosity/patches.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -49,26 +50,26 @@ TEST_SUITE("radiosity/patches") {
         materials[3].reflectance.y = 1.0f;
         const auto mirror = make_patches(room.mesh, room.patches, materials);
         REQUIRE_FALSE(mirror.has_value());
-        CHECK(mirror.error().item == 3);
-        CHECK(mirror.error().message.find("reflectance") != std::string::npos);
+        CHECK(error_of(mirror).item == 3);
+        CHECK(error_of(mirror).message.find("reflectance") != std::string::npos);
         materials[3].reflectance.y = -0.1f;
-        CHECK(make_patches(room.mesh, room.patches, materials).error().item == 3);
+        CHECK(error_of(make_patches(room.mesh, room.patches, materials)).item == 3);
         materials[3] = {};
         materials[5].emission.x = std::numeric_limits<float>::quiet_NaN();
-        CHECK(make_patches(room.mesh, room.patches, materials).error().item == 5);
+        CHECK(error_of(make_patches(room.mesh, room.patches, materials)).item == 5);
         materials[5] = {};
         materials.emplace_back();
-        CHECK(make_patches(room.mesh, room.patches, materials).error().message.find("patch 6") != std::string::npos);
+        CHECK(error_of(make_patches(room.mesh, room.patches, materials)).message.find("patch 6") != std::string::npos);
         materials.resize(5);
-        CHECK(make_patches(room.mesh, room.patches, materials).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(make_patches(room.mesh, room.patches, materials)).code == ErrorCode::out_of_range);
         materials.resize(6);
         shapes::Shape flat = room;
         flat.mesh.positions[flat.mesh.indices[7]] = flat.mesh.positions[flat.mesh.indices[6]];
         const auto degenerate = make_patches(flat.mesh, flat.patches, materials);
         REQUIRE_FALSE(degenerate.has_value());
-        CHECK(degenerate.error().code == ErrorCode::degenerate);
-        CHECK(degenerate.error().item == 2);
-        CHECK(make_patches({}, {}).error().code == ErrorCode::empty);
+        CHECK(error_of(degenerate).code == ErrorCode::degenerate);
+        CHECK(error_of(degenerate).item == 2);
+        CHECK(error_of(make_patches({}, {})).code == ErrorCode::empty);
     }
 
     TEST_CASE("refining keeps area and closedness, knows its sources, and reaches the target") {
@@ -91,8 +92,8 @@ TEST_SUITE("radiosity/patches") {
             for (std::size_t t = 0; t < by_source.size(); ++t)
                 CHECK(by_source[t] == doctest::Approx(coarse->areas[t]).epsilon(1e-5));
         }
-        CHECK(refine(shape.mesh, 0.0).error().code == ErrorCode::out_of_range);
-        CHECK(refine(shape.mesh, 1e-4, 1000).error().code == ErrorCode::budget_exceeded);
+        CHECK(error_of(refine(shape.mesh, 0.0)).code == ErrorCode::out_of_range);
+        CHECK(error_of(refine(shape.mesh, 1e-4, 1000)).code == ErrorCode::budget_exceeded);
     }
 
     TEST_CASE("a closed box whose sides meet at T-junctions is mended, and stays so when refined") {
@@ -117,7 +118,7 @@ TEST_SUITE("radiosity/patches") {
         CHECK(unmatched_edges(refine(cut.mesh, 0.11)->mesh) > 0);
         // A mesh without T-junctions is left as it is, and bad arguments are refused.
         CHECK(mend_t_junctions(box.mesh, 1e-5)->mesh.indices == box.mesh.indices);
-        CHECK(mend_t_junctions(box.mesh, -1.0).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(mend_t_junctions(box.mesh, -1.0)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("small triangles share a patch with their like nearby, large ones keep their own") {

@@ -6,6 +6,7 @@
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
 #include <cstring>
+#include <error_of.hpp>
 #include <oracle/code_of.hpp>
 
 #include "shapes.hpp"
@@ -92,18 +93,18 @@ TEST_SUITE("radiosity/solver") {
         const Patches dark = patches_of(s, std::vector<Material>(6));
         const auto refused = Solver::create(dark);
         REQUIRE_FALSE(refused.has_value());
-        CHECK(refused.error().message.find("nothing gives light") != std::string::npos);
+        CHECK(error_of(refused).message.find("nothing gives light") != std::string::npos);
         SolverOptions options;
         options.outside.sky.y = -1.0f;
-        CHECK(Solver::create(dark, options).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(Solver::create(dark, options)).code == ErrorCode::out_of_range);
         options = {};
         options.outside.sun = glm::vec3(1.0f);
         options.outside.to_sun = glm::dvec3(0.0);
-        CHECK(Solver::create(dark, options).error().code == ErrorCode::degenerate);
+        CHECK(error_of(Solver::create(dark, options)).code == ErrorCode::degenerate);
         options = quick();
         options.outside.sky = glm::vec3(1.0f);
         options.cutoff = 0.0;
-        CHECK(Solver::create(dark, options).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(Solver::create(dark, options)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("furnace: in a closed box that glows with 1 and reflects rho, the radiosity is 1/(1 - rho) everywhere") {
@@ -255,7 +256,7 @@ TEST_SUITE("radiosity/solver") {
         solver->run();
         const auto saved = solver->checkpoint();
         for (std::size_t size : {std::size_t{0}, std::size_t{10}, saved.size() - 1})
-            CHECK(solver->resume(std::span(saved).first(size)).error().code == ErrorCode::parse);
+            CHECK(error_of(solver->resume(std::span(saved).first(size))).code == ErrorCode::parse);
         auto damaged = saved;
         for (std::size_t i = 0; i < damaged.size(); i += 37) {
             damaged[i] ^= std::byte{16};

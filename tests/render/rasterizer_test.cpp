@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/render/clip_space.hpp>
+#include <error_of.hpp>
 #include <oracle/code_of.hpp>
 #include <random>
 
@@ -59,14 +60,14 @@ Rasterizer make_rasterizer(Device& device, std::uint32_t size = 64) {
 TEST_SUITE("render/rasterizer") {
     TEST_CASE("bad sizes, geometry and ranges are refused by name, and the rasterizer works on") {
         CROFTON_REQUIRE_DEVICE(device);
-        CHECK(Rasterizer::create(*device, {0, 10}).error().code == ErrorCode::out_of_range);
-        CHECK(Rasterizer::create(*device, {10, 1u << 30}).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(Rasterizer::create(*device, {0, 10})).code == ErrorCode::out_of_range);
+        CHECK(error_of(Rasterizer::create(*device, {10, 1u << 30})).code == ErrorCode::out_of_range);
         Rasterizer rasterizer = make_rasterizer(*device);
         const std::uint32_t bad_index[] = {0, 1, 7}, two[] = {0, 1};
-        CHECK(rasterizer.set_geometry(kVertices, bad_index).error().item == 2);
+        CHECK(error_of(rasterizer.set_geometry(kVertices, bad_index)).item == 2);
         CHECK(oracle::code_of(rasterizer.set_geometry(kVertices, two)) == ErrorCode::invalid_argument);
         Image image;
-        CHECK(rasterizer.read_pixels(image).error().code == ErrorCode::empty);
+        CHECK(error_of(rasterizer.read_pixels(image)).code == ErrorCode::empty);
 
         const Camera camera = camera_at(10.0);
         const DrawTransform transform = flat_transform(camera, {}, {0, 0, 1});
@@ -75,7 +76,7 @@ TEST_SUITE("render/rasterizer") {
         for (const auto& ranges : bad_ranges) {
             const auto refused = rasterizer.draw({camera, {&transform, 1}, ranges});
             REQUIRE_FALSE(refused);
-            CHECK(refused.error().item == 1);
+            CHECK(error_of(refused).item == 1);
         }
         const DrawRange good{0, 9, 0};
         const auto counters = rasterizer.draw({camera, {&transform, 1}, {&good, 1}});

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/wrong_lines.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -45,12 +46,12 @@ bool sees_every_place_alike(Sample sample) {
 TEST_SUITE("sampling/global_lines") {
     TEST_CASE("a hull without area or with bad indices is refused") {
         TriangleMesh mesh;
-        CHECK(LinesFromHull::make(mesh).error().code == ErrorCode::empty);
+        CHECK(error_of(LinesFromHull::make(mesh)).code == ErrorCode::empty);
         mesh.positions = {glm::vec3(0.0f), glm::vec3(1.0f), glm::vec3(2.0f)};
         mesh.indices = {0, 1, 2};
-        CHECK(LinesFromHull::make(mesh).error().code == ErrorCode::empty);
+        CHECK(error_of(LinesFromHull::make(mesh)).code == ErrorCode::empty);
         mesh.indices = {0, 1, 3};
-        CHECK(LinesFromHull::make(mesh).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(LinesFromHull::make(mesh)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("lines through the ball by two sphere points see every place alike") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/scene/scene.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
 
@@ -23,27 +24,27 @@ TEST_SUITE("scene/planar_polygon") {
     TEST_CASE("polygons with bad rings, numbers or axes are refused by name") {
         PlanarPolygon p = square();
         CHECK(validate(p).has_value());
-        CHECK(validate(PlanarPolygon{}).error().code == ErrorCode::empty);
+        CHECK(error_of(validate(PlanarPolygon{})).code == ErrorCode::empty);
         p.polygon.ring_ends = {3, 9};
-        CHECK(validate(p).error().code == ErrorCode::out_of_range);
-        CHECK(validate(p).error().item == 1);
+        CHECK(error_of(validate(p)).code == ErrorCode::out_of_range);
+        CHECK(error_of(validate(p)).item == 1);
         p.polygon.ring_ends = {2, 4};
-        CHECK(validate(p).error().code == ErrorCode::degenerate);
+        CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
         p.polygon.ring_ends = {3};
         REQUIRE(!validate(p).has_value());
         CHECK(oracle::code_of(validate(p)) == ErrorCode::invalid_argument);
         p = square();
         p.polygon.points[2].x = std::numeric_limits<double>::quiet_NaN();
-        CHECK(validate(p).error().item == 2);
+        CHECK(error_of(validate(p)).item == 2);
         p = square();
         p.v = 2.0 * p.u;
-        CHECK(validate(p).error().code == ErrorCode::degenerate);
+        CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
         p.v = p.u + 1e-10 * square().v;  // nearly parallel
-        CHECK(validate(p).error().code == ErrorCode::degenerate);
+        CHECK(error_of(validate(p)).code == ErrorCode::degenerate);
         p.v = p.u + 1e-8 * square().v;
         CHECK(validate(p).has_value());
         constexpr std::array<std::array<std::uint32_t, 3>, 1> beyond = {{{0, 1, 4}}};
-        CHECK(to_mesh(square(), beyond).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(to_mesh(square(), beyond)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE("its mesh stands where origin and axes say, vertex by vertex") {

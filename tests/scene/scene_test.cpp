@@ -3,6 +3,7 @@
 #include <crofton/core/executor.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstring>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
 #include <random>
@@ -53,27 +54,27 @@ bool same_boxes(const Scene& a, const Scene& b) {
 TEST_SUITE("scene/scene") {
     TEST_CASE("invalid meshes, nodes and instances are refused by name and leave the scene as it was") {
         Scene scene;
-        CHECK(scene.add_mesh({}, "void").error().code == ErrorCode::empty);
-        CHECK(scene.add_mesh({}, "void").error().message.find("void") != std::string::npos);
+        CHECK(error_of(scene.add_mesh({}, "void")).code == ErrorCode::empty);
+        CHECK(error_of(scene.add_mesh({}, "void")).message.find("void") != std::string::npos);
         TriangleMesh bad = tetrahedron();
         bad.positions[2].y = std::numeric_limits<float>::quiet_NaN();
-        CHECK(scene.add_mesh(bad).error().item == 2);
+        CHECK(error_of(scene.add_mesh(bad)).item == 2);
         bad = tetrahedron();
         bad.indices[7] = 4;
-        CHECK(scene.add_mesh(bad).error().code == ErrorCode::out_of_range);
-        CHECK(scene.add_node(0, {}).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.add_mesh(bad)).code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.add_node(0, {})).code == ErrorCode::out_of_range);
         Transform huge;
         huge.linear = glm::dmat3(1e16);
-        CHECK(scene.add_node(kNone, huge).error().code == ErrorCode::out_of_range);
-        CHECK(scene.add_instance(0, 0).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.add_node(kNone, huge)).code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.add_instance(0, 0)).code == ErrorCode::out_of_range);
         CHECK(scene.node_count() + scene.mesh_count() + scene.instance_count() == 0);
         const NodeId node = scene.add_node(kNone, moved(1.0)).value();
-        CHECK(scene.add_instance(node, 0).error().code == ErrorCode::out_of_range);
-        CHECK(scene.set_local(node, huge).error().item == node);
+        CHECK(error_of(scene.add_instance(node, 0)).code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.set_local(node, huge)).item == node);
         CHECK(scene.local(node).translation.x == 1.0);
-        CHECK(scene.set_local(5, {}).error().code == ErrorCode::out_of_range);
-        CHECK(scene.set_layer_mask(5, 1).error().code == ErrorCode::out_of_range);
-        CHECK(scene.remove_instance(0).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.set_local(5, {})).code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.set_layer_mask(5, 1)).code == ErrorCode::out_of_range);
+        CHECK(error_of(scene.remove_instance(0)).code == ErrorCode::out_of_range);
     }
 
     TEST_CASE(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/scene/transform.hpp>
+#include <error_of.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -66,20 +67,20 @@ TEST_SUITE("scene/transform") {
         Transform t;
         CHECK(validate(t).has_value());
         t.linear[1][2] = kNan;
-        CHECK(validate(t, 9).error().code == ErrorCode::non_finite);
-        CHECK(validate(t, 9).error().item == 9);
+        CHECK(error_of(validate(t, 9)).code == ErrorCode::non_finite);
+        CHECK(error_of(validate(t, 9)).item == 9);
         t = Transform{};
         t.translation.y = std::numeric_limits<double>::infinity();
-        CHECK(validate(t).error().code == ErrorCode::non_finite);
+        CHECK(error_of(validate(t)).code == ErrorCode::non_finite);
         t = Transform{};
         t.linear[0] *= 1e16;
-        CHECK(validate(t).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(validate(t)).code == ErrorCode::out_of_range);
         t = Transform{};
         t.translation.z = -2e15;
-        CHECK(validate(t).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(validate(t)).code == ErrorCode::out_of_range);
         glm::dmat4 projective(1.0);
         projective[1][3] = 0.5;
-        CHECK(from_matrix(projective).error().code == ErrorCode::unsupported);
+        CHECK(error_of(from_matrix(projective)).code == ErrorCode::unsupported);
         projective[1][3] = kNan;
         CHECK_FALSE(from_matrix(projective).has_value());
     }
@@ -119,11 +120,11 @@ TEST_SUITE("scene/transform") {
             CHECK(std::abs(glm::determinant(stored->linear) - 1.0) < 1e-14);
         }
         for (const double length : {0.0, 1e-200, 0.9, 0.989, 1.011, 2.0, 1e200})
-            CHECK(from_trs({}, turn * length, one).error().code ==
+            CHECK(error_of(from_trs({}, turn * length, one)).code ==
                   (length > 1e100 ? ErrorCode::non_finite : ErrorCode::invalid_argument));
-        CHECK(from_trs({}, turn * kNan, one).error().code == ErrorCode::non_finite);
-        CHECK(from_trs({}, turn, {1.0, kNan, 1.0}).error().code == ErrorCode::non_finite);
-        CHECK(from_trs({kNan, 0.0, 0.0}, turn, one).error().code == ErrorCode::non_finite);
+        CHECK(error_of(from_trs({}, turn * kNan, one)).code == ErrorCode::non_finite);
+        CHECK(error_of(from_trs({}, turn, {1.0, kNan, 1.0})).code == ErrorCode::non_finite);
+        CHECK(error_of(from_trs({kNan, 0.0, 0.0}, turn, one)).code == ErrorCode::non_finite);
     }
 
     TEST_CASE("a flattened box is flat, contains the exact image, and is no larger than the image needs") {
@@ -149,7 +150,7 @@ TEST_SUITE("scene/transform") {
     TEST_CASE("a box moved out of the range of coordinates is an error, not a box") {
         Transform t;
         t.translation.x = 1e31;
-        CHECK(transformed_box(t, Obb{}, measure::minimal_perimeter()).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(transformed_box(t, Obb{}, measure::minimal_perimeter())).code == ErrorCode::out_of_range);
         t.translation.x = kNan;
         CHECK_FALSE(transformed_box(t, Obb{}, measure::minimal_perimeter()).has_value());
     }

@@ -5,6 +5,7 @@
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/ball_given_ancestors.hpp>
 #include <crofton/study/spatial_lines.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -27,10 +28,10 @@ TEST_SUITE("study/ball_given_ancestors") {
         const std::vector<study::ConvexBody> ball = {study::ConvexBody::ball(glm::dvec3(0.0), 1.0)};
         const std::vector<glm::dvec3> inside = {{0, 0, 0}, {0.5, 0, 0}}, outside = {{0, 0, 0}, {1.5, 0, 0}},
                                       nan = {{0, 0, 0}, {std::nan(""), 0, 0}};
-        CHECK(study::ball_given_ancestors({}, ball).error().code == ErrorCode::empty);
-        CHECK(study::ball_given_ancestors(nan, ball).error().item == 1);
-        CHECK(study::ball_given_ancestors(inside, {}).error().code == ErrorCode::empty);
-        CHECK(study::ball_given_ancestors(outside, ball).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(study::ball_given_ancestors({}, ball)).code == ErrorCode::empty);
+        CHECK(error_of(study::ball_given_ancestors(nan, ball)).item == 1);
+        CHECK(error_of(study::ball_given_ancestors(inside, {})).code == ErrorCode::empty);
+        CHECK(error_of(study::ball_given_ancestors(outside, ball)).code == ErrorCode::invalid_argument);
         CHECK_FALSE(study::ball_given_ancestors(inside, ball, {.largest = 0.5}).has_value());
         CHECK_FALSE(study::ball_given_ancestors(inside, ball, {.tolerance = 0.0}).has_value());
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/binary_tree.hpp>
+#include <error_of.hpp>
 #include <oracle/code_of.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
@@ -72,7 +73,7 @@ TEST_SUITE("study/binary_tree") {
     TEST_CASE("bad boxes, bad criteria and sampling without samples are refused by name") {
         std::vector<Obb> boxes = random_boxes(1, 3);
         boxes[1].center.x = std::nan("");
-        CHECK(BinaryTree::build(boxes).error().item == 1);
+        CHECK(error_of(BinaryTree::build(boxes)).item == 1);
         CHECK_FALSE(BinaryTree::build({}, {.criterion = {0.0, 0.0, 0.0}}).has_value());
         CHECK_FALSE(BinaryTree::build({}, {.split_criterion = {-1.0, 0.0, 1.0}}).has_value());
         CHECK(oracle::code_of(BinaryTree::build({}, {.split = Split::sampled})) == ErrorCode::invalid_argument);

@@ -3,6 +3,7 @@
 #include <crofton/fit/fit.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/bound_given_ancestors.hpp>
+#include <error_of.hpp>
 #include <vector>
 
 using namespace crofton;
@@ -11,7 +12,7 @@ using namespace crofton::study;
 TEST_SUITE("study/bound_given_ancestors") {
     TEST_CASE("no points and bad criteria are refused") {
         const auto queries = *study::QuerySample::planes({glm::dvec3(0.0), 1.0}, 64, 1);
-        CHECK(bound_given_ancestors({}, {}, queries, measure::minimal_area()).error().code == ErrorCode::empty);
+        CHECK(error_of(bound_given_ancestors({}, {}, queries, measure::minimal_area())).code == ErrorCode::empty);
         const std::vector<glm::dvec3> point = {glm::dvec3(0.0)};
         CHECK_FALSE(bound_given_ancestors(point, {}, queries, {}).has_value());
     }

@@ -5,6 +5,7 @@
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/k_dop.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -25,18 +26,18 @@ std::vector<glm::dvec3> random_points(std::uint64_t seed, int count) {
 
 TEST_SUITE("study/k_dop") {
     TEST_CASE("unknown k, no points, NaN, zero and flat directions are refused, and the culprit is named") {
-        CHECK(study::k_dop_directions(7).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(study::k_dop_directions(7)).code == ErrorCode::invalid_argument);
         const auto axes = *study::k_dop_directions(6);
-        CHECK(study::k_dop_around({}, axes).error().code == ErrorCode::empty);
+        CHECK(error_of(study::k_dop_around({}, axes)).code == ErrorCode::empty);
         auto points = random_points(1, 5);
         const std::vector<glm::dvec3> flat = {{1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, zero = {{1, 0, 0}, {0, 0, 0}};
-        CHECK(study::k_dop_around(points, flat).error().code == ErrorCode::degenerate);
-        CHECK(study::k_dop_around(points, zero).error().item == 1);
-        CHECK(study::best_k_dop(points, axes, {}).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(study::k_dop_around(points, flat)).code == ErrorCode::degenerate);
+        CHECK(error_of(study::k_dop_around(points, zero)).item == 1);
+        CHECK(error_of(study::best_k_dop(points, axes, {})).code == ErrorCode::invalid_argument);
         points[3].x = std::nan("");
-        CHECK(study::k_dop_around(points, axes).error().item == 3);
+        CHECK(error_of(study::k_dop_around(points, axes)).item == 3);
         const std::vector<glm::dvec3> plane = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-        CHECK(study::best_k_dop(plane, axes, measure::minimal_area()).error().code == ErrorCode::degenerate);
+        CHECK(error_of(study::best_k_dop(plane, axes, measure::minimal_area())).code == ErrorCode::degenerate);
     }
 
     TEST_CASE("k directions: 3, 7, 9 and 13, all unit and none twice") {

@@ -5,6 +5,7 @@
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/mutual_information.hpp>
 #include <crofton/study/other_lines.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -82,7 +83,7 @@ TEST_SUITE("study/mutual_information") {
         none.transfers.assign(4, 0);
         none.rays.assign(2, 0);
         none.escaped.assign(2, 0);
-        CHECK(study::mutual_information(none).error().code == ErrorCode::empty);
+        CHECK(error_of(study::mutual_information(none)).code == ErrorCode::empty);
     }
 
     TEST_CASE("two patches that see only each other tell one bit, three that see all alike tell nothing") {

@@ -6,6 +6,7 @@
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/planar_bounds.hpp>
 #include <crofton/study/planar_lines.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <oracle/code_of.hpp>
@@ -56,9 +57,9 @@ bool holds(const Disc& disc, const std::vector<glm::dvec2>& points) {
 TEST_SUITE("study/planar_bounds") {
     TEST_CASE("no points, NaN and ancestors that do not contain the object are refused") {
         const PlanarSupport ancestor(Disc{{0.0, 0.0}, 1.0});
-        CHECK(optimal_disc({}, ancestor).error().code == ErrorCode::empty);
+        CHECK(error_of(optimal_disc({}, ancestor)).code == ErrorCode::empty);
         const std::vector<glm::dvec2> nan = {{0.0, 0.0}, {std::nan(""), 0.0}}, outside = {{0.0, 0.0}, {1.5, 0.0}};
-        CHECK(optimal_rectangle(nan, ancestor).error().item == 1);
+        CHECK(error_of(optimal_rectangle(nan, ancestor)).item == 1);
         CHECK(oracle::code_of(optimal_disc(outside, ancestor)) == ErrorCode::invalid_argument);
         CHECK(oracle::code_of(optimal_box(outside, ancestor)) == ErrorCode::invalid_argument);
     }

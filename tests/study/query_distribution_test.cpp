@@ -4,6 +4,7 @@
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_distribution.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -31,16 +32,16 @@ TEST_SUITE("study/query_distribution") {
         CHECK_FALSE(QueryDistribution::band({0, std::nan(""), 0}, 0.1).has_value());
         CHECK_FALSE(QueryDistribution::band({0, 1, 0}, 0.0).has_value());
         CHECK_FALSE(QueryDistribution::band({0, 1, 0}, 1.6).has_value());
-        CHECK(QueryDistribution::samples({}).error().code == ErrorCode::empty);
+        CHECK(error_of(QueryDistribution::samples({})).code == ErrorCode::empty);
         const std::vector<glm::dvec3> two = {{1, 0, 0}, {0, 0, 0}}, good = {{1, 0, 0}, {0, 2, 0}};
-        CHECK(QueryDistribution::samples(two).error().item == 1);
+        CHECK(error_of(QueryDistribution::samples(two)).item == 1);
         const std::vector<double> one = {1.0}, negative = {1.0, -1.0}, zero = {0.0, 0.0}, huge = {1e308, 1e308};
         for (const auto* weights : {&one, &negative, &zero, &huge})
-            CHECK(QueryDistribution::samples(good, *weights).error().code == ErrorCode::invalid_argument);
-        CHECK(QueryDistribution::of_views({}).error().code == ErrorCode::empty);
+            CHECK(error_of(QueryDistribution::samples(good, *weights)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(QueryDistribution::of_views({})).code == ErrorCode::empty);
         std::vector<Camera> cameras(2);
         cameras[1].far_distance = HUGE_VAL;
-        CHECK(QueryDistribution::of_views(cameras).error().item == 1);
+        CHECK(error_of(QueryDistribution::of_views(cameras)).item == 1);
         CHECK_FALSE(study::fit_box_for({}, {}, study::QueryKind::planes).has_value());
     }
 

@@ -5,6 +5,7 @@
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/query_sample.hpp>
 #include <crofton/study/spatial_lines.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <numbers>
 #include <oracle/code_of.hpp>
@@ -37,7 +38,7 @@ TEST_SUITE("study/query_sample") {
         CHECK(oracle::code_of(QuerySample::planes({glm::dvec3(0.0), 0.0}, 10, 1)) == ErrorCode::invalid_argument);
         CHECK(oracle::code_of(QuerySample::lines({glm::dvec3(std::nan("")), 1.0}, 10, 1)) ==
               ErrorCode::invalid_argument);
-        CHECK(QuerySample::lines({glm::dvec3(0.0), 1.0}, 0, 1).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(QuerySample::lines({glm::dvec3(0.0), 1.0}, 0, 1)).code == ErrorCode::out_of_range);
         Camera endless;
         endless.far_distance = std::numeric_limits<double>::infinity();
         CHECK_FALSE(QuerySample::frusta(endless, {glm::dvec3(0.0), 1.0}, 10, 1).has_value());

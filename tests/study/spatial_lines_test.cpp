@@ -4,6 +4,7 @@
 #include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/spatial_lines.hpp>
+#include <error_of.hpp>
 #include <numbers>
 #include <vector>
 
@@ -31,13 +32,13 @@ void check(const Result<Enclosure>& measured, double expected) {
 
 TEST_SUITE("study/spatial_lines") {
     TEST_CASE("no body, a body without points, NaN and negative radii are named") {
-        CHECK(measure_of_planes_hitting_all({}).error().code == ErrorCode::empty);
+        CHECK(error_of(measure_of_planes_hitting_all({})).code == ErrorCode::empty);
         std::vector<ConvexBody> bodies = {ConvexBody::ball(glm::dvec3(0.0), 1.0), {}};
-        CHECK(measure_of_lines_hitting_all(bodies).error().item == 1);
+        CHECK(error_of(measure_of_lines_hitting_all(bodies)).item == 1);
         bodies[1] = ConvexBody::ball(glm::dvec3(0.0, std::nan(""), 0.0), 1.0);
-        CHECK(measure_of_lines_hitting_all(bodies).error().code == ErrorCode::non_finite);
+        CHECK(error_of(measure_of_lines_hitting_all(bodies)).code == ErrorCode::non_finite);
         bodies[1] = ConvexBody::ball(glm::dvec3(0.0), -1.0);
-        CHECK(measure_of_planes_hitting_all(bodies).error().item == 1);
+        CHECK(error_of(measure_of_planes_hitting_all(bodies)).item == 1);
     }
 
     TEST_CASE("points and parallel segments: nothing hits them but what hits all") {

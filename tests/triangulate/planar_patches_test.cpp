@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/triangulate/triangulate.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/code_of.hpp>
 #include <set>
@@ -38,9 +39,9 @@ TEST_SUITE("triangulate/planar_patches") {
         CHECK(find_planar_patches(mesh)->empty());
         mesh.positions = {{0, 0, 0}, {1, 0, 0}};
         mesh.indices = {0, 1, 2};
-        CHECK(find_planar_patches(mesh).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(find_planar_patches(mesh)).code == ErrorCode::out_of_range);
         mesh.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f);
-        CHECK(find_planar_patches(mesh).error().code == ErrorCode::non_finite);
+        CHECK(error_of(find_planar_patches(mesh)).code == ErrorCode::non_finite);
     }
 
     TEST_CASE("triangles without area and sides of three triangles join nothing") {

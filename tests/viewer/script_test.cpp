@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Scripts and switches: what is refused, and by which name.
 #include <doctest/doctest.h>
+#include <error_of.hpp>
 
 #include "viewer/script.hpp"
 #include "viewer/settings.hpp"
@@ -27,16 +28,16 @@ TEST_SUITE("viewer/script") {
             CAPTURE(event);
             const auto refused = parse_script(R"({"events": [{"frame": 0, "key": "H"}, )" + std::string(event) + "]}");
             REQUIRE_FALSE(refused);
-            CHECK(refused.error().item == 1);
-            CHECK(refused.error().message.find("event 1") != std::string::npos);
+            CHECK(error_of(refused).item == 1);
+            CHECK(error_of(refused).message.find("event 1") != std::string::npos);
         }
-        CHECK(parse_script(R"({"events": [{"frame": 1, "key": "Foo"}]})").error().message.find("'Foo'") !=
+        CHECK(error_of(parse_script(R"({"events": [{"frame": 1, "key": "Foo"}]})")).message.find("'Foo'") !=
               std::string::npos);
         CHECK_FALSE(parse_script(R"({"events": [{"frame": 5, "key": "H"}, {"frame": 4, "key": "H"}]})"));
-        CHECK(load_script("no/such/file.json").error().message.find("no/such/file.json") != std::string::npos);
+        CHECK(error_of(load_script("no/such/file.json")).message.find("no/such/file.json") != std::string::npos);
     }
     TEST_CASE("errors name the line: of the event, or where the text stops being JSON") {
-        const auto message = [](const std::string& text) { return parse_script(text).error().message; };
+        const auto message = [](const std::string& text) { return error_of(parse_script(text)).message; };
         CHECK(message("{\n\"note\": [\"]{\\\"\", {\"events\": [1]}],\n\"events\": [\n  {\"frame\": 1, \"key\": \"F\"}, "
                       "{\"frame\": 2,\n\"key\": \"F\"},\n\n {\"frame\":\n3, \"jump\": 1}]}")
                   .find("line 7, event 2: unknown action 'jump'") != std::string::npos);

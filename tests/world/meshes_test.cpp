@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Objects with meshes, under nodes and by themselves.
 #include <doctest/doctest.h>
+#include <error_of.hpp>
 #include <oracle/code_of.hpp>
 
 #include "cubes.hpp"
@@ -15,21 +16,21 @@ TEST_SUITE("world/meshes") {
         const auto mesh = world.add_mesh(described(box)).value();
         const auto node = world.add_node().value();
         const auto good = world.add({.mesh = mesh, .transform = at({})}).value();
-        CHECK(world.add_mesh({}).error().code == ErrorCode::empty);
+        CHECK(error_of(world.add_mesh({})).code == ErrorCode::empty);
         TriangleMesh bad = box;
         bad.indices[5] = 8;
-        CHECK(world.add_mesh(described(bad)).error().code == ErrorCode::out_of_range);
-        CHECK(world.replace_mesh(mesh, described(bad)).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(world.add_mesh(described(bad))).code == ErrorCode::out_of_range);
+        CHECK(error_of(world.replace_mesh(mesh, described(bad))).code == ErrorCode::out_of_range);
         bad = box;
         bad.positions[3].y = std::numeric_limits<float>::quiet_NaN();
-        CHECK(world.add_mesh(described(bad)).error().item == 3);
+        CHECK(error_of(world.add_mesh(described(bad))).item == 3);
         CHECK_FALSE(world.set_vertices(mesh, bad.positions).has_value());
         CHECK(oracle::code_of(world.set_vertices(mesh, std::vector<glm::vec3>(7))) == ErrorCode::invalid_argument);
         for (const double number : {kNan, kInfinity, 1e16}) {
             CHECK_FALSE(world.add_node({.transform = at({number, 0.0, 0.0})}).has_value());
             CHECK_FALSE(world.add({.mesh = mesh, .transform = at({}, glm::dmat3(number))}).has_value());
             CHECK_FALSE(world.set_transform(node, at({0.0, number, 0.0})).has_value());
-            CHECK(world.set_transform(good, at({0.0, number, 0.0})).error().item == good.index);
+            CHECK(error_of(world.set_transform(good, at({0.0, number, 0.0}))).item == good.index);
         }
         CHECK(oracle::code_of(world.add({.mesh = mesh, .bound = Sphere{{}, 1.0}})) == ErrorCode::invalid_argument);
         CHECK(oracle::code_of(world.add({.node = node, .bound = Sphere{{}, 1.0}})) == ErrorCode::invalid_argument);
@@ -133,10 +134,10 @@ TEST_SUITE("world/meshes") {
         CHECK(world.contains(rock));
         CHECK(world.object_count() == 1);
         CHECK(!world.raycast(down(1.0, 0.0)));
-        CHECK(world.remove(ship).error().code == ErrorCode::stale_handle);
-        CHECK(world.set_transform(arm, at({})).error().code == ErrorCode::stale_handle);
-        CHECK(world.add({.mesh = mesh, .node = arm}).error().code == ErrorCode::stale_handle);
-        CHECK(world.add_node({.parent = arm}).error().code == ErrorCode::stale_handle);
+        CHECK(error_of(world.remove(ship)).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.set_transform(arm, at({}))).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.add({.mesh = mesh, .node = arm})).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.add_node({.parent = arm})).code == ErrorCode::stale_handle);
         // Ids are used again before the update, too.
         const auto later = world.add_node({.transform = at({0.0, 20.0, 0.0})}).value();
         const auto box = world.add({.mesh = mesh, .node = later}).value();
@@ -150,8 +151,8 @@ TEST_SUITE("world/meshes") {
         REQUIRE(world.remove(rock).has_value());
         REQUIRE(world.remove(mesh).has_value());
         CHECK(!world.contains(mesh));
-        CHECK(world.add({.mesh = mesh, .node = later}).error().code == ErrorCode::stale_handle);
-        CHECK(world.set_vertices(mesh, cube().positions).error().code == ErrorCode::stale_handle);
+        CHECK(error_of(world.add({.mesh = mesh, .node = later})).code == ErrorCode::stale_handle);
+        CHECK(error_of(world.set_vertices(mesh, cube().positions)).code == ErrorCode::stale_handle);
         REQUIRE(world.update().has_value());
         CHECK(seen(world) == 0);
     }

@@ -2,6 +2,7 @@
 // Objects that move in every frame, and meshes that deform.
 #include <doctest/doctest.h>
 #include <cmath>
+#include <error_of.hpp>
 #include <limits>
 #include <oracle/random_boxes.hpp>
 
@@ -85,8 +86,8 @@ TEST_SUITE("world/movers") {
             CHECK(set.has_value() == (bad == ~std::size_t{0}));
             if (!set) {
                 ++bad_ones;
-                CHECK(set.error().item == bad);
-                CHECK(set.error().code == ErrorCode::non_finite);
+                CHECK(error_of(set).item == bad);
+                CHECK(error_of(set).code == ErrorCode::non_finite);
                 boxes[bad] = model.objects[moved[bad].index].bound.box;
                 REQUIRE(world.set_bounds(moved, boxes).has_value());
             }
@@ -155,8 +156,8 @@ TEST_SUITE("world/movers") {
         for (Enemy& enemy : enemies) enemy.box.center.y += 1.0;
         const auto stale = set();
         REQUIRE(!stale);
-        CHECK(stale.error().code == ErrorCode::stale_handle);
-        CHECK(stale.error().item == 80);
+        CHECK(error_of(stale).code == ErrorCode::stale_handle);
+        CHECK(error_of(stale).item == 80);
         REQUIRE(world.update().has_value());
         for (const Enemy& enemy : enemies)
             if (&enemy != &enemies[80]) CHECK(world.box_of(enemy.object)->center == enemy.box.center);
@@ -172,7 +173,7 @@ TEST_SUITE("world/movers") {
         // The index of the removed one is used again: the old handle stays stale.
         const auto fresh = world.add({.bound = Sphere{{}, 1.0}}).value();
         CHECK(fresh.index == enemies[80].object.index);
-        CHECK(set().error().item == 80);
+        CHECK(error_of(set()).item == 80);
     }
 
     TEST_CASE("of many nodes the bad ones are refused, the first is named, and the others move") {
@@ -200,8 +201,8 @@ TEST_SUITE("world/movers") {
         places[150].translation.z = 1e16;
         const auto set = world.set_transforms(nodes, places);
         REQUIRE(!set);
-        CHECK(set.error().code == ErrorCode::non_finite);
-        CHECK(set.error().item == 130);
+        CHECK(error_of(set).code == ErrorCode::non_finite);
+        CHECK(error_of(set).item == 130);
         check(130, 150);
         CHECK(world.transform_of(objects[130])->translation.y == 0.0);
         CHECK(world.transform_of(objects[150])->translation.y == 0.0);
@@ -209,8 +210,8 @@ TEST_SUITE("world/movers") {
         REQUIRE(world.remove(nodes[64]).has_value());
         const auto stale = world.set_transforms(nodes, places);
         REQUIRE(!stale);
-        CHECK(stale.error().code == ErrorCode::stale_handle);
-        CHECK(stale.error().item == 64);
+        CHECK(error_of(stale).code == ErrorCode::stale_handle);
+        CHECK(error_of(stale).item == 64);
         REQUIRE(world.update().has_value());
         for (std::size_t i = 0; i < kCount; ++i)
             if (i != 64) CHECK(world.transform_of(objects[i])->translation == places[i].translation);

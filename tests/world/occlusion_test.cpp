@@ -2,6 +2,7 @@
 // Views of a World that leave out what is hidden.
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <error_of.hpp>
 #include <limits>
 
 #include "occlusion_town.hpp"
@@ -84,7 +85,7 @@ TEST_SUITE("world/occlusion") {
             CHECK_FALSE(s.hides());
             REQUIRE(s.world.set_occludes(s.wall, true).has_value());
             CHECK(s.hides());
-            CHECK(s.world.set_occludes(s.behind, true).error().code == ErrorCode::invalid_argument);
+            CHECK(error_of(s.world.set_occludes(s.behind, true)).code == ErrorCode::invalid_argument);
         }
         SUBCASE("in another layer, by itself or by its node") {
             REQUIRE(s.world.set_layers(s.wall, 2).has_value());
@@ -198,22 +199,22 @@ TEST_SUITE("world/occlusion") {
         occlude::FoundOccluder bad[3] = {box, box, box};
         bad[1].box.half_extents.x = 0.0f;
         auto refused = s.world.set_occluders(s.mesh, bad);
-        CHECK(refused.error().code == ErrorCode::degenerate);
-        CHECK(refused.error().item == 1);
+        CHECK(error_of(refused).code == ErrorCode::degenerate);
+        CHECK(error_of(refused).item == 1);
         bad[1] = box;
         bad[2].box.center.y = std::numeric_limits<double>::quiet_NaN();
         refused = s.world.set_occluders(s.mesh, bad);
-        CHECK(refused.error().code == ErrorCode::non_finite);
-        CHECK(refused.error().item == 2);
+        CHECK(error_of(refused).code == ErrorCode::non_finite);
+        CHECK(error_of(refused).item == 2);
         CHECK(s.hides());  // as before
-        CHECK(s.world.set_occluders({}, {}).error().code == ErrorCode::stale_handle);
-        CHECK(s.world.find_occluders({}).error().code == ErrorCode::stale_handle);
+        CHECK(error_of(s.world.set_occluders({}, {})).code == ErrorCode::stale_handle);
+        CHECK(error_of(s.world.find_occluders({})).code == ErrorCode::stale_handle);
         CHECK(s.world.occluders_of({}).empty());
-        CHECK(s.world.set_occludes({}, true).error().code == ErrorCode::stale_handle);
+        CHECK(error_of(s.world.set_occludes({}, true)).code == ErrorCode::stale_handle);
         Vector<OccluderRef> none;
-        CHECK(s.world.hidden_by({}, s.visible, none).error().code == ErrorCode::stale_handle);
-        CHECK(s.world.view(Camera(), {.size = {4, 270}}, s.visible).error().code == ErrorCode::out_of_range);
-        CHECK(s.world.view(Camera{.fov_y = -1.0}, {}, s.visible).error().code != ErrorCode::out_of_memory);
+        CHECK(error_of(s.world.hidden_by({}, s.visible, none)).code == ErrorCode::stale_handle);
+        CHECK(error_of(s.world.view(Camera(), {.size = {4, 270}}, s.visible)).code == ErrorCode::out_of_range);
+        CHECK(error_of(s.world.view(Camera{.fov_y = -1.0}, {}, s.visible)).code != ErrorCode::out_of_memory);
     }
 
     TEST_CASE("what only occludes is in no answer") {
@@ -221,7 +222,7 @@ TEST_SUITE("world/occlusion") {
         const auto mesh = world.add_mesh(description_of(cuboid({5.0f, 5.0f, 0.5f}), true)).value();
         const auto wall = world.add({.mesh = mesh, .transform = at(0.0, 0.0, -10.0), .only_occludes = true}).value();
         (void)world.add({.bound = box_at(0.0, 0.0, -20.0)}).value();
-        CHECK(world.add({.bound = box_at(0.0, 0.0, -20.0), .only_occludes = true}).error().code ==
+        CHECK(error_of(world.add({.bound = box_at(0.0, 0.0, -20.0), .only_occludes = true})).code ==
               ErrorCode::invalid_argument);
         REQUIRE(world.update().has_value());
         VisibleObjects visible;

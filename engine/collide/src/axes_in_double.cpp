@@ -92,6 +92,11 @@ HWY_INLINE int first_axis(std::uint32_t axes) {
     return axes == 0 ? 0 : static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(axes));
 }
 
+// What the gaps may be off by: the bound that gaps_of() derives, and what underflow eats.
+HWY_INLINE Three rounding_of(const Gaps& gaps) {
+    return gaps.size * all3(0x1p-49) + all3(1e-300);
+}
+
 void MeasureAxes(const PairColumns& pair, AxisMeasures& measures) {
     const Gaps gaps = gaps_of(pair);
     const Columns a[3] = {columns(pair.a), next(columns(pair.a)), after_next(columns(pair.a))};
@@ -118,7 +123,7 @@ void MeasureAxes(const PairColumns& pair, AxisMeasures& measures) {
     measures.face = first_axis(axis_set(faces));
     measures.edge = has_edge ? first_axis(axis_set(edges)) : -1;
     measures.edge_is_widest = has_edge && (lanes_below(face, edge) & 1u) != 0;
-    const Three error = gaps.size * all3(0x1p-49) + all3(1e-300);
+    const Three error = rounding_of(gaps);
     measures.surely_meet = lanes_all_below(gaps.gap, all3(0.0) - error) == 7u;
     const Three widest =
         larger(larger(gaps.gap[0], gaps.gap[1]), larger(gaps.gap[2], larger(gaps.gap[3], gaps.gap[4])));
@@ -128,7 +133,7 @@ void MeasureAxes(const PairColumns& pair, AxisMeasures& measures) {
 AxisVerdicts JudgeAxes(const PairColumns& pair) {
     const Gaps gaps = gaps_of(pair);
     const Three(&gap)[5] = gaps.gap;
-    const Three error = gaps.size * all3(0x1p-49) + all3(1e-300);
+    const Three error = rounding_of(gaps);
     const Three overlap = all3(0.0) - error;
     if (lanes_all_below(gap, overlap) == 7u) return {};
     std::uint32_t separated[5], overlapping[5];

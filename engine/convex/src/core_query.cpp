@@ -14,7 +14,10 @@ Nearest core_distance(const Pair& pair, const PairCache* cache, double near, dou
     if (cut_short) return found;
     const bool close_enough = found.upper - found.lower <= 0.5e-10 * pair.size;
     if (found.meeting == Meeting::apart && close_enough) return found;
-    const ExactNearest exact = exact_nearest(pair, found.simplex, !close_enough || found.upper > far);
+    // The corners seem to contain the origin: a distance of 0, which is none if they turn out to be apart.
+    const bool seems_inside = found.simplex.inside;
+    const ExactNearest exact =
+        exact_nearest(pair, found.simplex, !close_enough || found.upper > far || (seems_inside && far > 0.0));
     found.meeting = exact.meet ? Meeting::meeting : Meeting::apart;
     if (exact.meet) {
         found.simplex = exact.simplex;
@@ -24,7 +27,7 @@ Nearest core_distance(const Pair& pair, const PairCache* cache, double near, dou
     const double lower = std::max(0.0, -pair.extent(exact.normal) - pair.error);
     if (lower >= found.lower || found.normal == glm::dvec3(0.0)) found.lower = lower, found.normal = exact.normal;
     const double upper = glm::length(witness(exact.simplex)) + pair.error;
-    if (upper <= found.upper) found.upper = upper, found.simplex = exact.simplex;
+    if (upper <= found.upper || seems_inside) found.upper = upper, found.simplex = exact.simplex;
     return found;
 }
 

@@ -168,7 +168,7 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
         points = core_points(depth.face);
         p.depth = std::max(0.0, depth.upper - pair.error) + rounding;
         p.lower = depth.lower + rounding - slack;
-        p.upper = depth.upper + rounding + slack;
+        p.upper = std::max(p.depth, depth.upper + rounding + slack);  // of round bodies `meeting` may be rounding
         p.normal = depth.normal;
         if (cache != nullptr) cache->axis = p.normal;
     }

@@ -3,12 +3,20 @@
 #pragma once
 #include <cmath>
 #include <crofton/convex/body.hpp>
+#include <cstring>
 #include <glm/geometric.hpp>
 
 namespace crofton::convex {
 
 // The compilers' own vectors: operations are single roundings on every machine.
-using Lanes2 = double __attribute__((vector_size(16), aligned(8), may_alias));
+using Lanes2 = double __attribute__((vector_size(16)));
+
+// From numbers that are aligned as such alone: clang loads a vector type of a lesser alignment as an aligned one.
+[[nodiscard]] inline Lanes2 load2(const double* from) {
+    Lanes2 lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
 
 struct Support {
     glm::dvec3 point;
@@ -23,9 +31,8 @@ struct Support {
     alignas(16) double along[3 * kMaxHullVertices];
     const Lanes2 dx{d.x, d.x}, dy{d.y, d.y}, dz{d.z, d.z};
     const auto value = [&](int i) {
-        const Lanes2 v = (dx * *reinterpret_cast<const Lanes2*>(x + i) + dy * *reinterpret_cast<const Lanes2*>(y + i)) +
-                         dz * *reinterpret_cast<const Lanes2*>(z + i);
-        *reinterpret_cast<Lanes2*>(along + i) = v;
+        const Lanes2 v = (dx * load2(x + i) + dy * load2(y + i)) + dz * load2(z + i);
+        std::memcpy(along + i, &v, sizeof v);
         return v;
     };
     Lanes2 high = value(0), high2 = value(2);

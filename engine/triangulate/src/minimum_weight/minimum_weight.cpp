@@ -94,6 +94,14 @@ bool MinimumWeight::collect_convex_ring(const Domain& domain, std::size_t bytes)
     if (side == 0) return false;
     for (Index i = 1; i < count; ++i)
         if (turn(i) != side) return false;
+    // A ring that touches itself may go round twice and turn to one side all the way: each round has a lowest corner.
+    const auto precedes = [&](Index i, Index j) {
+        const auto &p = points[corner(i)], &q = points[corner(j)];
+        return p.x < q.x || (p.x == q.x && p.y < q.y);
+    };
+    Index rounds = 0;
+    for (Index i = 0; i < count; ++i) rounds += precedes(i + 1, i) && precedes(i + 1, i + 2);
+    if (rounds != 1) return false;
     const Index start = domain.input_of(0);
     ring_.resize(count);
     for (Index i = 0; i < count; ++i) ring_[i] = corner(side > 0 ? start + i : start + count - i);

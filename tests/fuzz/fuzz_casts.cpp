@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Moving convex bodies: what a cast proves is looked at in many moments; and rays at meshes against every triangle.
+#include <crofton/collide/narrow_phase.hpp>
+#include <crofton/convex/query.hpp>
+#include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+
+#include "bodies.hpp"
+
+namespace {
+
+using namespace crofton;
+using fuzz::demand;
+
+convex::Motion motion(fuzz::Shapes& in) {
+    convex::Motion motion;
+    motion.velocity = in.below(4) ? in.grid_point() : glm::dvec3(0.0);
+    if (in.flag()) motion.spin = 0.25 * in.direction();
+    if (in.flag()) motion.pivot = glm::dvec3(in.grid());
+    return motion;
+}
+
+void check_cast(fuzz::Shapes& in) {
+    fuzz::Bodies bodies(in);
+    const convex::Body a = bodies.body(), b = bodies.body();
+    const RigidTransform pose_a = in.pose();
+    RigidTransform pose_b = bodies.touching(a, pose_a, b);
+    if (in.below(4) != 0) pose_b.translation += in.direction();
+    const convex::Motion motion_a = motion(in), motion_b = motion(in);
+    convex::CastOptions options;
+    options.duration = 0.125 + in.byte() / 64.0;
+    options.tolerance = std::ldexp(1.0, -4 - static_cast<int>(in.below(20)));
+    options.max_steps = 60;
+    const auto impact = convex::cast({a, pose_a}, motion_a, {b, pose_b}, motion_b, options);
+    demand(impact.has_value(), "a cast");
+    demand(impact->time >= 0.0 && impact->time <= options.duration, "the time of an impact");
+    const double size = a.reach() + b.reach() + a.radius() + b.radius() + glm::length(pose_a.translation) +
+                        glm::length(pose_b.translation) + 100.0;
+    const auto at = [&](double time) {
+        const RigidTransform now_a = convex::moved(pose_a, motion_a, time),
+                             now_b = convex::moved(pose_b, motion_b, time);
+        return convex::penetration({a, now_a}, {b, now_b}).lower;
+    };
+    if (impact->result != convex::CastResult::hit || impact->time > 0.0)
+        for (int i = 0; i < 8; ++i)
+            demand(at(impact->time * i / 8.0) <= 1e-7 * size, "bodies touch before the time of a cast");
+    if (impact->result != convex::CastResult::hit) return;
+    const RigidTransform now_a = convex::moved(pose_a, motion_a, impact->time),
+                         now_b = convex::moved(pose_b, motion_b, impact->time);
+    demand(convex::distance({a, now_a}, {b, now_b}).lower <= options.tolerance + 1e-9 * size, "bodies that have hit");
+}
+
+void check_time_of_impact(fuzz::Shapes& in) {
+    const Obb a = in.box(), b = in.box_near(a);
+    Obb away = b;
+    away.center += in.direction();
+    collide::ConstantMotion motion;
+    motion.velocity = in.direction();
+    const double duration = 2.0, tolerance = 1e-4;
+    const collide::ConvexShape of_a = collide::to_convex_shape(a), of_b = collide::to_convex_shape(away);
+    const auto impact = collide::time_of_impact(of_a, {}, of_b, motion, duration, tolerance);
+    double size = glm::length(a.center) + glm::length(away.center) + 30.0;
+    for (int k = 0; k < 3; ++k) size += double(a.half_extents[k]) + double(b.half_extents[k]);
+    const double end = impact ? impact->time : duration;
+    demand(end >= 0.0 && end <= duration, "a time of impact");
+    for (int i = 0; i < 8 && end > 0.0; ++i) {
+        Obb now = away;
+        now.center += end * i / 8.0 * motion.velocity;
+        if (!validate(now)) continue;
+        demand(collide::penetration(a, now).depth <= 1e-6 * size, "boxes touch before the time of impact");
+    }
+    if (impact)
+        demand(collide::distance(of_a, collide::moved(of_b, motion, end)).distance <= tolerance + 1e-6 * size,
+               "boxes that have met");
+}
+
+Triangle triangle_of(const TriangleMesh& mesh, std::uint32_t t) {
+    const auto corner = [&](std::uint32_t v) { return glm::dvec3(mesh.positions[mesh.indices[3 * t + v]]); };
+    return {corner(0), corner(1), corner(2)};
+}
+
+double rounding_of(const Ray& ray, const Triangle& t) {
+    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double size = glm::length(ray.origin) + glm::length(t[0]) + glm::length(t[1]) + glm::length(t[2]);
+    const double longest = (std::max)(glm::length(t[1] - t[0]), glm::length(t[2] - t[0]));
+    return 1e-14 * size * longest * longest / std::fabs(glm::dot(n, ray.direction)) +
+           1e-12 * size / glm::length(ray.direction);
+}
+
+void check_rays(fuzz::Shapes& in) {
+    const TriangleMesh triangles = in.flag() ? in.solid() : in.mesh(12, 24);
+    const auto mesh = mesh::MeshTree::build(triangles, {.rays = in.flag()});
+    demand(mesh.has_value(), "a mesh");
+    for (int i = 0; i < 6; ++i) {
+        const auto corner = [&] {
+            return glm::dvec3(triangles.positions[triangles.indices[in.byte() % triangles.indices.size()]]);
+        };
+        const glm::dvec3 p = corner(), q = corner();
+        const Ray ray = in.flag() ? in.ray_through(p) : in.ray_through(0.5 * (p + q));
+        std::optional<mesh::RayHit> first;
+        for (std::uint32_t t = 0; t < triangles.triangle_count(); ++t) {
+            if (const auto at = mesh::raycast(ray, triangle_of(triangles, t)); at && (!first || *at < first->t))
+                first = {*at, t};
+        }
+        const auto hit = mesh::raycast(ray, *mesh);
+        demand(hit.has_value() == first.has_value() && mesh::hits_any(ray, *mesh) == first.has_value(), "a ray hits");
+        if (!hit) continue;
+        // t is rounded, the more the smaller the angle is; where two triangles are as near, either may be told.
+        const double rounding = rounding_of(ray, triangle_of(triangles, hit->triangle)) +
+                                rounding_of(ray, triangle_of(triangles, first->triangle));
+        demand(std::fabs(hit->t - first->t) <= rounding, "how far the first triangle on a ray is");
+        const auto of_hit = mesh::raycast(ray, triangle_of(triangles, hit->triangle));
+        demand(of_hit && std::fabs(*of_hit - first->t) <= rounding, "the first triangle on a ray");
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    fuzz::Shapes in(data, size);
+    const unsigned kind = in.below(4);
+    if (kind < 2) check_cast(in);
+    if (kind == 2) check_time_of_impact(in);
+    if (kind == 3) check_rays(in);
+    return 0;
+}

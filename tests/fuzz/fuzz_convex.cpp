@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Two convex bodies that nearly touch: yes or no against exact integers; distances, depths and contacts by what was
+// proven of them.
+#include <crofton/convex/query.hpp>
+#include <oracle/exact_convex.hpp>
+
+#include "bodies.hpp"
+
+namespace {
+
+using namespace crofton;
+using namespace crofton::convex;
+using fuzz::demand;
+
+// What the oracle knows. Balls and capsules without a radius are polytopes, too, of one and two corners.
+bool has_triangles(const Body& body) {
+    return body.is_polytope() && (body.kind() == Kind::box || body.kind() == Kind::triangle || body.hull() != nullptr);
+}
+
+void check_meeting(const Placed& a, const Placed& b, double size, PairCache& cache) {
+    const bool meet = intersects(a, b);
+    const Distance d = distance(a, b);
+    const Penetration p = penetration(a, b);
+    demand(d.lower <= d.upper && d.lower <= d.distance && d.distance <= d.upper, "bounds of a distance");
+    demand(p.lower <= p.upper, "bounds of a depth");
+    // Of round bodies a gap or an overlap of little more than rounding may be told either way.
+    const bool exact = has_triangles(a.body) && has_triangles(b.body);
+    const bool is_clear = exact || d.distance > 1e-7 * size || p.depth > 1e-7 * size;
+    if (is_clear) {
+        demand(intersects(b, a) == meet, "meeting is symmetric");
+        demand((d.distance == 0.0) == meet, "a distance of 0");
+        demand(p.overlapping == meet, "a depth of bodies that meet");
+        demand(intersects(a, b, &cache) == meet, "the answer of a pair that remembers");
+    }
+    if (exact) {
+        const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
+        const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
+        const Penetration guess = penetration({a.body, near_a}, {b.body, near_b});
+        demand(meet == oracle::meet(oracle::exact_polytope(a), oracle::exact_polytope(b), {d.normal},
+                                    a.pose.translation, {0.5 * (guess.on_a + guess.on_b)}),
+               "two polytopes meet");
+        demand(d.upper - d.lower <= 1e-9 * size, "a distance that is not proven well enough");
+        demand(p.upper - p.lower <= 1e-9 * size, "a depth that is not proven well enough");
+    }
+    const Manifold m = contact_manifold(a, b, {}, &cache);
+    demand(m.count >= 0 && m.count <= 4, "how many points of contact");
+    if (is_clear) demand((m.count > 0) == meet, "points of contact");
+    for (int i = 0; i < m.count; ++i)
+        demand(std::isfinite(glm::dot(m.points[i].position, glm::dvec3(1.0))) &&
+                   m.points[i].depth <= m.depth + 1e-6 * size,
+               "the deepest point");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    fuzz::Shapes in(data, size);
+    fuzz::Bodies bodies(in);
+    const Body a = bodies.body(), b = bodies.body();
+    const RigidTransform pose_a = in.pose();
+    RigidTransform pose_b = bodies.touching(a, pose_a, b);
+    PairCache cache;
+    for (int frame = 0; frame < 3; ++frame) {
+        const double extent =
+            a.reach() + b.reach() + a.radius() + b.radius() + glm::length(pose_b.translation - pose_a.translation);
+        check_meeting({a, pose_a}, {b, pose_b}, extent, cache);
+        pose_b.translation += in.nudge();
+    }
+    return 0;
+}
