@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <error_of.hpp>
 #include <memory>
 
 #include "surfaces.hpp"
@@ -47,16 +48,16 @@ Tree random_tree(RandomBodies& random, int children, int levels, const Surface* 
 
 TEST_SUITE("convex/compound") {
     TEST_CASE("no children, bad poses and half-spaces are named errors, with the child") {
-        CHECK(Compound::build({}).error().code == ErrorCode::empty);
+        CHECK(error_of(Compound::build({})).code == ErrorCode::empty);
         const Body box = Body::box({1, 1, 1}).value(), floor = Body::half_space({{0, 1, 0}, 0}).value();
         std::vector<CompoundChild> children{{box, at({})}, {floor, at({})}};
         REQUIRE_FALSE(Compound::build(children).has_value());
-        CHECK(Compound::build(children).error().code == ErrorCode::unsupported);
-        CHECK(Compound::build(children).error().item == 1);
+        CHECK(error_of(Compound::build(children)).code == ErrorCode::unsupported);
+        CHECK(error_of(Compound::build(children)).item == 1);
         children[1] = {box, at({0, NAN, 0})};
         REQUIRE_FALSE(Compound::build(children).has_value());
-        CHECK(Compound::build(children).error().code == ErrorCode::non_finite);
-        CHECK(Compound::build(children).error().item == 1);
+        CHECK(error_of(Compound::build(children)).code == ErrorCode::non_finite);
+        CHECK(error_of(Compound::build(children)).item == 1);
     }
 
     TEST_CASE("compounds in compounds: sixteen deep work, the seventeenth is a named error, so a thousand never nest") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <error_of.hpp>
 #include <limits>
 
 #include "surfaces.hpp"
@@ -60,7 +61,7 @@ TEST_SUITE("convex/height_field") {
         std::vector<float> bad = four;
         bad[3] = std::numeric_limits<float>::quiet_NaN();
         CHECK(code({2, 2, bad}) == ErrorCode::non_finite);
-        CHECK(HeightField::build({2, 2, bad}).error().item == 3);
+        CHECK(error_of(HeightField::build({2, 2, bad})).item == 3);
         bad[3] = 2e15f;
         CHECK(code({2, 2, bad}) == ErrorCode::out_of_range);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <error_of.hpp>
 
 #include "surfaces.hpp"
 
@@ -33,11 +34,11 @@ TEST_SUITE("convex/surface") {
     TEST_CASE("a tree without triangles is refused, and what is not convex is not rounded") {
         const mesh::MeshTree none;
         REQUIRE_FALSE(Body::mesh(none).has_value());
-        CHECK(Body::mesh(none).error().code == ErrorCode::empty);
+        CHECK(error_of(Body::mesh(none)).code == ErrorCode::empty);
         RandomBodies random(1);
         const Surface s = soup(random, 3, 1.0, 1.0);
         REQUIRE_FALSE(Body::rounded(s.body(), 1.0f).has_value());
-        CHECK(Body::rounded(s.body(), 1.0f).error().code == ErrorCode::unsupported);
+        CHECK(error_of(Body::rounded(s.body(), 1.0f)).code == ErrorCode::unsupported);
     }
 
     TEST_CASE("yes or no is that of the triangles one by one, at every gap and offset, for every kind of body") {

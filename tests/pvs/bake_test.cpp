@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/pvs/pvs.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -35,23 +36,23 @@ TEST_SUITE("pvs/bake") {
         Subject subject = random_subject(1, 5);
         const Cells cells = Cells::grid({{-5.0, 0.0, -5.0}, {5.0, 2.0, 5.0}}, {4, 1, 4}).value();
         for (const double bad : {0.0, -1.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
-            CHECK(Bake::create(subject, cells, {.epsilon = bad}).error().code == ErrorCode::invalid_argument);
-            CHECK(Bake::create(subject, cells, {.confidence = bad}).error().code == ErrorCode::invalid_argument);
+            CHECK(error_of(Bake::create(subject, cells, {.epsilon = bad})).code == ErrorCode::invalid_argument);
+            CHECK(error_of(Bake::create(subject, cells, {.confidence = bad})).code == ErrorCode::invalid_argument);
         }
-        CHECK(Bake::create(subject, cells, {.epsilon = 1e-14}).error().code == ErrorCode::out_of_range);
+        CHECK(error_of(Bake::create(subject, cells, {.epsilon = 1e-14})).code == ErrorCode::out_of_range);
         subject.object_of[7] = 5;
-        CHECK(Bake::create(subject, cells).error().code == ErrorCode::out_of_range);
-        CHECK(Bake::create(subject, cells).error().item == 7);
+        CHECK(error_of(Bake::create(subject, cells)).code == ErrorCode::out_of_range);
+        CHECK(error_of(Bake::create(subject, cells)).item == 7);
         subject.object_of[7] = 0;
         subject.mesh.positions[3].y = std::numeric_limits<float>::infinity();
-        CHECK(Bake::create(subject, cells).error().item == 3);
+        CHECK(error_of(Bake::create(subject, cells)).item == 3);
         subject.mesh.positions[3].y = 0.0f;
         subject.boxes[2].half_extents.x = -1.0f;
-        CHECK(Bake::create(subject, cells).error().item == 2);
-        CHECK(Bake::create(Subject{}, cells).error().code == ErrorCode::empty);
-        CHECK(Bake::create(random_subject(1, 5), Cells{}).error().code == ErrorCode::empty);
+        CHECK(error_of(Bake::create(subject, cells)).item == 2);
+        CHECK(error_of(Bake::create(Subject{}, cells)).code == ErrorCode::empty);
+        CHECK(error_of(Bake::create(random_subject(1, 5), Cells{})).code == ErrorCode::empty);
         subject.object_of.pop_back();
-        CHECK(Bake::create(subject, cells).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(Bake::create(subject, cells)).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("witnesses what a plain walk along the same lines does, in grids and boxes, with either kind of sides") {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/sampling/sampling.hpp>
+#include <error_of.hpp>
 #include <limits>
 #include <vector>
 
@@ -12,22 +13,22 @@ TEST_SUITE("pvs/cells") {
     TEST_CASE("bad bounds, no cells and too many are named errors") {
         const double nan = std::numeric_limits<double>::quiet_NaN();
         const Aabb good{{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}};
-        CHECK(Cells::grid({{0.0, nan, 0.0}, {1.0, 1.0, 1.0}}, {1, 1, 1}).error().code == ErrorCode::non_finite);
-        CHECK(Cells::grid({{0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}}, {1, 1, 1}).error().code == ErrorCode::degenerate);
-        CHECK(Cells::grid(Aabb{}, {1, 1, 1}).error().code == ErrorCode::non_finite);
-        CHECK(Cells::grid(good, {4, 0, 4}).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(Cells::grid({{0.0, nan, 0.0}, {1.0, 1.0, 1.0}}, {1, 1, 1})).code == ErrorCode::non_finite);
+        CHECK(error_of(Cells::grid({{0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}}, {1, 1, 1})).code == ErrorCode::degenerate);
+        CHECK(error_of(Cells::grid(Aabb{}, {1, 1, 1})).code == ErrorCode::non_finite);
+        CHECK(error_of(Cells::grid(good, {4, 0, 4})).code == ErrorCode::invalid_argument);
         for (const glm::uvec3& counts :
              {glm::uvec3(1u << 25, 1, 1), glm::uvec3(4096, 4096, 2), glm::uvec3(~0u, ~0u, ~0u)})
-            CHECK(Cells::grid(good, counts).error().code == ErrorCode::out_of_range);
-        CHECK(Cells::boxes({}).error().code == ErrorCode::empty);
+            CHECK(error_of(Cells::grid(good, counts)).code == ErrorCode::out_of_range);
+        CHECK(error_of(Cells::boxes({})).code == ErrorCode::empty);
         std::vector<Aabb> boxes(3, good);
         boxes[2].max.y = -1.0;
-        CHECK(Cells::boxes(boxes).error().code == ErrorCode::empty);
-        CHECK(Cells::boxes(boxes).error().item == 2);
+        CHECK(error_of(Cells::boxes(boxes)).code == ErrorCode::empty);
+        CHECK(error_of(Cells::boxes(boxes)).item == 2);
         boxes[2] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 5.0}};
-        CHECK(Cells::boxes(boxes).error().code == ErrorCode::degenerate);
+        CHECK(error_of(Cells::boxes(boxes)).code == ErrorCode::degenerate);
         boxes[1].min.x = nan;
-        CHECK(Cells::boxes(boxes).error().item == 1);
+        CHECK(error_of(Cells::boxes(boxes)).item == 1);
     }
 
     TEST_CASE("a grid's cells fill its bounds, and each point is found in a cell that holds it, at any offset") {

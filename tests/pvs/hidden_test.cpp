@@ -4,6 +4,7 @@
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/sampling/sampling.hpp>
+#include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <oracle/plain_pvs.hpp>
@@ -188,8 +189,8 @@ TEST_SUITE("pvs/hidden") {
 
         const std::vector<PlacedOccluder> none = {{nullptr, {}}};
         CHECK(Pvs::finish(bake, none).value().state(0, 0) == PairState::unseen);
-        CHECK(Pvs::finish(bake, {}, {.near_reach = -1.0}).error().code == ErrorCode::invalid_argument);
-        CHECK(Pvs::finish(bake, {}, {.halvings = 99}).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(Pvs::finish(bake, {}, {.near_reach = -1.0})).code == ErrorCode::invalid_argument);
+        CHECK(error_of(Pvs::finish(bake, {}, {.halvings = 99})).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("proofs are the same bits on three threads") {

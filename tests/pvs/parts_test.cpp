@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <crofton/bake/container.hpp>
 #include <crofton/pvs/pvs.hpp>
+#include <error_of.hpp>
 #include <vector>
 
 #include "subjects.hpp"
@@ -107,15 +108,15 @@ TEST_SUITE("pvs/parts") {
         Job other;
         other.options.seed = 2;
         Bake of_another = other.start();
-        CHECK(of_another.add_state(state).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(of_another.add_state(state)).code == ErrorCode::invalid_argument);
         other = Job{};
         other.subject.mesh.positions[0].x += 1.0f;
-        CHECK(other.start().add_state(state).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(other.start().add_state(state)).code == ErrorCode::invalid_argument);
         const auto part = of_another.state().value();
         const auto sum = merged({state, part});
         CHECK(sum.error().code == ErrorCode::invalid_argument);
         CHECK(sum.error().item == 1);
-        CHECK(merge_states({}).error().code == ErrorCode::empty);
+        CHECK(error_of(merge_states({})).code == ErrorCode::empty);
         const auto before = plain(bake.state().value());
         for (std::size_t at = 0; at < state.size(); at += 97) {
             Vector<std::byte> damaged = state;
@@ -125,9 +126,9 @@ TEST_SUITE("pvs/parts") {
         for (const std::size_t size : {std::size_t{0}, std::size_t{63}, state.size() / 2, state.size() - 1})
             CHECK_FALSE(bake.add_state(std::span(state).first(size)).has_value());
         CHECK(plain(bake.state().value()) == before);
-        CHECK(bake.run({.shard = {3, 3}}).error().code == ErrorCode::invalid_argument);
-        CHECK(bake.run({.shard = {0, 0}}).error().code == ErrorCode::invalid_argument);
-        CHECK(missing_shards(state, 0).error().code == ErrorCode::invalid_argument);
+        CHECK(error_of(bake.run({.shard = {3, 3}})).code == ErrorCode::invalid_argument);
+        CHECK(error_of(bake.run({.shard = {0, 0}})).code == ErrorCode::invalid_argument);
+        CHECK(error_of(missing_shards(state, 0)).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("forged states with right checksums are refused") {

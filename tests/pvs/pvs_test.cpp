@@ -4,6 +4,7 @@
 #include <crofton/bake/container.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/pvs/pvs.hpp>
+#include <error_of.hpp>
 #include <vector>
 
 #include "subjects.hpp"
@@ -76,8 +77,8 @@ TEST_SUITE("pvs/pvs") {
             const auto together = pvs.to_file(scene_file).value();
             check_same(pvs, Pvs::from_memory(together).value());
             CHECK(bake::BakedScene::from_memory(together).value().instances().size() == 1);
-            CHECK(pvs.to_file(together).error().code == ErrorCode::invalid_argument);
-            CHECK(Pvs::from_memory(scene_file).error().code == ErrorCode::parse);
+            CHECK(error_of(pvs.to_file(together)).code == ErrorCode::invalid_argument);
+            CHECK(error_of(Pvs::from_memory(scene_file)).code == ErrorCode::parse);
             CHECK_FALSE(pvs.to_file(std::span(scene_file).first(100)).has_value());
         }
     }
@@ -172,7 +173,7 @@ TEST_SUITE("pvs/pvs") {
             REQUIRE(scene.add_instance(node, mesh).has_value());
         }
         REQUIRE(scene.remove_instance(3).has_value());
-        CHECK(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2}).error().code == ErrorCode::empty);
+        CHECK(error_of(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
         scene.update();
         const std::vector<scene::InstanceId> moving = {2};
         const Subject subject = subject_of(scene, moving).value();
@@ -186,6 +187,6 @@ TEST_SUITE("pvs/pvs") {
             const glm::dvec3 center = scene.world_boxes()[subject.object_of[t]].center;
             CHECK(glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[0] - center) > 0.0);
         }
-        CHECK(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2}).error().code == ErrorCode::empty);
+        CHECK(error_of(subject_of(scene, std::vector<scene::InstanceId>{0, 1, 2})).code == ErrorCode::empty);
     }
 }
