@@ -46,6 +46,28 @@ void pierced(std::size_t count, std::size_t step, TriangleMesh& large, TriangleM
 }  // namespace
 
 TEST_SUITE("mesh/mesh_mesh") {
+    TEST_CASE("a tree of no triangles meets, holds and is near to nothing") {
+        const MeshTree none;
+        const auto some = MeshTree::build(wavy_torus(1.0, 0.4, 0.0));
+        REQUIRE(some.has_value());
+        const MeshTree* const pairs[][2] = {{&none, &*some}, {&*some, &none}, {&none, &none}};
+        for (const auto& pair : pairs) {
+            const MeshTree *const a = pair[0], *const b = pair[1];
+            Vector<TrianglePair> met;
+            Vector<MeshContact> touching;
+            CHECK_FALSE(intersects(*a, *b, {}));
+            intersecting_triangles(*a, *b, {}, met);
+            contacts(*a, *b, {}, touching);
+            CHECK(met.empty());
+            CHECK(touching.empty());
+            CHECK(std::isinf(distance(*a, *b, {}).distance));
+            CHECK_FALSE(closer_than(*a, *b, {}, 10.0));
+            CHECK(containment(*a, *b, {}) == Containment::none);
+            CHECK(penetration(*a, *b, {}, {}).depth == 0.0);
+        }
+        CHECK_FALSE(contains(none, glm::dvec3(0.0)));
+    }
+
     TEST_CASE("pairs come in order, few or many, near in number or far") {
         for (const std::size_t count : {1u, 20u, 30u, 300u, 2500u})
             for (const std::size_t step : {1u, 40u}) {

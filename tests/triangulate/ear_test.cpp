@@ -44,8 +44,8 @@ Triangles clip_plainly(const Polygon& polygon, std::vector<std::uint32_t> ring) 
     return triangles;
 }
 
-// The ring with the inside on its left, from the first triangle's middle corner on: nothing is cut before that one.
-std::vector<std::uint32_t> ring_from(const Polygon& polygon, std::uint32_t start) {
+// The ring with the inside on its left, from its first point on.
+std::vector<std::uint32_t> ring_of(const Polygon& polygon) {
     const auto n = static_cast<std::uint32_t>(polygon.points.size());
     double area = 0.0;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -53,7 +53,7 @@ std::vector<std::uint32_t> ring_from(const Polygon& polygon, std::uint32_t start
         area += a.x * b.y - a.y * b.x;
     }
     std::vector<std::uint32_t> ring;
-    for (std::uint32_t i = 0; i < n; ++i) ring.push_back(area > 0.0 ? (start + i) % n : (start + n - i) % n);
+    for (std::uint32_t i = 0; i < n; ++i) ring.push_back(area > 0.0 ? i : (n - i) % n);
     return ring;
 }
 
@@ -81,12 +81,60 @@ TEST_SUITE("triangulate/ear") {
             if (!result || oracle::check_triangulation(p, result->triangles) != "") continue;
             if (result->triangles.size() + 2 != p.points.size()) continue;
             ++compared;
-            const auto ring = ring_from(p, result->triangles[0][1]);
+            const auto ring = ring_of(p);
             const Triangles plain = clip_plainly(p, ring);
             REQUIRE(plain.size() == result->triangles.size());
             CHECK(std::equal(plain.begin(), plain.end(), result->triangles.begin()));
         }
         CHECK(compared > 400);
+    }
+
+    // Coordinates beyond 1e60 are scaled, which only the way through a domain does; by a power of two nothing changes.
+    TEST_CASE("short simple rings need no domain: the same triangles, or the same refusal, as with one") {
+        std::mt19937_64 random(52);
+        int done = 0, refused = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            CAPTURE(trial);
+            Polygon p;
+            if (trial % 4 == 0) {
+                add_star(p, random, {0, 0}, 1.0 + trial % 9, 10.0, 4 + trial % 150, trial % 3 == 0 ? 8.0 : 0.0);
+            } else {
+                // Few points of a small grid touch, cross, repeat and fold back.
+                const std::size_t count = 3 + random() % 7, side = 2 + random() % 6;
+                for (std::size_t i = 0; i < count; ++i) {
+                    const double x = static_cast<double>(random() % side), y = static_cast<double>(random() % side);
+                    p.points.emplace_back(x + (trial % 4 == 2 ? 0x1p-52 * static_cast<double>(random() % 3) : 0.0), y);
+                }
+                p.ring_ends.push_back(static_cast<std::uint32_t>(count));
+            }
+            Polygon large = p;
+            for (glm::dvec2& point : large.points) point *= 0x1p210;
+            const auto alone = triangulate::triangulate(p, {.method = Method::ear});
+            const auto through = triangulate::triangulate(large, {.method = Method::ear});
+            REQUIRE(alone.has_value() == through.has_value());
+            ++(alone ? done : refused);
+            if (!alone) continue;
+            REQUIRE(alone->triangles.size() == through->triangles.size());
+            CHECK(std::equal(alone->triangles.begin(), alone->triangles.end(), through->triangles.begin()));
+            CHECK(alone->weight * 0x1p210 == doctest::Approx(through->weight).epsilon(1e-12));
+            if (trial % 4 == 0 && trial % 3 != 0) CHECK(oracle::check_triangulation(p, alone->triangles) == "");
+        }
+        CHECK(done > 8000);
+        CHECK(refused > 5000);
+    }
+
+    TEST_CASE("rings that touch or cross only far apart in their order are refused or cut as always") {
+        for (int count = 40; count < 1500; count += 97) {
+            Polygon p = band(count, 0.0);
+            Polygon crossed = p;
+            crossed.points[static_cast<std::size_t>(count) - 3].y = -1.0;  // through the other side
+            CHECK(triangulate::triangulate(p, {.method = Method::ear}).has_value());
+            CHECK_FALSE(triangulate::triangulate(crossed, {.method = Method::ear}).has_value());
+            p.points[static_cast<std::size_t>(count) - 3].y = 0.0;  // onto it
+            const auto touching = triangulate::triangulate(p, {.method = Method::ear});
+            REQUIRE(touching.has_value());
+            CHECK(oracle::check_triangulation(p, touching->triangles) == "");
+        }
     }
 
     TEST_CASE("bands of 50,000 vertices, straight and wavy: no quadratic time") {

@@ -101,6 +101,7 @@ bool contains(const mesh::MeshTree& mesh, const glm::dvec3& point) {
 }
 
 Containment containment_of_disjoint(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a) {
+    if (a.triangle_count() == 0 || b.triangle_count() == 0) return Containment::none;
     std::size_t of_a = 0, of_b = 0;
     for (const MeshPiece& piece : b.pieces())
         of_b += is_inside(a, RigidTransform{}, transform(b_to_a, glm::dvec3(piece.vertex)));

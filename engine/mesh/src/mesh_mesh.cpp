@@ -70,10 +70,15 @@ struct Hit {
     [[nodiscard]] TrianglePair indices() const { return {in_a.triangle[lane_a], in_b.triangle[lane_b]}; }
 };
 
+bool is_empty(const MeshTree& tree) {
+    return tree.triangle_count() == 0;
+}
+
 // Runs the traversal; `found(Hit)` returns true to stop.
 template <class Found>
 void for_each_hit(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose, bool at_once,
                   MeshStatistics* statistics, Found found) {
+    if (is_empty(a) || is_empty(b)) return;
     std::uint64_t exact_tests = 0;
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges) {
         const Hit hit{a.parts().leaves[of_a.leaf], b.parts().leaves[of_b.leaf], of_a.lane, of_b.lane, edges};
@@ -152,6 +157,7 @@ glm::dvec3 center_of(const mesh::MeshBox& box) {
 MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a, double limit,
                       MeshStatistics* statistics) {
     MeshDistance result;
+    if (is_empty(a) || is_empty(b)) return result;
     ClosestPoints best;
     best.squared = limit * limit;
     Nearest nearest =
@@ -186,6 +192,7 @@ MeshDistance distance(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
 
 bool closer_than(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a, double tolerance,
                  MeshStatistics* statistics) {
+    if (is_empty(a) || is_empty(b)) return false;
     bool close = false;
     const auto visit = [&](LeafTriangle of_a, LeafTriangle of_b, std::uint32_t) {
         const Triangle first = triangle_of(a.parts().leaves[of_a.leaf], of_a.lane),

@@ -8,6 +8,7 @@
 
 #include "domain/domain.hpp"
 #include "ear/ear_clipping.hpp"
+#include "ear/simple_ring.hpp"
 #include "minimum_weight/local_improvement.hpp"
 #include "minimum_weight/minimum_weight.hpp"
 
@@ -16,10 +17,13 @@ namespace crofton::triangulate {
 struct Triangulator::Workspace {
     Domain domain;
     MinimumWeight minimum_weight;
+    SimpleRing simple_ring;
     EarClipping ear_clipping;
     LocalImprovement improvement;
     Vector<std::array<std::uint32_t, 3>> lightest, other;
 
+    // Ear clipping of one short ring that touches itself nowhere; false where it is something else.
+    [[nodiscard]] Result<bool> clip_simple_ring(const Polygon& polygon, Triangulation& result);
     void complete(Triangulation& result);
 };
 
@@ -70,6 +74,11 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
         result.optimal = false;
         result.gap = std::numeric_limits<double>::infinity();
         Watch watch(options);
+        if (options.method == Method::ear) {
+            const auto clipped = workspace_->clip_simple_ring(polygon, result);
+            if (!clipped) return tl::unexpected<Error>(clipped.error());
+            if (*clipped) return {};
+        }
         if (auto built = workspace_->domain.build(polygon); !built) return built;
         if (options.method == Method::minimum_weight) {
             const auto solved = workspace_->minimum_weight.solve(workspace_->domain, options, watch, result);
@@ -96,6 +105,19 @@ Result<void> Triangulator::triangulate(const Polygon& polygon, const Triangulate
         result.triangles.clear();
     }
     return done;
+}
+
+Result<bool> Triangulator::Workspace::clip_simple_ring(const Polygon& polygon, Triangulation& result) {
+    if (auto checked = domain.check(polygon); !checked) return tl::unexpected<Error>(checked.error());
+    const std::span<const glm::dvec2> points = polygon.points;
+    if (polygon.ring_count() != 1 || points.size() > SimpleRing::kMostPoints || domain.scale() != 1.0) return false;
+    const int turn = simple_ring.turn_of(points);
+    if (turn == 0) return false;
+    result.triangles.reserve(points.size() - 2);
+    result.weight = ear_clipping.run(points, turn > 0, result.triangles);
+    if (result.triangles.size() == points.size() - 2) return true;
+    result.triangles.clear();
+    return fail(ErrorCode::internal, kNoItem, "a walk without ears");
 }
 
 // The lightest of what is known, where the search has not come to its end: its best triangulation, if it has one, ear

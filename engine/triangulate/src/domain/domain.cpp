@@ -18,7 +18,6 @@ constexpr double kLargest = std::numeric_limits<double>::max();
 }  // namespace
 
 Result<void> Domain::build(const Polygon& polygon) {
-    polygon_ = &polygon;
     if (auto result = check(polygon); !result) return result;
     merge_vertices(polygon);
     delaunay(mesh_, codes_, scratch_);
@@ -28,6 +27,7 @@ Result<void> Domain::build(const Polygon& polygon) {
 }
 
 Result<void> Domain::check(const Polygon& polygon) {
+    polygon_ = &polygon;
     std::uint32_t begin = 0;
     for (std::size_t r = 0; r < polygon.ring_ends.size(); ++r) {
         if (polygon.ring_ends[r] < begin || polygon.ring_ends[r] > polygon.points.size()) {

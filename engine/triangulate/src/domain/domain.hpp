@@ -22,6 +22,8 @@ namespace crofton::triangulate {
 class Domain {
   public:
     [[nodiscard]] Result<void> build(const Polygon& polygon);
+    // The part of build() that looks at counts and coordinates alone; scale() is known after it.
+    [[nodiscard]] Result<void> check(const Polygon& polygon);
 
     // Makes segments between vertices edges of the mesh. They must lie inside, cross nothing and hold no vertex.
     void insert_diagonals(std::span<const Segment> segments);
@@ -60,7 +62,6 @@ class Domain {
         Index half_edge, region;
     };
 
-    [[nodiscard]] Result<void> check(const Polygon& polygon);
     void merge_vertices(const Polygon& polygon);
     void find_next_vertices();
     void mark_present_edges();

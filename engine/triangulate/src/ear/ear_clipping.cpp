@@ -7,18 +7,32 @@
 
 namespace crofton::triangulate {
 
+void EarClipping::begin(std::span<const glm::dvec2> points) {
+    points_ = points;
+    weight_ = 0.0;
+    reflex_count_.assign(points.size(), 0);
+    waiting_for_.assign(points.size(), kNone);
+}
+
+double EarClipping::run(std::span<const glm::dvec2> ring, bool counter_clockwise,
+                        Vector<std::array<std::uint32_t, 3>>& triangles) {
+    begin(ring);
+    simple_ = true;
+    collect_ring(ring.size(), counter_clockwise, [](Index input) { return input; });
+    clip(triangles);
+    return weight_;
+}
+
 double EarClipping::run(const Domain& domain, Vector<std::array<std::uint32_t, 3>>& triangles) {
     domain_ = &domain;
     mesh_ = &domain.mesh();
-    weight_ = 0.0;
+    begin(mesh_->points);
     simple_ = domain.ring_count() == 1 && !domain.has_touching_rings();
     if (!simple_) join_pieces();
-    reflex_count_.assign(mesh_->points.size(), 0);
-    waiting_for_.assign(mesh_->points.size(), kNone);
     for (Index e = 0; e < mesh_->origin.size(); ++e) {
         if ((e & 3u) == 3u || !is_wall(e) || !domain.inside(e / 4)) continue;
         if (simple_) {
-            collect_ring(e);
+            collect_ring(points_.size(), is_ascending(e), [&](Index input) { return domain_->vertex_of(input); });
             clip(triangles);
             break;
         }
@@ -76,20 +90,22 @@ void EarClipping::join_pieces() {
     }
 }
 
-// The ring's corners with the inside on their left, from the one that this half-edge leaves.
-void EarClipping::collect_ring(Index start) {
-    const auto count = static_cast<Index>(mesh_->points.size());
-    const Index from = domain_->input_of(mesh_->origin[start]), to = domain_->input_of(mesh_->destination(start));
-    const bool ascending = to == (from + 1 == count ? 0 : from + 1);
+// Whether the ring's points follow each other as its edges do that have the inside on their left, as this one has.
+bool EarClipping::is_ascending(Index half_edge) const {
+    const Index from = domain_->input_of(mesh_->origin[half_edge]),
+                to = domain_->input_of(mesh_->destination(half_edge));
+    return to == (from + 1 == points_.size() ? 0 : from + 1);
+}
+
+// The ring's corners with the inside on their left, from the first point.
+template <class VertexOf>
+void EarClipping::collect_ring(std::size_t size, bool ascending, VertexOf vertex_of) {
+    const auto count = static_cast<Index>(size);
     corners_.resize(count);
-    Index input = from;
-    for (Corner& c : corners_) {
-        c.vertex = domain_->vertex_of(input);
-        c.input = input;
-        if (ascending)
-            input = input + 1 == count ? 0 : input + 1;
-        else
-            input = (input == 0 ? count : input) - 1;
+    for (Index i = 0; i < count; ++i) {
+        const Index input = ascending || i == 0 ? i : count - i;
+        corners_[i].vertex = vertex_of(input);
+        corners_[i].input = input;
     }
     link_corners();
 }
@@ -123,11 +139,11 @@ void EarClipping::link_corners() {
         else if (reflex_count_[c.vertex]++ == 0)
             reflex_.push_back(c.vertex);
     }
-    tree_.build(mesh_->points, reflex_);
+    tree_.build(points_, reflex_);
 }
 
 bool EarClipping::is_reflex(const Corner& c) const {
-    const auto& points = mesh_->points;
+    const auto& points = points_;
     return orientation(points[corners_[c.previous].vertex], points[c.vertex], points[corners_[c.next].vertex]) <= 0;
 }
 
@@ -152,7 +168,7 @@ void EarClipping::update(Index corner) {
 
 // Whether the segment to the vertex starts inside the corner.
 bool EarClipping::opens_towards(const Corner& c, Index vertex) const {
-    const auto& points = mesh_->points;
+    const auto& points = points_;
     const auto& at = points[c.vertex];
     const auto &before = points[corners_[c.previous].vertex], &after = points[corners_[c.next].vertex],
                &to = points[vertex];
@@ -165,7 +181,7 @@ bool EarClipping::opens_towards(const Corner& c, Index vertex) const {
 bool EarClipping::is_ear(Index corner) {
     const Corner& c = corners_[corner];
     const Corner &before = corners_[c.previous], &after = corners_[c.next];
-    const auto& points = mesh_->points;
+    const auto& points = points_;
     const auto &p = points[before.vertex], &q = points[c.vertex], &r = points[after.vertex];
     if (!simple_) {
         if (before.vertex == after.vertex) return false;
@@ -183,7 +199,7 @@ bool EarClipping::is_ear(Index corner) {
 }
 
 void EarClipping::clip(Vector<std::array<std::uint32_t, 3>>& triangles) {
-    const auto& points = mesh_->points;
+    const auto& points = points_;
     Index at = 0;
     for (std::size_t left = corners_.size(); left >= 3;) {
         at = awake_.next_cyclic(at);

@@ -2,6 +2,7 @@
 // Ear clipping: quick to understand, and what most engines do today.
 #pragma once
 #include <array>
+#include <span>
 
 #include "domain/domain.hpp"
 #include "ear/corner_set.hpp"
@@ -16,6 +17,9 @@ class EarClipping {
   public:
     // Appends triangles of the caller's indices; returns the diagonals' length.
     [[nodiscard]] double run(const Domain& domain, Vector<std::array<std::uint32_t, 3>>& triangles);
+    // The same triangles, of one ring that touches itself nowhere: no domain is needed.
+    [[nodiscard]] double run(std::span<const glm::dvec2> ring, bool counter_clockwise,
+                             Vector<std::array<std::uint32_t, 3>>& triangles);
 
   private:
     struct Corner {
@@ -34,7 +38,10 @@ class EarClipping {
         return simple_ ? mesh_->mark[half_edge] != 0 : wall_[half_edge] != 0;
     }
     [[nodiscard]] Index find(Index vertex);
-    void collect_ring(Index start);
+    void begin(std::span<const glm::dvec2> points);
+    [[nodiscard]] bool is_ascending(Index half_edge) const;
+    template <class VertexOf>
+    void collect_ring(std::size_t size, bool ascending, VertexOf vertex_of);
     void collect_walk(Index start);
     void link_corners();
     void clip(Vector<std::array<std::uint32_t, 3>>& triangles);
@@ -46,6 +53,7 @@ class EarClipping {
 
     const Domain* domain_ = nullptr;
     const HalfEdgeMesh* mesh_ = nullptr;
+    std::span<const glm::dvec2> points_;
     // One ring that touches nothing: every vertex has one corner.
     bool simple_ = false;
     Vector<std::uint8_t> wall_, walked_;
