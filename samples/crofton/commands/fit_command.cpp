@@ -127,7 +127,8 @@ int run(const Request& request) {
         return status ? *status : report_error("", status.error());
     }
     if (!request.views.empty()) {
-        const auto status = run_fit_views({request.files, request.views, request.json_path, request.trees, request.read});
+        const auto status =
+            run_fit_views({request.files, request.views, request.json_path, request.trees, request.read});
         return status ? *status : report_error("", status.error());
     }
     const auto criterion = parse_criterion(request.criterion, request.read);

@@ -61,9 +61,10 @@ void kinematic(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     for (const Solid& b : views())
         for (const Solid& k : objects()) {
             const Faceted first = faceted(b.corners), second = faceted(k.corners);
-            const Mean mean = mean_over_rotations(seed++, effort(options, 256), [&](const glm::dmat3& turn) {
-                return meeting_volume(first, second, turn);
-            });
+            // Thin bodies spread more.
+            const Mean mean =
+                mean_over_rotations(seed++, effort(options, first.volume > 0.0 ? 256 : 1024),
+                                    [&](const glm::dmat3& turn) { return meeting_volume(first, second, turn); });
             const std::string pair = std::string(b.name) + " and " + k.name;
             rows.push_back(row("mean volume of the sum of " + pair, "theory.md (1)",
                                measure::kinematic_measure(b.volumes, k.volumes), mean));
