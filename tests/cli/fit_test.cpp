@@ -281,6 +281,16 @@ TEST_SUITE("cli/fit") {
             CHECK(number(bound, "lower_bound") <= number(bound, "value") * (1.0 + 1e-12));
             CHECK(number(bound, "test_nanoseconds") > 0.0);
         }
+        // Each view counts at most once, and a bound in another is never seen more often.
+        for (const auto& bound : mesh.at("bounds")) CHECK(number(bound, "passed") <= 4096.0);
+        CHECK(number(mesh.at("bounds")[2], "passed") <= number(mesh.at("bounds")[0], "passed") * 1.02);
+        CHECK(number(mesh.at("bounds")[5], "passed") > 0.0);
+        const CliRun own = run_cli("fit --bounds all --directions '1,0,0;0,1,0;0,0,1;1,1,0' --json -" + box);
+        REQUIRE(own.status == 0);
+        CHECK(own.json().at("meshes")[0].at("bounds")[6].at("bound") == "own 8-DOP");
+        CHECK(run_cli("fit --bounds all --directions '1,0;2' " + box).status == 2);
+        CHECK(run_cli("fit --bounds all --directions '1,0,0;0,1,0' " + box).err.find("plane") != std::string::npos);
+        CHECK(run_cli("fit --bounds all --directions '1,0,0;0,1,0;0,0,nan' " + box).status == 2);
         // 4 × 2 × 1: the box itself, and the ball around it.
         CHECK(number(mesh.at("bounds")[2], "value") == doctest::Approx(28.0).epsilon(1e-5));
         CHECK(number(mesh.at("bounds")[0], "value") == doctest::Approx(4.0 * 3.14159265 * 21.0 / 4.0).epsilon(1e-6));
@@ -289,5 +299,20 @@ TEST_SUITE("cli/fit") {
         const auto best = costly.json().at("meshes")[0].at("best");
         CHECK(best != "sphere");
         CHECK(best != "aligned box");
+    }
+
+    TEST_CASE(
+        "--views --trees: trees for a path's directions see what plain ones see, and say how many nodes it takes") {
+        const std::string path = file("path.json", R"([{"position": [0, 2, 0], "forward": [1, 0, 0]},)"
+                                                   R"( {"position": [20, 2, 5], "forward": [0, -0.1, 1]}])");
+        const CliRun run = run_cli("fit --views" + path + " --trees town --json -");
+        REQUIRE(run.status == 0);
+        const auto report = run.json();
+        for (const auto& weight : report.at("weights")) CHECK(weight.get<double>() < 2.0);
+        const auto scene = report.at("scenes")[0];
+        CHECK(number(scene, "plain_nodes") > 100.0);
+        CHECK(number(scene, "directed_nodes") > 100.0);
+        CHECK(number(scene, "directed_seen") == doctest::Approx(number(scene, "plain_seen")).epsilon(1e-3));
+        CHECK(run_cli("fit --views" + path + " --trees nowhere.glb").status == 2);
     }
 }

@@ -94,6 +94,21 @@ TEST_SUITE("cli/radiosity") {
         CHECK(contents_of(picture).substr(1, 3) == "PNG");
     }
 
+    TEST_CASE("--light-field draws from stored lines, and says how far that is from the scene's own picture") {
+        const std::string picture = scratch().file("lines.png");
+        const std::string room = "radiosity room --edge 0.5 --lines 300000 --json -";
+        const CliRun run = run_cli(room + " --stored-lines 200000 --light-field '" + picture + "'");
+        REQUIRE(run.status == 0);
+        const auto field = run.json().at("light_field");
+        CHECK(field.at("lines").get<double>() == doctest::Approx(200000.0).epsilon(0.15));
+        CHECK(field.at("crossings").get<double>() > field.at("lines").get<double>());
+        CHECK(field.at("relative_error").get<double>() < 0.3);
+        CHECK(field.at("color_error").get<double>() < 0.03);
+        CHECK(contents_of(picture).substr(1, 3) == "PNG");
+        CHECK(run_cli(room + " --stored-lines 0").status == 2);
+        CHECK(run_cli(room).json().at("light_field") == nullptr);
+    }
+
     TEST_CASE("lines: every way to draw them with its figures, and the choice") {
         const CliRun run = run_cli("lines " + box(kGlowing) + " --blocks 2 --repeats 3 --json -");
         CHECK(run.status == 0);

@@ -4,19 +4,18 @@
 #include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/fit/fit.hpp>
-#include <crofton/geometry/trigonometry.hpp>
 #include <crofton/study/ball_given_ancestors.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 
+#include "ancestor_directions.hpp"
 #include "direction_cells.hpp"
 
 namespace crofton::study {
 namespace {
 
 using std::numbers::pi;
-constexpr std::size_t kDirections = 1024;
 
 struct Cell {
     glm::dvec3 center;
@@ -27,27 +26,8 @@ struct Cell {
 
 class BallSearch {
   public:
-    BallSearch(std::span<const glm::dvec3> points, std::span<const ConvexBody> ancestors) : points_(points) {
-        for (std::size_t i = 0; i < kDirections; ++i) {
-            // Even heights, longitudes by the golden angle.
-            const double z = 2.0 * (static_cast<double>(i) + 0.5) / kDirections - 1.0;
-            const double turns = static_cast<double>(i) * 0.6180339887498949;
-            const glm::dvec2 circle = cosine_sine(2.0 * pi * (turns - std::floor(turns)));
-            const double r = std::sqrt(1.0 - z * z);
-            normals_.push_back({r * circle.x, r * circle.y, z});
-            double least = std::numeric_limits<double>::infinity();
-            for (const ConvexBody& body : ancestors) least = std::min(least, support(body, normals_.back()));
-            ancestors_.push_back(least);
-        }
-    }
-
-    [[nodiscard]] bool object_is_inside() const {
-        for (std::size_t i = 0; i < normals_.size(); ++i)
-            for (const glm::dvec3& p : points_)
-                if (glm::dot(p, normals_[i]) > ancestors_[i] + 1e-9 * (std::abs(ancestors_[i]) + glm::length(p)))
-                    return false;
-        return true;
-    }
+    BallSearch(std::span<const glm::dvec3> points, const AncestorDirections& directions)
+        : points_(points), normals_(directions.normals), ancestors_(directions.limits) {}
 
     [[nodiscard]] double radius_at(const glm::dvec3& center) const {
         double r = 0.0;
@@ -124,8 +104,8 @@ class BallSearch {
 
   private:
     std::span<const glm::dvec3> points_;
-    Vector<glm::dvec3> normals_;
-    Vector<double> ancestors_;
+    const Vector<glm::dvec3>& normals_;
+    const Vector<double>& ancestors_;
     double dropped_ = std::numeric_limits<double>::infinity();
 };
 
@@ -139,8 +119,9 @@ Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> poin
     if (auto valid = validate_bodies(ancestors); !valid) return tl::unexpected(valid.error());
     const auto least = fit::minimal_sphere(points);
     if (!least) return tl::unexpected(least.error());
-    BallSearch search(points, ancestors);
-    if (!search.object_is_inside())
+    const AncestorDirections directions(ancestors);
+    BallSearch search(points, directions);
+    if (!directions.contain(points))
         return fail(ErrorCode::invalid_argument, kNoItem,
                     "ball given ancestors: the object is not inside its ancestors' bounds");
     BallGivenAncestors result;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/mesh.hpp>
+#include <crofton/geometry/predicates.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/k_dop.hpp>
@@ -51,6 +52,15 @@ glm::dmat3 turned(const glm::dmat3& axes, const glm::dvec3& by) {
     result[1] = glm::normalize(result[1] - glm::dot(result[0], result[1]) * result[0]);
     result[2] = glm::cross(result[0], result[1]);
     return result;
+}
+
+bool contains(const convex::Hull& hull, std::span<const glm::dvec3> points) {
+    const auto indices = hull.triangles();
+    const auto corner = [&](std::size_t i) { return glm::dvec3(hull.vertices()[indices[i]]); };
+    for (std::size_t t = 0; t < indices.size(); t += 3)
+        for (const glm::dvec3& p : points)
+            if (orientation(corner(t), corner(t + 1), corner(t + 2), p) < 0) return false;
+    return true;
 }
 
 }  // namespace
@@ -142,20 +152,19 @@ Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const 
     return best;
 }
 
-cull::Verdict classify(const Frustum& frustum, std::span<const glm::dvec3> corners) {
-    bool inside = true;
-    for (const Plane& plane : frustum.view()) {
-        bool all_out = true;
-        for (const glm::dvec3& p : corners) {
-            const glm::dvec3 d = p - frustum.origin;
-            const double value = glm::dot(plane.normal, d) + plane.offset;
-            const double slack = 1e-9 * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) + std::abs(plane.offset));
-            all_out = all_out && value < -slack;
-            inside = inside && value > slack;
-        }
-        if (all_out) return cull::Verdict::outside;
+Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> points) {
+    if (points.empty()) return fail(ErrorCode::empty, kNoItem, "k-DOP: no points");
+    double size = 0.0;
+    for (std::size_t i = 0; i < dop.low.size(); ++i)
+        size = std::max({size, std::abs(dop.low[i]), std::abs(dop.high[i])});
+    for (double pad = 0x1p-22 * size;; pad *= 2.0) {
+        KDop grown{dop.directions, dop.low, dop.high, {}};
+        for (double& low : grown.low) low -= pad;
+        for (double& high : grown.high) high += pad;
+        find_corners(grown);
+        auto hull = convex::Hull::build(Vector<glm::vec3>(grown.corners.begin(), grown.corners.end()));
+        if (!hull || contains(*hull, points) || !(pad < size)) return hull;
     }
-    return inside ? cull::Verdict::inside : cull::Verdict::straddling;
 }
 
 }  // namespace crofton::study

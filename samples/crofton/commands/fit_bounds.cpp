@@ -21,10 +21,15 @@
 namespace crofton::cli {
 namespace {
 
+constexpr std::uint64_t kViews = 4096;
+
 struct Candidate {
     std::string kind;
     double value = 0.0, lower_bound = 0.0;
-    double test_ns = 0.0, cost_ns = 0.0;
+    double share = 0.0;      // predicted: of the queries that hit the region
+    std::size_t passed = 0;  // views in which the bound is not outside
+    double test_ns = 0.0;    // C_v: of a test
+    double cost_ns = 0.0;    // (N_v C_v + N_p C_p) / N_v
 };
 
 struct MeshBounds {
@@ -44,7 +49,7 @@ std::vector<Frustum> views_around(const Sphere& sphere, double region) {
     prototype.near_distance = 0.01 * sphere.radius;
     prototype.far_distance = 2.0 * reach;
     const Aabb room{sphere.center - reach, sphere.center + reach};
-    for (std::uint64_t i = 0; i < 512; ++i)
+    for (std::uint64_t i = 0; i < kViews; ++i)
         if (const auto frustum = frustum_of(sampling::random_camera(prototype, room, points.at<6>(i))))
             views.push_back(*frustum);
     return views;
@@ -83,8 +88,10 @@ Result<MeshBounds> bounds_of(const std::string& file, const BoundsRun& run) {
     const double pass_ns = run.triangle_cost * static_cast<double>(result.triangles);
     const auto add = [&](std::string kind, double value, double lower_bound,
                          const std::function<cull::Verdict(const Frustum&)>& test) {
-        Candidate c{std::move(kind), value, lower_bound, nanoseconds(views, test), 0.0};
-        c.cost_ns = c.test_ns + std::min(1.0, value / region) * pass_ns;
+        Candidate c{std::move(kind), value, lower_bound, std::min(1.0, value / region)};
+        for (const Frustum& view : views) c.passed += test(view) != cull::Verdict::outside;
+        c.test_ns = nanoseconds(views, test);
+        c.cost_ns = c.test_ns + pass_ns * static_cast<double>(c.passed) / static_cast<double>(views.size());
         if (!result.candidates.empty() && c.cost_ns < result.candidates[result.best].cost_ns)
             result.best = result.candidates.size();
         result.candidates.push_back(std::move(c));
@@ -95,12 +102,19 @@ Result<MeshBounds> bounds_of(const std::string& file, const BoundsRun& run) {
     const double aligned_value = run.criterion(measure::intrinsic_volumes_of_box(*axes));
     add("aligned box", aligned_value, aligned_value, [&](const Frustum& v) { return cull::classify(v, aligned); });
     add("oriented box", box->value, box->lower_bound, [&](const Frustum& v) { return cull::classify(v, box->box); });
-    for (const std::uint32_t k : {14u, 18u, 26u}) {
-        const auto dop = study::best_k_dop(points, *study::k_dop_directions(k), run.criterion);
-        if (!dop) continue;  // flat
-        add(std::to_string(k) + "-DOP", dop->value, dop->lower_bound,
-            [&](const Frustum& v) { return study::classify(v, dop->bound.corners); });
-    }
+    const auto add_k_dop = [&](std::string kind, std::span<const glm::dvec3> directions) -> Result<void> {
+        const auto dop = study::best_k_dop(points, directions, run.criterion);
+        if (!dop) return tl::unexpected(dop.error());
+        const auto body = study::hull_around(dop->bound, points);
+        if (!body) return tl::unexpected(body.error());
+        add(std::move(kind), dop->value, dop->lower_bound, [&](const Frustum& v) { return cull::classify(v, *body); });
+        return {};
+    };
+    for (const std::uint32_t k : {14u, 18u, 26u})
+        static_cast<void>(add_k_dop(std::to_string(k) + "-DOP", *study::k_dop_directions(k)));  // not of what is flat
+    if (!run.directions.empty())
+        if (auto added = add_k_dop("own " + std::to_string(2 * run.directions.size()) + "-DOP", run.directions); !added)
+            return fail(added.error().code, added.error().item, "--directions: " + added.error().message);
     return result;
 }
 
@@ -111,11 +125,14 @@ Json to_json(const MeshBounds& mesh) {
                         {"value", c.value},
                         {"lower_bound", c.lower_bound},
                         {"over_hull", mesh.hull > 0.0 ? Json(c.value / mesh.hull - 1.0) : Json(nullptr)},
+                        {"predicted_share", c.share},
+                        {"passed", c.passed},
                         {"test_nanoseconds", c.test_ns},
                         {"cost_nanoseconds", c.cost_ns}});
     return {{"file", mesh.file},
             {"triangles", mesh.triangles},
             {"hull", mesh.hull},
+            {"views", kViews},
             {"best", mesh.candidates[mesh.best].kind},
             {"bounds", std::move(list)}};
 }
@@ -124,10 +141,10 @@ void print(const MeshBounds& mesh, bool only_best) {
     for (std::size_t i = 0; i < mesh.candidates.size(); ++i) {
         if (only_best && i != mesh.best) continue;
         const Candidate& c = mesh.candidates[i];
-        std::printf("%-24s %9zu %-13s %14.7g %9.2f%% %9.2f%% %9.1f %12.2f%s\n",
+        std::printf("%-24s %9zu %-13s %14.7g %9.2f%% %9.2f%% %8zu %9.1f %12.2f%s\n",
                     mesh.file.substr(mesh.file.find_last_of('/') + 1).c_str(), mesh.triangles, c.kind.c_str(), c.value,
-                    100.0 * (c.value / mesh.hull - 1.0), 100.0 * (1.0 - c.lower_bound / c.value), c.test_ns, c.cost_ns,
-                    i == mesh.best ? "  best" : "");
+                    100.0 * (c.value / mesh.hull - 1.0), 100.0 * (1.0 - c.lower_bound / c.value), c.passed, c.test_ns,
+                    c.cost_ns, i == mesh.best ? "  best" : "");
     }
 }
 
@@ -137,10 +154,11 @@ Result<int> run_fit_bounds(const BoundsRun& run) {
     Json list = Json::array();
     if (run.json_path != "-")
         std::printf(
-            "criterion %s; queries that hit a ball of %g times the mesh's radius; %g ns a triangle\n"
-            "%-24s %9s %-13s %14s %10s %10s %9s %12s\n",
-            run.criterion_name.c_str(), run.region, run.triangle_cost, "mesh", "triangles", "bound", "value",
-            "over hull", "gap <=", "C_v ns", "cost ns");
+            "criterion %s; %zu views from within %g times the mesh's radius; %g ns a triangle; cost = (N_v C_v + N_p "
+            "C_p) "
+            "/ N_v\n%-24s %9s %-13s %14s %10s %10s %8s %9s %12s\n",
+            run.criterion_name.c_str(), std::size_t{kViews}, 2.0 * run.region, run.triangle_cost, "mesh", "triangles",
+            "bound", "value", "over hull", "gap <=", "N_p", "C_v ns", "cost ns");
     for (const std::string& file : run.files) {
         const auto mesh = bounds_of(file, run);
         if (!mesh) return tl::unexpected(mesh.error());

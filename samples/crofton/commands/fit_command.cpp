@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // crofton fit: the best oriented box around each mesh, with the proof that it is.
+#include <algorithm>
 #include <chrono>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
@@ -23,11 +24,28 @@ struct Request {
     std::vector<std::string> files;
     std::string criterion = "perimeter", quality = "exact", json_path, svg_path;
     double budget_seconds = 0.0;  // 0: none
-    bool planar = false;
-    std::string bounds, views;
+    bool planar = false, trees = false;
+    std::string bounds, views, directions;
     double region = 20.0, triangle_cost = 1.0;
     ReadOptions read;
 };
+
+// "x,y,z;x,y,z;…"; none of an empty text.
+Result<std::vector<glm::dvec3>> parse_directions(const std::string& text) {
+    std::vector<glm::dvec3> directions;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(';', at), text.size());
+        const std::string one = text.substr(at, end - at);
+        glm::dvec3 d;
+        int used = 0;
+        if (std::sscanf(one.c_str(), "%lf,%lf,%lf%n", &d.x, &d.y, &d.z, &used) != 3 ||
+            static_cast<std::size_t>(used) != one.size())
+            return fail(ErrorCode::parse, directions.size(), "--directions: " + one + " is not x,y,z");
+        directions.push_back(d);
+        at = end + 1;
+    }
+    return directions;
+}
 
 class Stopwatch {
   public:
@@ -109,7 +127,8 @@ int run(const Request& request) {
         return status ? *status : report_error("", status.error());
     }
     if (!request.views.empty()) {
-        const auto status = run_fit_views({request.files, request.views, request.json_path});
+        const auto status =
+            run_fit_views({request.files, request.views, request.json_path, request.trees, request.read});
         return status ? *status : report_error("", status.error());
     }
     const auto criterion = parse_criterion(request.criterion, request.read);
@@ -117,9 +136,11 @@ int run(const Request& request) {
     if (!request.bounds.empty()) {
         if (!request.svg_path.empty())
             return report_error("", Error{ErrorCode::invalid_argument, kNoItem, "fit: --bounds draws no --svg"});
+        const auto directions = parse_directions(request.directions);
+        if (!directions) return report_error("", directions.error());
         const auto status =
             run_fit_bounds({request.files, request.criterion, request.json_path, *criterion, request.bounds == "best",
-                            request.region, request.triangle_cost, request.read});
+                            request.region, request.triangle_cost, *directions, request.read});
         return status ? *status : report_error("", status.error());
     }
     std::vector<FittedMesh> meshes;
@@ -172,10 +193,15 @@ void add_fit_command(CommandLine& line) {
     command.option("--triangle-cost", request->triangle_cost, "--bounds: nanoseconds for a triangle that is passed on")
         .not_negative()
         .show_default();
+    command.option("--directions", request->directions,
+                   "--bounds: a k-DOP of these too, as x,y,z;x,y,z;...: one of each pair of opposite faces");
     command.option(
         "--views", request->views,
         "Boxes for the directions of a recorded camera path (the JSON of `crofton frames`), beside those for "
         "uniform ones, and the improper tests of both");
+    command.flag("--trees", request->trees,
+                 "--views: the files are scenes; the nodes that the path visits in trees for its directions and in "
+                 "plain ones");
     command.flag(
         "--planar", request->planar,
         "Polygons (.poly, .json, .geojson, .wad): the best rectangles, disc and triangles, by perimeter and by "
@@ -189,6 +215,7 @@ void add_fit_command(CommandLine& line) {
         "  crofton fit bunny.obj --criterion frustum:1.0472,1.7778,0.1,1000 --json -\n"
         "  crofton fit *.obj --criterion rays:10 --quality tight --svg boxes.svg\n"
         "  crofton fit *.obj --bounds best --criterion frustum:1.0472,1.7778,0.1,1000\n"
+        "  crofton fit bunny.obj --bounds all --directions '1,0,0;0,1,0;0,0,1;1,1,0;1,-1,0'\n"
         "  crofton fit --planar counties.poly --svg bounds.svg");
     add_read_options(command, request->read);
     command.action([request] { return run(*request); });

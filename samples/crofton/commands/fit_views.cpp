@@ -6,12 +6,12 @@
 #include <crofton/cull/classify.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/sampling/sampling.hpp>
-#include <crofton/study/k_dop.hpp>
 #include <crofton/study/query_distribution.hpp>
 #include <cstdio>
 #include <glm/geometric.hpp>
 
 #include "commands.hpp"
+#include "fit_view_trees.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "pipeline/camera_path.hpp"
@@ -67,6 +67,24 @@ class Faces {
     double area_ = 0.0;
 };
 
+// What the view's planes say of the hull of these corners, which may be many or flat. In double: a corner within 1e-9
+// of a plane (of its distance from the view's origin) is rejected by it no more than contained.
+cull::Verdict by_planes(const Frustum& frustum, std::span<const glm::dvec3> corners) {
+    bool inside = true;
+    for (const Plane& plane : frustum.view()) {
+        bool all_out = true;
+        for (const glm::dvec3& p : corners) {
+            const glm::dvec3 d = p - frustum.origin;
+            const double value = glm::dot(plane.normal, d) + plane.offset;
+            const double slack = 1e-9 * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) + std::abs(plane.offset));
+            all_out = all_out && value < -slack;
+            inside = inside && value > slack;
+        }
+        if (all_out) return cull::Verdict::outside;
+    }
+    return inside ? cull::Verdict::inside : cull::Verdict::straddling;
+}
+
 struct Counted {
     std::uint64_t plain = 0, directed = 0;
 };
@@ -85,7 +103,7 @@ Counted count(const std::vector<glm::dvec3>& hull, const study::DirectedFit& dir
         const Faces::Place place = faces.at(u[0], u[1], u[2]);
         const glm::dvec3 shift = place.point + reach * sampling::ball_point({u[3], u[4], u[5]}) - directed.box.center;
         for (std::size_t k = 0; k < hull.size(); ++k) moved[k] = hull[k] + shift;
-        const cull::Verdict truth = study::classify(*place.frustum, moved);
+        const cull::Verdict truth = by_planes(*place.frustum, moved);
         const auto misled = [&](Obb box) {
             box.center += shift;
             return cull::classify(*place.frustum, box, cull::CullMode::conservative) != truth;
@@ -105,6 +123,8 @@ Result<int> run_fit_views(const ViewsRun& run) {
     if (!distribution)
         return fail(distribution.error().code, distribution.error().item,
                     run.views_path + ": " + distribution.error().message);
+    if (run.trees)
+        return run_fit_view_trees({run.files, run.views_path, run.json_path, path->cameras, *distribution, run.read});
     const Faces faces(path->cameras);
     Json list = Json::array();
     const glm::dvec3 mean(distribution->mean_cosine({1, 0, 0}), distribution->mean_cosine({0, 1, 0}),

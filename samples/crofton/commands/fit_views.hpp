@@ -5,12 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "read_options.hpp"
+
 namespace crofton::cli {
 
 struct ViewsRun {
     std::vector<std::string> files;
     std::string views_path;  // as pipeline::load_camera_path takes it
     std::string json_path;
+    bool trees = false;  // the files are scenes: see run_fit_view_trees
+    ReadOptions read = {};
 };
 
 // For each mesh as it stands in its file: the box that uniform directions ask for beside the one that the path's do;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "assets/flat_scene.hpp"
 #include "commands.hpp"
@@ -14,6 +15,7 @@
 #include "json/json.hpp"
 #include "pipeline/camera_path.hpp"
 #include "progress_bar.hpp"
+#include "radiosity_light_field.hpp"
 #include "radiosity_output.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
@@ -25,8 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     ReadOptions read;
-    std::string scene, method = "global", out, png, json, checkpoint, map;
-    std::uint64_t lines = 20'000'000, seed = 1;
+    std::string scene, method = "global", out, png, light_field, json, checkpoint, map;
+    std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22;
     double error = 0.0, edge = 0.0, sky = 1.0, sun = 3.0, exposure = 0.0;
     unsigned threads = 1;
 };
@@ -121,7 +123,11 @@ Result<int> run(const Options& options) {
     if (auto solved = solve(options, *solver, pool); !solved) return tl::unexpected(solved.error());
     const bool cut_short = interrupted();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    const TriangleMesh picture = baked(*lit, *solver, options.exposure);
+    const TriangleMesh light = lit_mesh(*lit, *solver);
+    const float exposure =
+        options.exposure > 0.0 ? static_cast<float>(options.exposure) : automatic_exposure(*lit, *solver);
+    TriangleMesh picture = light;
+    for (glm::vec3& color : picture.colors) color = compressed(exposure * color);
     if (!options.out.empty())
         if (auto written = write_glb(options.out, picture); !written) return tl::unexpected(written.error());
     if (!options.png.empty()) {
@@ -133,15 +139,25 @@ Result<int> run(const Options& options) {
     }
     const auto tracer = radiosity::LineTracer::build(lit->patches.mesh);
     if (!tracer) return tl::unexpected(tracer.error());
+    std::optional<LightFieldReport> field;
+    if (!options.light_field.empty()) {
+        const auto camera = camera_for(*source, options.seed);
+        if (!camera) return tl::unexpected(camera.error());
+        auto drawn = draw_light_field({light, *tracer, parameters->outside.sky, *camera, exposure, options.stored_lines,
+                                       options.seed, options.light_field},
+                                      pool);
+        if (!drawn) return tl::unexpected(drawn.error());
+        field = *drawn;
+    }
     const auto seen = radiosity::visibility_complexity(
         *tracer, radiosity::LineSource(tracer->bounds(), radiosity::LineMethod::walls, options.seed), 50);
-    glm::dvec3 light(0.0);
+    glm::dvec3 mean(0.0);
     double area = 0.0;
     for (std::size_t i = 0; i < lit->patches.count(); ++i) {
-        light += lit->patches.areas[i] * glm::dvec3(solver->radiosity()[i]);
+        mean += lit->patches.areas[i] * glm::dvec3(solver->radiosity()[i]);
         area += lit->patches.areas[i];
     }
-    light /= area;
+    mean /= area;
     const Json report = {
         {"scene", source->name},
         {"patches", lit->patches.count()},
@@ -154,8 +170,9 @@ Result<int> run(const Options& options) {
         {"relative_error", solver->relative_error()},
         {"unseen", solver->unseen()},
         {"bounces", solver->bounces_of_last_run()},
-        {"mean_radiosity", {light.x, light.y, light.z}},
+        {"mean_radiosity", {mean.x, mean.y, mean.z}},
         {"seconds", seconds},
+        {"light_field", field ? to_json(*field) : Json(nullptr)},
         {"visibility",
          {{"mean_crossings", seen.mean_crossings}, {"deviation", seen.deviation}, {"wasted", seen.wasted}}}};
     if (cut_short)
@@ -170,6 +187,7 @@ Result<int> run(const Options& options) {
     std::printf("%s: %zu patches, %llu runs, %llu lines in %.1f s, relative error %.3f %%\n", source->name.c_str(),
                 lit->patches.count(), static_cast<unsigned long long>(solver->runs()),
                 static_cast<unsigned long long>(solver->lines_traced()), seconds, 100.0 * solver->relative_error());
+    if (field) print(*field);
     return status;
 }
 
@@ -187,6 +205,7 @@ void add_radiosity_command(CommandLine& line) {
         "Examples:\n"
         "  crofton radiosity room --edge 0.2 --error 0.02 --out room.glb --png room.png\n"
         "  crofton radiosity town --lines 20000000 --checkpoint town.state --out town.glb\n"
+        "  crofton radiosity room --light-field lines.png --stored-lines 16000000\n"
         "  crofton radiosity level.wad --map MAP01 --method local --json -\n");
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
     const Option lines =
@@ -207,6 +226,14 @@ void add_radiosity_command(CommandLine& line) {
         .show_default();
     command.option("--out", options->out, "Write the lit scene as .glb").writable_file();
     command.option("--png", options->png, "Write a picture of it").writable_file();
+    command
+        .option("--light-field", options->light_field,
+                "Store global lines with the light along them, draw a picture from these lines alone, and say how far "
+                "it is from the scene's own")
+        .writable_file();
+    command.option("--stored-lines", options->stored_lines, "--light-field: about so many lines")
+        .whole_between(1, 1 << 28)
+        .show_default();
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
     command
         .option("--checkpoint", options->checkpoint, "Save after every run to this file; go on from it where it exists")

@@ -29,13 +29,6 @@ float luminance(const glm::vec3& c) {
     return glm::dot(c, glm::vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-// Reinhard et al., "Photographic tone reproduction for digital images", 2002, equation 4, on luminance, so that hues
-// stay; what then still exceeds 1 in a channel is cut.
-glm::vec3 compressed(const glm::vec3& light) {
-    const float l = luminance(light);
-    return glm::clamp(light * ((1.0f + l / (kWhite * kWhite)) / (1.0f + l)), 0.0f, 1.0f);
-}
-
 // How long edges may be where: `edge` around the middle of the scene's triangles, and beyond the three quarters of them
 // that are nearest ever longer, so that a town's countryside does not take the town's patches.
 struct EdgeLengths {
@@ -101,18 +94,6 @@ Vector<radiosity::Material> mean_materials(const LitScene& scene, std::span<cons
     return sums;
 }
 
-// The factor that brings the area's mean logarithm of light to kMiddle.
-float automatic_exposure(const LitScene& scene, const radiosity::Solver& solver) {
-    double sum = 0.0, area = 0.0;
-    for (std::size_t i = 0; i < scene.patches.count(); ++i) {
-        const double weight = scene.patches.areas[i] * solver.exposed_share(i);
-        const double light = static_cast<double>(luminance(glm::max(solver.radiosity()[i], glm::vec3(0.0f))));
-        sum += weight * std::log(light + 1e-6);
-        area += weight;
-    }
-    return area > 0.0 ? kMiddle / static_cast<float>(std::exp(sum / area)) : 1.0f;
-}
-
 }  // namespace
 
 Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
@@ -148,22 +129,38 @@ Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge) {
     return result;
 }
 
-TriangleMesh baked(const LitScene& scene, const radiosity::Solver& solver, double exposure) {
+float automatic_exposure(const LitScene& scene, const radiosity::Solver& solver) {
+    double sum = 0.0, area = 0.0;
+    for (std::size_t i = 0; i < scene.patches.count(); ++i) {
+        const double weight = scene.patches.areas[i] * solver.exposed_share(i);
+        const double light = static_cast<double>(luminance(glm::max(solver.radiosity()[i], glm::vec3(0.0f))));
+        sum += weight * std::log(light + 1e-6);
+        area += weight;
+    }
+    return area > 0.0 ? kMiddle / static_cast<float>(std::exp(sum / area)) : 1.0f;
+}
+
+TriangleMesh lit_mesh(const LitScene& scene, const radiosity::Solver& solver) {
     Vector<double> weights(scene.patches.count());
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = solver.exposed_share(i);
     const auto corners = radiosity::corner_values(scene.patches, solver.irradiance(), weights);
-    const float factor = exposure > 0.0 ? static_cast<float>(exposure) : automatic_exposure(scene, solver);
     TriangleMesh mesh;
     mesh.indices.resize(corners.size());
     std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
     for (std::size_t c = 0; c < corners.size(); ++c) {
         const std::uint32_t vertex = scene.patches.mesh.indices[c];
         mesh.positions.push_back(scene.patches.mesh.positions[vertex]);
-        const glm::vec3 light =
-            scene.emission[c / 3] + scene.patches.mesh.colors[vertex] * glm::max(corners[c], glm::vec3(0.0f));
-        mesh.colors.push_back(compressed(factor * light));
+        mesh.colors.push_back(scene.emission[c / 3] +
+                              scene.patches.mesh.colors[vertex] * glm::max(corners[c], glm::vec3(0.0f)));
     }
     return mesh;
+}
+
+// Reinhard et al., "Photographic tone reproduction for digital images", 2002, equation 4, on luminance, so that hues
+// stay; what then still exceeds 1 in a channel is cut.
+glm::vec3 compressed(const glm::vec3& light) {
+    const float l = luminance(light);
+    return glm::clamp(light * ((1.0f + l / (kWhite * kWhite)) / (1.0f + l)), 0.0f, 1.0f);
 }
 
 Result<void> write_glb(const std::string& path, const TriangleMesh& whole) {

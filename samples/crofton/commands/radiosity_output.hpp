@@ -21,10 +21,15 @@ inline constexpr float kMostReflectance = 0.9f;  // of white paint; light must e
 // that the scene has up to a few times its triangles, 50,000 at least, and longer far from where most of them are.
 [[nodiscard]] Result<LitScene> lit_scene(const assets::FlatScene& scene, double edge);
 
-// Three vertices a triangle in display-linear colours: (emission + reflectance · irradiance) · exposure, compressed so
-// that highlights keep some shape. exposure = 0: such that the scene's middle is mid-grey. Irradiance is interpolated
-// between patches, the reflectance is each triangle's own.
-[[nodiscard]] TriangleMesh baked(const LitScene& scene, const radiosity::Solver& solver, double exposure);
+// Three vertices a triangle, whose colours are what leaves there: emission + reflectance · irradiance. Irradiance is
+// interpolated between patches, the reflectance is each triangle's own.
+[[nodiscard]] TriangleMesh lit_mesh(const LitScene& scene, const radiosity::Solver& solver);
+
+// The factor that makes the scene's middle mid-grey: it brings the area's mean logarithm of light to 0.3.
+[[nodiscard]] float automatic_exposure(const LitScene& scene, const radiosity::Solver& solver);
+
+// Light into display-linear colours, such that highlights keep some shape.
+[[nodiscard]] glm::vec3 compressed(const glm::vec3& light);
 
 // Binary glTF with vertex colours and an unlit material (KHR_materials_unlit), in pieces that culling can tell apart.
 [[nodiscard]] Result<void> write_glb(const std::string& path, const TriangleMesh& mesh);

@@ -165,6 +165,16 @@ Body frustum_body(double tan_x, double tan_y, double near, double far, bool pers
     return body;
 }
 
+measure::IntrinsicVolumes frustum_volumes(double tan_x, double tan_y, double near, double far, bool perspective) {
+    Camera camera;
+    camera.projection = perspective ? Projection::perspective : Projection::orthographic;
+    camera.fov_y = 2.0 * std::atan(tan_y);
+    camera.height = 2.0 * tan_y;
+    camera.aspect = tan_x / tan_y;
+    camera.near_distance = near, camera.far_distance = far;
+    return *measure::intrinsic_volumes_of_frustum(camera);
+}
+
 Body moved(const Body& body, const RigidTransform& motion) {
     Body result = body;
     for (glm::dvec3& p : result.corners) p = transform(motion, p);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <crofton/geometry/box.hpp>
+#include <crofton/measure/measure.hpp>
 #include <crofton/sampling/sampling.hpp>
 
 namespace crofton::cli {
@@ -30,6 +31,8 @@ struct Body {
 [[nodiscard]] Body flat_body(std::vector<glm::dvec3> corners);  // a convex polygon
 // Half-tangents and depths: eye at the origin, looking along −z. Orthographic: `tan_x`, `tan_y` are half extents.
 [[nodiscard]] Body frustum_body(double tan_x, double tan_y, double near, double far, bool perspective);
+[[nodiscard]] measure::IntrinsicVolumes frustum_volumes(double tan_x, double tan_y, double near, double far,
+                                                        bool perspective);  // of the same
 [[nodiscard]] Body moved(const Body& body, const RigidTransform& motion);
 [[nodiscard]] double radius_about_center(const Body& body);  // of a ball around center_of(body)
 [[nodiscard]] glm::dvec3 center_of(const Body& body);

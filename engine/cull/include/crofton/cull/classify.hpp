@@ -14,6 +14,10 @@
 #include <limits>
 #include <span>
 
+namespace crofton::convex {
+class Hull;
+}
+
 namespace crofton::cull {
 
 // One bound, or many, against a view: outside, straddling, inside, exactly.
@@ -39,6 +43,10 @@ enum class CullMode : std::uint8_t {
 // include some other than 0 below 1e-60 in magnitude may be `straddling` where no plane rejects it but an edge would.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, CullMode mode = CullMode::exact);
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Sphere& sphere, CullMode mode = CullMode::exact);
+
+// The same for a convex hull, as where k-DOPs or other bounds of the user's are kept, in the frustum's coordinates:
+// exact for its vertices. A microsecond where planes leave it open: for bounds that are tested once, not for lists.
+[[nodiscard]] Verdict classify(const Frustum& frustum, const convex::Hull& hull, CullMode mode = CullMode::exact);
 
 // As above for many boxes: writes verdicts[i] for boxes[i]. Allocates nothing; may run on any thread.
 // Requires verdicts.size() == boxes.size().

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // k-DOPs: convex polytopes with faces across k/2 fixed directions, as bounds beside boxes and spheres.
 #pragma once
+#include <crofton/convex/body.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/memory.hpp>
-#include <crofton/cull/classify.hpp>
 #include <crofton/measure/measure.hpp>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -41,9 +41,8 @@ struct BestKDop {
 [[nodiscard]] Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
                                           const measure::Criterion& criterion);
 
-// Conservative culling of any convex body by its corners: `outside` iff one plane of the view rejects all of them,
-// `inside` iff none rejects any; in double, a corner within 1e-9 of a plane (of its distance from the view's origin)
-// counting as in front of it for `outside`, as behind it for `inside`.
-[[nodiscard]] cull::Verdict classify(const Frustum& frustum, std::span<const glm::dvec3> corners);
+// The k-DOP as a body that culling takes (cull::classify): its corners rounded to floats, moved out by a few 2^-22 of
+// their size until the hull contains every point, in exact arithmetic. Errors: no points, as convex::Hull::build.
+[[nodiscard]] Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> points);
 
 }  // namespace crofton::study

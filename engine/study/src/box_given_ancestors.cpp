@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+// Branch and bound over the orientations of a box. The derivation is in docs/notes/measure.md.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/fit/fit.hpp>
+#include <crofton/geometry/mesh.hpp>
+#include <crofton/study/bound_given_ancestors.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "ancestor_directions.hpp"
+#include "direction_cells.hpp"
+
+namespace crofton::study {
+namespace {
+
+using std::numbers::pi;
+
+// The rotation of Rodrigues vector g = tan(angle / 2) · axis.
+glm::dmat3 rotation_of(const glm::dvec3& g) {
+    glm::dmat3 result;
+    const double scale = 2.0 / (1.0 + glm::dot(g, g));
+    for (int k = 0; k < 3; ++k) {
+        glm::dvec3 e(0.0);
+        e[k] = 1.0;
+        const glm::dvec3 once = glm::cross(g, e);
+        result[k] = e + scale * (once + glm::cross(g, once));
+    }
+    return result;
+}
+
+// The Rodrigues vector of rotation_of(g) · rotation_of(from)⁻¹. A projective map of g: cubes become polytopes whose
+// corners are the images of theirs, as long as 1 + dot(g, from) > 0.
+glm::dvec3 turn_between(const glm::dvec3& from, const glm::dvec3& g) {
+    return (g - from - glm::cross(g, from)) / (1.0 + glm::dot(g, from));
+}
+
+glm::dvec3 corner_of(const glm::dvec3& center, double half, unsigned corner) {
+    return center + half * glm::dvec3(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
+}
+
+struct Cell {
+    glm::dvec3 center;  // Rodrigues
+    double half;
+    double bound;
+    std::uint64_t age;
+};
+
+class BoxSearch {
+  public:
+    // Points relative to `origin`, which lies in their hull.
+    BoxSearch(Vector<glm::dvec3> points, const glm::dvec3& origin, const AncestorDirections& directions)
+        : points_(std::move(points)), normals_(directions.normals) {
+        for (std::size_t i = 0; i < normals_.size(); ++i)
+            limits_.push_back(directions.limits[i] - glm::dot(normals_[i], origin));
+        // Σ nnᵀ / N: its largest row sum of magnitudes is no less than its largest eigenvalue, which is no less than
+        // the mean square of dot(n, u) for any unit vector u.
+        glm::dmat3 moments(0.0);
+        for (const glm::dvec3& n : normals_)
+            for (int k = 0; k < 3; ++k) moments[k] += n[k] * n / static_cast<double>(normals_.size());
+        double largest = 0.0;
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, std::abs(moments[k].x) + std::abs(moments[k].y) + std::abs(moments[k].z));
+        mean_cosine_ = std::sqrt(largest);
+    }
+
+    [[nodiscard]] double measure_of(const glm::dmat3& axes) const {
+        const Supports s = supports(axes);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < normals_.size(); ++i) {
+            double h = 0.0;
+            for (int k = 0; k < 3; ++k) {
+                const double along = glm::dot(normals_[i], axes[k]);
+                h += along * glm::dot(axes[k], along >= 0.0 ? s.high[k] : s.low[k]);
+            }
+            sum += std::min(limits_[i], h);
+        }
+        return 4.0 * pi * sum / static_cast<double>(normals_.size());
+    }
+
+    // Below the measure of the tight box of every orientation in the cell.
+    [[nodiscard]] double bound(const glm::dvec3& center, double half) const {
+        const glm::dmat3 axes = rotation_of(center);
+        const Supports s = supports(axes);
+        std::array<glm::dvec3, 8> turns;
+        double longest = 0.0;
+        for (unsigned c = 0; c < 8; ++c) {
+            turns[c] = turn_between(center, corner_of(center, half, c));
+            longest = std::max(longest, glm::length(turns[c]));
+        }
+        const double angle = 2.0 * arc_tangent(longest, 1.0);
+        const double flip = sine(std::min(0.5 * pi, angle));
+        std::array<double, 8> sums{};
+        for (std::size_t i = 0; i < normals_.size(); ++i) {
+            const glm::dvec3& n = normals_[i];
+            double base = 0.0;
+            glm::dvec3 slope(0.0);
+            for (int k = 0; k < 3; ++k) {
+                const double along = glm::dot(n, axes[k]);
+                // The angle to the face may pass 90 degrees within the cell: the term is at least 0.
+                if (std::abs(along) <= flip) continue;
+                const glm::dvec3& p = along >= 0.0 ? s.high[k] : s.low[k];
+                const double out = glm::dot(p, axes[k]);
+                base += along * out;
+                // d dot(v, axis) = 2 dot(turn × axis, v) = 2 dot(turn, axis × v)
+                slope += 2.0 * (along * glm::cross(axes[k], p) + out * glm::cross(axes[k], n));
+            }
+            for (unsigned c = 0; c < 8; ++c) sums[c] += std::min(limits_[i], base + glm::dot(slope, turns[c]));
+        }
+        const double mean = *std::min_element(sums.begin(), sums.end()) / static_cast<double>(normals_.size());
+        return std::max(0.0, 4.0 * pi * (mean - remainder(s, longest, angle)));
+    }
+
+    void run(const BoxGivenAncestorsOptions& options, glm::dmat3& best, BoxGivenAncestors& result) const {
+        const auto lower = [](const Cell& a, const Cell& b) {
+            return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
+        };
+        double dropped = std::numeric_limits<double>::infinity();
+        Vector<Cell> heap;
+        const auto add = [&](const glm::dvec3& center, double half, double above) {
+            const glm::dmat3 axes = rotation_of(center);
+            if (const double value = measure_of(axes); value < result.value) result.value = value, best = axes;
+            const double below = std::max(above, bound(center, half));
+            ++result.cells;
+            if (below >= result.value) {
+                dropped = std::min(dropped, below);
+                return;
+            }
+            heap.push_back({center, half, below, result.cells});
+            std::push_heap(heap.begin(), heap.end(), lower);
+        };
+        add(glm::dvec3(0.0), std::sqrt(2.0) - 1.0 + 1e-12, 0.0);
+        while (!heap.empty() && result.cells < options.max_cells &&
+               heap.front().bound < result.value * (1.0 - options.tolerance)) {
+            std::pop_heap(heap.begin(), heap.end(), lower);
+            const Cell cell = heap.back();
+            heap.pop_back();
+            for (unsigned c = 0; c < 8; ++c)
+                add(corner_of(cell.center, 0.5 * cell.half, c), 0.5 * cell.half, cell.bound);
+        }
+        result.lower_bound = std::min({result.value, dropped, heap.empty() ? result.value : heap.front().bound});
+    }
+
+  private:
+    // The points farthest along each axis, and against it.
+    struct Supports {
+        std::array<glm::dvec3, 3> high, low;
+    };
+    [[nodiscard]] Supports supports(const glm::dmat3& axes) const {
+        Supports s;
+        s.high.fill(points_[0]);
+        s.low.fill(points_[0]);
+        for (int k = 0; k < 3; ++k) {
+            const std::size_t at = static_cast<std::size_t>(k);
+            double high = -std::numeric_limits<double>::infinity(), low = -high;
+            for (const glm::dvec3& p : points_) {
+                const double along = glm::dot(axes[k], p);
+                if (along > high) high = along, s.high[at] = p;
+                if (along < low) low = along, s.low[at] = p;
+            }
+        }
+        return s;
+    }
+
+    // What a mean over the directions may lose by taking linear terms for dot(n, a) · dot(p, a) while a turns by up to
+    // `angle`: half the square of the angle times the second derivative, of which each of its four parts is at most
+    // |p| · |dot(n, u)| for some unit u; and by taking 2 tan(angle/2) for the angle.
+    [[nodiscard]] double remainder(const Supports& s, double longest, double angle) const {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) sum += std::max(glm::length(s.high[k]), glm::length(s.low[k]));
+        return sum * mean_cosine_ * (2.0 * angle * angle + 2.0 * (2.0 * longest - angle));
+    }
+
+    Vector<glm::dvec3> points_;
+    const Vector<glm::dvec3>& normals_;
+    Vector<double> limits_;
+    double mean_cosine_ = 1.0;
+};
+
+}  // namespace
+
+Result<BoxGivenAncestors> box_given_ancestors(std::span<const glm::dvec3> points, std::span<const ConvexBody> ancestors,
+                                              const BoxGivenAncestorsOptions& options) {
+    if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "box given ancestors: `tolerance` must lie in (0, 1)");
+    if (auto valid = validate_bodies(ancestors); !valid) return tl::unexpected(valid.error());
+    const auto plain = fit::fit_obb(points, {.criterion = measure::minimal_perimeter()});
+    if (!plain) return tl::unexpected(plain.error());
+    const auto hull = convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
+    const auto least = fit::minimal_sphere(points);
+    if (!least) return tl::unexpected(least.error());
+    if (!(least->radius > 0.0))
+        return fail(ErrorCode::degenerate, kNoItem, "box given ancestors: the object is a point");
+    const AncestorDirections directions(ancestors);
+    if (!directions.contain(points))
+        return fail(ErrorCode::invalid_argument, kNoItem,
+                    "box given ancestors: the object is not inside its ancestors' bounds");
+    Vector<glm::dvec3> corners;
+    for (const std::uint32_t v : hull->vertices) corners.push_back(points[v] - least->center);
+    const BoxSearch search(std::move(corners), least->center, directions);
+    BoxGivenAncestors result;
+    glm::dmat3 best(plain->axes);
+    result.value = result.plain_value = search.measure_of(best);
+    search.run(options, best, result);
+    // Axes and extents are rounded to floats, by 1e-7 of the box.
+    const auto box = fit::fit_oriented(points, glm::mat3(best));
+    if (!box) return tl::unexpected(box.error());
+    result.box = *box;
+    return result;
+}
+
+}  // namespace crofton::study
