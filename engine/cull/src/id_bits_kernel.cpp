@@ -87,7 +87,7 @@ HWY_INLINE std::size_t list_word(std::uint64_t word, std::uint32_t base, std::ui
 #else
     constexpr std::uint32_t kLanes = hn::MaxLanes(DU()), kAll = (std::uint32_t{1} << kLanes) - 1;
     std::size_t count = 0;
-    for (std::uint32_t l = 0; l < 64 && word >> l != 0; l += kLanes) {
+    for (std::uint32_t l = 0; l < 64; l += kLanes) {  // to the word's end: where it may stop is hard to guess
         const std::uint32_t bits = static_cast<std::uint32_t>(word >> l) & kAll;
         count += simd::store_positions(du, bits, base + l, ids + count);
     }
@@ -120,6 +120,15 @@ std::size_t list_ids(const std::uint64_t* bits, std::size_t words, std::uint32_t
     return count;
 }
 
+std::size_t list_placed_ids(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids, std::uint64_t* before) {
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < words; ++w) {
+        before[w] = count;
+        if (bits[w] != 0) count += list_word(bits[w], static_cast<std::uint32_t>(64 * w), ids + count);
+    }
+    return count;
+}
+
 std::size_t list_marked_ids(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words, MarkBytes values,
                             std::uint32_t* ids, std::uint8_t* bytes) {
     std::size_t count = 0;
@@ -140,6 +149,7 @@ namespace crofton::cull {
 
 HWY_EXPORT(mark_ids);
 HWY_EXPORT(list_ids);
+HWY_EXPORT(list_placed_ids);
 HWY_EXPORT(list_marked_ids);
 
 void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
@@ -148,6 +158,11 @@ void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t*
 
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     return HWY_DYNAMIC_DISPATCH(list_ids)(bits, words, ids);
+}
+
+std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids,
+                                    std::uint64_t* before) {
+    return HWY_DYNAMIC_DISPATCH(list_placed_ids)(bits, words, ids, before);
 }
 
 std::size_t list_marked_bits_kernel(const std::uint64_t* bits, const std::uint64_t* marks, std::size_t words,

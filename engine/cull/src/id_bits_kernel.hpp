@@ -12,7 +12,11 @@ void mark_ids_kernel(const std::uint32_t* ids, std::size_t count, std::uint64_t*
 // The indices of the bits that are set, ascending; returns how many. Room for 16 more is needed.
 std::size_t list_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids);
 
-// The same, and for each a byte: `marked` where its bit in `marks` is set, `others` where not. Room for 64 more bytes.
+// The same, and `before` gets for each word how many are listed before its own.
+std::size_t list_placed_bits_kernel(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids,
+                                    std::uint64_t* before);
+
+// The first, and for each a byte: `marked` where its bit in `marks` is set, `others` where not. Room for 64 more bytes.
 struct MarkBytes {
     std::uint8_t marked, others;
 };

@@ -80,11 +80,17 @@ HWY_INLINE MF has_witness(const BoxRows& box, MF wanted) {
     const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     VF t[3] = {zero, zero, zero};
     MF found = hn::FirstN(d, 0);
+    const std::uint32_t wanted_bits = bits_of(wanted);
+    unsigned cutting[KernelView::kMaxPlanes], count = 0;  // the planes that may cut one of the wanted boxes
+    for (unsigned i = 0; i < box.count; ++i) {
+        cutting[count] = i;
+        count += (box.cut[i] & wanted_bits) != 0;
+    }
     for (int round = 0;; ++round) {
         VF worst = hn::Set(d, 3e38f), reach = zero, slope[3] = {zero, zero, zero};
         MF inside = wanted;
-        for (unsigned i = 0; i < box.count; ++i) {
-            const auto& row = box.rows[i];
+        for (unsigned n = 0; n < count; ++n) {
+            const auto& row = box.rows[cutting[n]];
             const VF along =
                 hn::MulAdd(row.slope[0], t[0], hn::MulAdd(row.slope[1], t[1], hn::Mul(row.slope[2], t[2])));
             const VF value = hn::MulAdd(along, box.unit, row.base);

@@ -6,6 +6,7 @@
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/camera.hpp>
 #include <crofton/geometry/dyadic.hpp>
+#include <glm/common.hpp>
 
 namespace crofton::cull {
 
@@ -38,34 +39,49 @@ inline constexpr double kTiny = 1e-200;
     return glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]);
 }
 
-[[nodiscard]] inline Constraint constraint_of(const Plane& plane, const glm::dvec3& origin, const Obb& box) {
+// The box's size along each axis of the world, in the units of `base`: Σ_k |slope[k]| ≤ Σ_j |normal_j| extents_j, both
+// exactly and, within 6u of the latter, as computed.
+[[nodiscard]] inline glm::dvec3 extents_of(const Obb& box) {
+    return glm::abs(half_edge(box, 0)) + glm::abs(half_edge(box, 1)) + glm::abs(half_edge(box, 2));
+}
+[[nodiscard]] inline glm::dvec3 extents_of(const Aabb& box) {
+    return box.max - box.min;
+}
+
+// Sets base and base_size.
+inline void set_base(Constraint& result, const Plane& plane, const glm::dvec3& origin, const Obb& box) {
     const glm::dvec3& n = plane.normal;
-    Constraint result;
+    const glm::dvec3 d = box.center - origin;
+    const double x = n.x * d.x, y = n.y * d.y, z = n.z * d.z;
+    result.base = x + y + z + plane.offset;
+    result.base_size = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(plane.offset);
+}
+
+inline void set_base(Constraint& result, const Plane& plane, const glm::dvec3& origin, const Aabb& box) {
+    const glm::dvec3& n = plane.normal;
+    const glm::dvec3 low = box.min - origin, high = box.max - origin;
+    result.base = n.x * (low.x + high.x) + n.y * (low.y + high.y) + n.z * (low.z + high.z) + 2.0 * plane.offset;
+    const auto both = [&](int j) { return std::fabs(n[j]) * (std::fabs(low[j]) + std::fabs(high[j])); };
+    result.base_size = both(0) + both(1) + both(2) + 2.0 * std::fabs(plane.offset);
+}
+
+// Sets slope and slope_size.
+inline void set_slopes(Constraint& result, const Plane& plane, const Obb& box) {
+    const glm::dvec3& n = plane.normal;
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 edge = half_edge(box, k);
         const double x = n.x * edge.x, y = n.y * edge.y, z = n.z * edge.z;
         result.slope[k] = x + y + z;
         result.slope_size[k] = std::fabs(x) + std::fabs(y) + std::fabs(z);
     }
-    const glm::dvec3 d = box.center - origin;
-    const double x = n.x * d.x, y = n.y * d.y, z = n.z * d.z;
-    result.base = x + y + z + plane.offset;
-    result.base_size = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(plane.offset);
-    return result;
 }
 
-[[nodiscard]] inline Constraint constraint_of(const Plane& plane, const glm::dvec3& origin, const Aabb& box) {
-    const glm::dvec3& n = plane.normal;
-    const glm::dvec3 low = box.min - origin, high = box.max - origin, size = box.max - box.min;
-    Constraint result;
+inline void set_slopes(Constraint& result, const Plane& plane, const Aabb& box) {
+    const glm::dvec3 size = box.max - box.min;
     for (int k = 0; k < 3; ++k) {
-        result.slope[k] = n[k] * size[k];
+        result.slope[k] = plane.normal[k] * size[k];
         result.slope_size[k] = std::fabs(result.slope[k]);
     }
-    result.base = n.x * (low.x + high.x) + n.y * (low.y + high.y) + n.z * (low.z + high.z) + 2.0 * plane.offset;
-    const auto both = [&](int j) { return std::fabs(n[j]) * (std::fabs(low[j]) + std::fabs(high[j])); };
-    result.base_size = both(0) + both(1) + both(2) + 2.0 * std::fabs(plane.offset);
-    return result;
 }
 
 // Entry k of constraint (slopes 0, 1, 2, base 3), exactly.
@@ -103,8 +119,8 @@ template <class Box>
     return exact_corner_sign(plane, origin, box, false);
 }
 
-// True iff box and frustum share a point, exactly, for boxes that no single plane of the frustum rejects. Box: Obb,
-// Aabb.
+// True iff box and frustum share a point, exactly, for boxes that no single plane of the frustum rejects. Planes that
+// the whole box is inside of need not be among the frustum's. Box: Obb, Aabb.
 template <class Box>
 [[nodiscard]] bool meets(const Frustum& frustum, const Box& box, const Constraint* constraints);
 

@@ -14,18 +14,37 @@ Verdict classify_any(const Frustum& frustum, const Bound& bound, CullMode mode) 
     return classify_usable(frustum, bound, mode);
 }
 
+// Most planes are far from the box: its extents along the axes tell. The others' constraints are kept.
 template <class Box>
 Verdict classify_box(const Frustum& frustum, const Box& box, CullMode mode) {
     Constraint constraints[Frustum::kMaxPlanes];
+    std::uint32_t open[Frustum::kMaxPlanes], count = 0;
+    const glm::dvec3 extents = extents_of(box);
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
-        constraints[i] = constraint_of(frustum.planes[i], frustum.origin, box);
-        if (innermost_sign(constraints[i], frustum.planes[i], frustum.origin, box) < 0) return Verdict::outside;
+        const Plane& plane = frustum.planes[i];
+        Constraint& constraint = constraints[count];
+        set_base(constraint, plane, frustum.origin, box);
+        const glm::dvec3 n = glm::abs(plane.normal);
+        const double most = n.x * extents.x + n.y * extents.y + n.z * extents.z;
+        // The base's 7u, 6u of `most`, and two additions.
+        const double bound = 16.0 * kUnit * (constraint.base_size + most) + kTiny;
+        if (constraint.base - most > bound) continue;
+        if (constraint.base + most < -bound) return Verdict::outside;
+        set_slopes(constraint, plane, box);
+        if (innermost_sign(constraint, plane, frustum.origin, box) < 0) return Verdict::outside;
+        open[count++] = i;
     }
     bool inside = true;
-    for (std::uint32_t i = 0; i < frustum.plane_count && inside; ++i)
-        inside = outermost_sign(constraints[i], frustum.planes[i], frustum.origin, box) >= 0;
+    for (std::uint32_t n = 0; n < count && inside; ++n)
+        inside = outermost_sign(constraints[n], frustum.planes[open[n]], frustum.origin, box) >= 0;
     if (inside) return Verdict::inside;
-    return mode == CullMode::conservative || meets(frustum, box, constraints) ? Verdict::straddling : Verdict::outside;
+    // One plane that cuts the box leaves a part of it.
+    if (mode == CullMode::conservative || count == 1) return Verdict::straddling;
+    Frustum crossed;
+    crossed.origin = frustum.origin;
+    for (; crossed.plane_count < count; ++crossed.plane_count)
+        crossed.planes[crossed.plane_count] = frustum.planes[open[crossed.plane_count]];
+    return meets(crossed, box, constraints) ? Verdict::straddling : Verdict::outside;
 }
 
 }  // namespace

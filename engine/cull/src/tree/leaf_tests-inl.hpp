@@ -83,7 +83,8 @@ HWY_INLINE BoxTest test_leaf(const LeafRows& rows, MF present, const LeafPlane& 
 // The planes in the boxes' own coordinates. The conversions to floats and the sums in them: 2^-20 of |base| + reach.
 HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsigned count, MF wanted) {
     const DF d;
-    BoxRows result(hn::Set(d, std::ldexp(1.0f, -boxes.edge_shift)));
+    const auto exponent = static_cast<std::uint32_t>(127 - boxes.edge_shift) << 23;  // of 2^-edge_shift
+    BoxRows result(hn::BitCast(d, hn::Set(DU(), exponent)));
     for (unsigned i = 0; i < count; ++i) {
         const PlaneValues values(boxes, planes[i]);
         BoxRows::Row& row = result.rows[result.count];

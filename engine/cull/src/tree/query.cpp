@@ -339,18 +339,22 @@ void Query::finish(std::size_t inside, std::size_t straddling, std::size_t items
     visible_.verdicts_.clear();
 }
 
-// By a bit an item and another for those that straddle: the ids are distinct and below the number of items.
+// By a bit an item: the ids are distinct and below the number of items. Few straddle: how many ids lie below each is
+// found from the words' first places.
 void Query::sort(std::size_t inside, std::size_t straddling, std::size_t items) {
     const std::size_t words = items / 64 + 2;  // one more for the kernel
     grow(visible_.bits_, 2 * words);
     grow(visible_.verdicts_, items + 64);
-    std::uint64_t* seen = visible_.bits_.data();
-    std::uint64_t* marked = seen + words;
-    std::fill_n(seen, 2 * words, 0);
-    mark_ids_kernel(visible_.straddling_.data(), straddling, marked);
-    std::copy_n(marked, words, seen);
+    std::uint64_t *const seen = visible_.bits_.data(), *const before = seen + words;
+    std::fill_n(seen, words, 0);
+    mark_ids_kernel(visible_.straddling_.data(), straddling, seen);
     mark_ids_kernel(visible_.ids_.data(), inside, seen);
-    list_marked(seen, marked, words);
+    const std::size_t count = list_placed_bits_kernel(seen, words, visible_.ids_.data(), before);
+    std::fill_n(visible_.verdicts_.begin(), count, Verdict::inside);
+    for (const ItemId item : std::span(visible_.straddling_).first(straddling)) {
+        const std::uint64_t below = seen[item / 64] & ((std::uint64_t{1} << (item % 64)) - 1);
+        visible_.verdicts_[before[item / 64] + static_cast<std::size_t>(std::popcount(below))] = Verdict::straddling;
+    }
 }
 
 }  // namespace crofton::cull
