@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/k_dop.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <string>
 
 namespace crofton::study {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // All points where three faces meet and no other cuts off.
 void find_corners(KDop& dop) {

@@ -8,12 +8,12 @@
 namespace crofton::cli {
 namespace {
 
-constexpr double kPanel = 300.0, kHeading = 22.0, kMargin = 14.0;
-constexpr const char* kColors[] = {"#0a58ca", "#c8553d"};  // by perimeter, by area
+constexpr double kPlanarPanel = 300.0, kPlanarHeading = 22.0, kPlanarMargin = 14.0;
+constexpr const char* kPlanarColors[] = {"#0a58ca", "#c8553d"};  // by perimeter, by area
 
-class Panel {
+class PlanarPanel {
   public:
-    Panel(const PlanarFit& fit, std::size_t first, std::size_t count, const glm::dvec2& corner, std::string& svg)
+    PlanarPanel(const PlanarFit& fit, std::size_t first, std::size_t count, const glm::dvec2& corner, std::string& svg)
         : fit_(fit), first_(first), count_(count), svg_(svg) {
         for (const glm::dvec2& p : fit.hull) include(p);
         for (std::size_t s = first; s < first + count; ++s) {
@@ -23,8 +23,8 @@ class Panel {
                     include(fit.shapes[s].disc.center + glm::dvec2(sign * fit.shapes[s].disc.radius));
         }
         const double extent = std::max({high_.x - low_.x, high_.y - low_.y, std::numeric_limits<double>::min()});
-        scale_ = (kPanel - 2.0 * kMargin) / extent;
-        middle_ = corner + 0.5 * kPanel;
+        scale_ = (kPlanarPanel - 2.0 * kPlanarMargin) / extent;
+        middle_ = corner + 0.5 * kPlanarPanel;
     }
 
     void draw() {
@@ -32,7 +32,7 @@ class Panel {
         path(fit_.hull, "fill='none' stroke='#555' stroke-width='1' stroke-dasharray='3 2'");
         for (std::size_t s = first_; s < first_ + count_; ++s) {
             const PlanarShape& shape = fit_.shapes[s];
-            const char* color = kColors[count_ == 1 ? 0 : s - first_];
+            const char* color = kPlanarColors[count_ == 1 ? 0 : s - first_];
             const std::string style = std::string("fill='none' stroke-width='1.5' stroke='") + color + "'";
             if (shape.outline.empty())
                 circle(shape.disc.center, shape.disc.radius * scale_, style);
@@ -96,17 +96,20 @@ std::string planar_fits_svg(const std::vector<PlanarFit>& fits, std::size_t most
     std::snprintf(head, sizeof head,
                   "<svg xmlns='http://www.w3.org/2000/svg' width='%g' height='%g' font-family='sans-serif' "
                   "font-size='12'>\n<rect width='100%%' height='100%%' fill='white'/>\n",
-                  3.0 * kPanel, static_cast<double>(shown.size()) * (kPanel + kHeading) + kHeading);
+                  3.0 * kPlanarPanel,
+                  static_cast<double>(shown.size()) * (kPlanarPanel + kPlanarHeading) + kPlanarHeading);
     std::string svg = head;
-    text_at(svg, kMargin, 15.0, kColors[0], "least perimeter; least disc");
-    text_at(svg, kMargin + 200.0, 15.0, kColors[1], "least area");
-    text_at(svg, kMargin + 320.0, 15.0, "#555", "hull dashed; dots: where a best bound touches");
+    text_at(svg, kPlanarMargin, 15.0, kPlanarColors[0], "least perimeter; least disc");
+    text_at(svg, kPlanarMargin + 200.0, 15.0, kPlanarColors[1], "least area");
+    text_at(svg, kPlanarMargin + 320.0, 15.0, "#555", "hull dashed; dots: where a best bound touches");
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const double top = kHeading + static_cast<double>(i) * (kPanel + kHeading);
-        text_at(svg, kMargin, top + 15.0, "#000", shown[i]->name);
+        const double top = kPlanarHeading + static_cast<double>(i) * (kPlanarPanel + kPlanarHeading);
+        text_at(svg, kPlanarMargin, top + 15.0, "#000", shown[i]->name);
         constexpr std::size_t first[] = {0, 2, 3}, count[] = {2, 1, 2};
         for (std::size_t k = 0; k < 3; ++k)
-            Panel(*shown[i], first[k], count[k], {static_cast<double>(k) * kPanel, top + kHeading}, svg).draw();
+            PlanarPanel(*shown[i], first[k], count[k], {static_cast<double>(k) * kPlanarPanel, top + kPlanarHeading},
+                        svg)
+                .draw();
     }
     return svg + "</svg>\n";
 }

@@ -9,37 +9,37 @@
 namespace crofton::cli {
 namespace {
 
-constexpr double kPanel = 320.0, kHeading = 24.0, kMargin = 14.0;
-constexpr const char* kColors[] = {"#1b2a41", "#0a58ca", "#c8553d", "#2a9d8f",
-                                   "#8e6bbf", "#b08900", "#777777", "#aaaaaa"};
+constexpr double kChainPanel = 320.0, kChainHeading = 24.0, kChainMargin = 14.0;
+constexpr const char* kChainColors[] = {"#1b2a41", "#0a58ca", "#c8553d", "#2a9d8f",
+                                        "#8e6bbf", "#b08900", "#777777", "#aaaaaa"};
 
-std::array<glm::dvec2, 4> corners_of(const Rectangle& r) {
+std::array<glm::dvec2, 4> outline_of(const Rectangle& r) {
     const glm::dvec2 x = r.half_extents.x * r.axis, y = r.half_extents.y * glm::dvec2(-r.axis.y, r.axis.x);
     return {r.center - x - y, r.center + x - y, r.center + x + y, r.center - x + y};
 }
 
-class Panel {
+class ChainPanel {
   public:
-    Panel(const Chain& chain, const glm::dvec2& corner, std::string& svg)
-        : chain_(chain), middle_(corner + glm::dvec2(0.5 * kPanel, kHeading + 0.5 * kPanel)), svg_(svg) {
+    ChainPanel(const Chain& chain, const glm::dvec2& corner, std::string& svg)
+        : chain_(chain), middle_(corner + glm::dvec2(0.5 * kChainPanel, kChainHeading + 0.5 * kChainPanel)), svg_(svg) {
         for (const ChainLevel& level : chain.levels) {
             if (level.disc) {
                 include(level.disc->center - glm::dvec2(level.disc->radius));
                 include(level.disc->center + glm::dvec2(level.disc->radius));
             } else {
-                for (const glm::dvec2& p : corners_of(*level.rectangle)) include(p);
+                for (const glm::dvec2& p : outline_of(*level.rectangle)) include(p);
             }
         }
         const double extent = std::max({high_.x - low_.x, high_.y - low_.y, std::numeric_limits<double>::min()});
-        scale_ = (kPanel - 2.0 * kMargin) / extent;
+        scale_ = (kChainPanel - 2.0 * kChainMargin) / extent;
     }
 
     void draw() {
         path({chain_.object.begin(), chain_.object.end()}, "fill='#dfe6ee' stroke='#555' stroke-width='2'");
         for (std::size_t k = 0; k < chain_.levels.size(); ++k) {
             const ChainLevel& level = chain_.levels[k];
-            const std::string style =
-                std::string("fill='none' stroke-width='1.5' stroke='") + kColors[k % std::size(kColors)] + "'";
+            const std::string style = std::string("fill='none' stroke-width='1.5' stroke='") +
+                                      kChainColors[k % std::size(kChainColors)] + "'";
             if (level.disc) {
                 char text[96];
                 const glm::dvec2 p = at(level.disc->center);
@@ -47,7 +47,7 @@ class Panel {
                               level.disc->radius * scale_);
                 svg_ += text + style + "/>\n";
             } else {
-                const auto corners = corners_of(*level.rectangle);
+                const auto corners = outline_of(*level.rectangle);
                 path({corners.begin(), corners.end()}, style);
             }
         }
@@ -88,16 +88,17 @@ std::string hierarchy_svg(const std::vector<Chain>& chains) {
     std::snprintf(head, sizeof head,
                   "<svg xmlns='http://www.w3.org/2000/svg' width='%g' height='%g' font-family='sans-serif' "
                   "font-size='12'>\n<rect width='100%%' height='100%%' fill='white'/>\n",
-                  3.0 * kPanel, static_cast<double>(rows) * (kPanel + kHeading));
+                  3.0 * kChainPanel, static_cast<double>(rows) * (kChainPanel + kChainHeading));
     std::string svg = head;
     for (std::size_t i = 0; i < chains.size(); ++i) {
-        const glm::dvec2 corner(static_cast<double>(i % 3) * kPanel, static_cast<double>(i / 3) * (kPanel + kHeading));
+        const glm::dvec2 corner(static_cast<double>(i % 3) * kChainPanel,
+                                static_cast<double>(i / 3) * (kChainPanel + kChainHeading));
         char place[64];
-        std::snprintf(place, sizeof place, "<text x='%.1f' y='%.1f'>", corner.x + kMargin, corner.y + 16.0);
+        std::snprintf(place, sizeof place, "<text x='%.1f' y='%.1f'>", corner.x + kChainMargin, corner.y + 16.0);
         svg += place;
         for (const char c : chains[i].name) svg += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
         svg += "</text>\n";
-        Panel(chains[i], corner, svg).draw();
+        ChainPanel(chains[i], corner, svg).draw();
     }
     return svg + "</svg>\n";
 }

@@ -59,7 +59,7 @@ Ratios compare(const Body& query, const Body& first, const Body& second, const B
     return result;
 }
 
-IntrinsicVolumes frustum_volumes(double depth) {
+IntrinsicVolumes volumes_of_view(double depth) {
     Camera camera;
     camera.fov_y = 2.0 * std::atan(0.6);
     camera.aspect = 1.0 / 0.6;
@@ -90,7 +90,7 @@ void ranking_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         const Body frustum = frustum_body(1.0, 0.6, 0.01 * depth, depth, true);
         const Ratios ratios = compare(frustum, cube, plate, point, 2.6, options.trials, seed++);
         rows.push_back(measured_row(size + std::string("improper outside tests of the cube over the plate's"),
-                                    "theory.md section 2", exact(frustum_volumes(depth)), ratios.outside.value(),
+                                    "theory.md section 2", exact(volumes_of_view(depth)), ratios.outside.value(),
                                     ratios.outside.standard_error()));
         if (depth == 0.5)
             rows.push_back(
@@ -106,7 +106,7 @@ void ranking_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                                      c.area / p.area, ratios.total.value(), ratios.total.standard_error()));
     }
     rows.push_back(computed_row("frusta: the ratio tends to that of M", "theory.md section 2",
-                                c.mean_curvature / p.mean_curvature, exact(frustum_volumes(1e6)), 1e-4));
+                                c.mean_curvature / p.mean_curvature, exact(volumes_of_view(1e6)), 1e-4));
 }
 
 Body body_of(const Obb& box) {

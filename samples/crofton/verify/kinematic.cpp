@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bodies.hpp"
+#include "frustum_volumes.hpp"
 #include "topics.hpp"
 
 namespace crofton::cli {
@@ -18,16 +19,6 @@ struct NamedBody {
     Body body;
     IntrinsicVolumes volumes;
 };
-
-IntrinsicVolumes frustum_volumes(double tan_x, double tan_y, double near, double far, bool perspective) {
-    Camera camera;
-    camera.projection = perspective ? Projection::perspective : Projection::orthographic;
-    camera.fov_y = 2.0 * std::atan(tan_y);
-    camera.height = 2.0 * tan_y;
-    camera.aspect = tan_x / tan_y;
-    camera.near_distance = near, camera.far_distance = far;
-    return *measure::intrinsic_volumes_of_frustum(camera);
-}
 
 std::vector<NamedBody> frusta() {
     struct Lens {

@@ -84,8 +84,8 @@ enum class OccluderKind : std::uint8_t {
 };
 
 [[nodiscard]] inline Aabb everywhere() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    return {glm::dvec3(-kEndless), glm::dvec3(kEndless)};
 }
 
 // In the mesh's frame.
