@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <optional>
 
 #include "assets/flat_scene.hpp"

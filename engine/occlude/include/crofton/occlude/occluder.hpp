@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
-#include <memory>
 #include <span>
 
 namespace crofton::occlude {
@@ -71,7 +70,7 @@ class OccluderSet {
   private:
     friend struct OccluderStorage;
     struct Data;
-    std::unique_ptr<Data> data_;
+    Owner<Data> data_;
 };
 
 // What of a mesh hides most per edge drawn: boxes and convex bodies inside it, and large flat parts of its surface.
