@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // FCL, Bullet, Embree and ODE on the inputs of collide_bench.cpp, each where it is installed.
 #include <benchmark/benchmark.h>
+#include <memory>
 
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>

@@ -5,14 +5,26 @@
 # crofton_own_target(TARGET [LIGHT] [UNITY])
 # LIGHT: optimised builds compile it with -O1, as its own code takes no time worth saving.
 # UNITY: its sources may be compiled together: no two of them define the same name in an anonymous namespace.
-# A source that must stay alone, as one with a library's implementation, says so: SKIP_UNITY_BUILD_INCLUSION.
+# A source that must stay alone, as one with a library's implementation, says so: SKIP_UNITY_BUILD_INCLUSION. Kernels need
+# not: Highway includes them once for each instruction set.
 function(crofton_own_target target)
     if("LIGHT" IN_LIST ARGN)
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
     endif()
     if("UNITY" IN_LIST ARGN)
-        # Eight to a batch: headers are read once for all, and two processors still share the work.
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ${CROFTON_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+        # Sixteen to a batch: headers are read once for all, and two processors still share the work.
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ${CROFTON_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+        get_target_property(sources ${target} SOURCES)
+        list(FILTER sources INCLUDE REGEX "\\.cpp$")
+        foreach(source IN LISTS sources)
+            cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+            file(STRINGS ${source} is_kernel REGEX "hwy/foreach_target.h" LIMIT_COUNT 1)
+            if(is_kernel)
+                set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+            endif()
+        endforeach()
+        # In a batch g++ takes the sources for headers, whose classes should not use anonymous namespaces.
+        target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
     endif()
     target_compile_features(${target} PUBLIC cxx_std_20)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF C_STANDARD 11)

@@ -14,9 +14,9 @@
 namespace crofton::boxtree {
 
 BoxTree::BoxTree(const measure::Criterion& criterion, Orientation orientation)
-    : items_(std::make_unique<Items>()),
-      structure_(std::make_unique<Structure>(*items_, criterion, orientation)),
-      rebuilder_(std::make_unique<Rebuilder>()) {}
+    : items_(Owner<Items>::make()),
+      structure_(Owner<Structure>::make(*items_, criterion, orientation)),
+      rebuilder_(Owner<Rebuilder>::make()) {}
 BoxTree::~BoxTree() = default;
 BoxTree::BoxTree(BoxTree&&) noexcept = default;
 BoxTree& BoxTree::operator=(BoxTree&&) noexcept = default;
@@ -145,7 +145,7 @@ void BoxTree::refit() {
 }
 
 bool BoxTree::rebuild_step(std::size_t budget) {
-    std::unique_ptr<Structure> next = rebuilder_->step(*structure_, *items_, budget);
+    Owner<Structure> next = rebuilder_->step(*structure_, *items_, budget);
     if (!next) return false;
     next->take_scratch(*structure_);
     structure_ = std::move(next);

@@ -44,7 +44,7 @@ struct Rebuilder::Work {
     Work(const Structure& current, Items& all)
         : items(all),
           builder(scene_of(current), all.count_in_leaves(), current.criterion(), current.orientation()),
-          next(std::make_unique<Structure>(all, current.criterion(), current.orientation())),
+          next(Owner<Structure>::make(all, current.criterion(), current.orientation())),
           changed((all.size() + 63) / 64, 0),
           placed(changed.size(), 0) {}
     void enter(Stage next_stage, std::size_t from = 0) {
@@ -54,7 +54,7 @@ struct Rebuilder::Work {
 
     Items& items;
     Builder builder;
-    std::unique_ptr<Structure> next;
+    Owner<Structure> next;
     Stage stage = Stage::add;
     std::size_t at = 0;  // item, slot, leaf, node or word of `changed`
     // One bit an item: what has changed since the rebuild began, and which of these were placed anew.
@@ -85,17 +85,17 @@ void Rebuilder::note_changes(std::span<const ItemId> items) {
     for (const ItemId item : items) note_change(item);
 }
 
-std::unique_ptr<Structure> Rebuilder::step(const Structure& current, Items& items, std::size_t budget) {
+Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::size_t budget) {
     last_step_ = {};
     if (!work_) {
-        if (items.count_in_leaves() == 0) return nullptr;
+        if (items.count_in_leaves() == 0) return {};
         work_ = std::make_unique<Work>(current, items);
     }
     if (work_->stage == Work::Stage::apply_changes) budget += work_->new_work;
     work_->new_work = 0;
     while (budget > 0 && work_->stage != Work::Stage::done) budget -= std::min(budget, run_stage(current, budget));
-    if (work_->stage != Work::Stage::done) return nullptr;
-    std::unique_ptr<Structure> result = std::move(work_->next);
+    if (work_->stage != Work::Stage::done) return {};
+    Owner<Structure> result = std::move(work_->next);
     work_.reset();
     return result;
 }

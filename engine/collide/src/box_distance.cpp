@@ -52,7 +52,7 @@ CornerPair support(const BoxPairInDouble& pair, const glm::dvec3& direction) {
     return result;
 }
 
-struct Simplex {
+struct CornerSimplex {
     CornerPair point[4];
     int count = 0;
 };
@@ -66,12 +66,12 @@ struct Blend {
     int count = 0;
 };
 
-Blend blend_of(const Simplex& s, int i) {
+Blend blend_of(const CornerSimplex& s, int i) {
     const glm::dvec3& way = s.point[i].way;
     return {way, glm::dot(way, way), {1.0}, {i}, 1};
 }
 
-Blend nearest_on_segment(const Simplex& s, int i, int j) {
+Blend nearest_on_segment(const CornerSimplex& s, int i, int j) {
     const glm::dvec3 &p = s.point[i].way, u = s.point[j].way - p;
     const double along = -glm::dot(p, u), length2 = glm::dot(u, u);
     if (!(along > 0.0)) return blend_of(s, i);
@@ -87,7 +87,7 @@ const Blend& nearer_of(const Blend& a, const Blend& b) {
 
 // By the regions around a triangle (Ericson, Real-Time Collision Detection, 5.1.5). k is the newest point: the edge
 // without it did not improve when it was found.
-Blend nearest_on_triangle(const Simplex& s, int i, int j, int k) {
+Blend nearest_on_triangle(const CornerSimplex& s, int i, int j, int k) {
     const glm::dvec3 &a = s.point[i].way, &b = s.point[j].way, &c = s.point[k].way;
     const glm::dvec3 ab = b - a, ac = c - a;
     const double d1 = -glm::dot(ab, a), d2 = -glm::dot(ac, a), d3 = -glm::dot(ab, b), d4 = -glm::dot(ac, b),
@@ -102,7 +102,7 @@ Blend nearest_on_triangle(const Simplex& s, int i, int j, int k) {
 }
 
 // Of the faces that have the last point: the other did not improve when that point was found.
-Blend nearest_on_tetrahedron(const Simplex& s) {
+Blend nearest_on_tetrahedron(const CornerSimplex& s) {
     const glm::dvec3 &a = s.point[0].way, &b = s.point[1].way, &c = s.point[2].way, &d = s.point[3].way;
     const double scale = 1.0 / glm::dot(glm::cross(b - a, c - a), d - a);
     const double w0 = glm::dot(glm::cross(b, c), d) * scale, w1 = -glm::dot(glm::cross(a, c), d) * scale,
@@ -115,12 +115,12 @@ Blend nearest_on_tetrahedron(const Simplex& s) {
                      nearest_on_triangle(s, 0, 2, 3));
 }
 
-Blend nearest_of(const Simplex& s) {
+Blend nearest_of(const CornerSimplex& s) {
     if (s.count == 2) return nearest_on_segment(s, 0, 1);
     return s.count == 3 ? nearest_on_triangle(s, 0, 1, 2) : nearest_on_tetrahedron(s);
 }
 
-PointPair blended(const BoxPairInDouble& pair, const Simplex& s, const Blend& blend) {
+PointPair blended(const BoxPairInDouble& pair, const CornerSimplex& s, const Blend& blend) {
     PointPair result;
     for (int n = 0; n < blend.count; ++n)
         for (int side = 0; side < 2; ++side)
@@ -141,7 +141,7 @@ double gap_along(const BoxPairInDouble& pair, const glm::dvec3& direction) {
 // `axis` separates the boxes, or nearly; `least` is a lower bound of the distance.
 PointPair descend(const BoxPairInDouble& pair, const glm::dvec3& axis, double least, bool& proven) {
     const double accepted = kAccepted * pair.size;
-    Simplex simplex;
+    CornerSimplex simplex;
     simplex.point[simplex.count++] = support(pair, axis);
     Blend best = blend_of(simplex, 0);
     proven = false;

@@ -38,9 +38,9 @@ struct BoxPair {
     double half[6];
 };
 
-using Exact3 = std::array<Expansion<2>, 3>;
+using ExactNormal = std::array<Expansion<2>, 3>;
 
-Exact3 exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
+ExactNormal exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
     const auto component = [&](int i, int j) { return exact(a[i] * b[j]) - exact(a[j] * b[i]); };
     return {component(1, 2), component(2, 0), component(0, 1)};
 }
@@ -49,7 +49,7 @@ Exact3 exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
 // as 2^-1074 and as large as 2e30, components of n are 0 or in [1e-90, 2], and extents in [1e-45, 1e30].
 bool separated_exactly(const BoxPair& pair, const GeneratorPair axis) {
     constexpr double kScale = 0x1p600;
-    const Exact3 n = exact_cross(pair.edge[axis.p], pair.edge[axis.q]);
+    const ExactNormal n = exact_cross(pair.edge[axis.p], pair.edge[axis.q]);
     if (n[0].count + n[1].count + n[2].count == 0) return false;  // parallel edges
     const auto offset_along = [&](int i) {
         return (exact_difference(pair.center_b[i], pair.center_a[i]) * kScale) * n[static_cast<std::size_t>(i)];
@@ -68,7 +68,7 @@ bool separated_exactly(const BoxPair& pair, const GeneratorPair axis) {
     return (distance - ((reach[0] + reach[1]) + (reach[2] + reach[3]))).sign() > 0;
 }
 
-bool is_finite(const PairColumns& pair) {
+bool all_finite(const PairColumns& pair) {
     Lanes4 sum = {};
     for (const float* column :
          {pair.a[0], pair.a[1], pair.a[2], pair.b[0], pair.b[1], pair.b[2], pair.half_a, pair.half_b})
@@ -87,7 +87,7 @@ int careful_axis(const Obb& a, const Obb& b, const PairColumns& columns, int hin
     if (verdicts.separated != 0)
         return hint >= 0 && (verdicts.separated >> hint & 1u) != 0 ? hint : first_of(verdicts.separated);
     if (verdicts.unknown == 0) return kNotSeparated;
-    if (!is_finite(columns)) return 0;
+    if (!all_finite(columns)) return 0;
     if (const int axis = first_separating(a, b, columns, verdicts.unknown); axis != kTooWide) return axis;
     const BoxPair pair(a, b);
     for (std::uint32_t unknown = verdicts.unknown; unknown != 0; unknown &= unknown - 1)

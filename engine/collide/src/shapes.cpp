@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/collide/narrow_phase.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -10,10 +11,6 @@ namespace {
 glm::dvec3 unit_or_zero(const glm::dvec3& v) {
     const double length = glm::length(v);
     return length > 0.0 ? v / length : glm::dvec3(0.0);
-}
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 // Whether a ball meets a box, where two bounds of the distance d between its centre p and the box tell. From above: the

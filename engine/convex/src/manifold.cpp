@@ -11,7 +11,7 @@
 namespace crofton::convex {
 namespace {
 
-struct Points {
+struct GatheredPoints {
     int count = 0;
     RawPoint point[kMaxClipped + 1];
 };
@@ -21,7 +21,7 @@ class Gatherer {
     Gatherer(const Placed& a, const Placed& b, const Touch& touch, double margin)
         : a_(a), b_(b), touch_(touch), margin_(margin) {}
 
-    // Points of the surfaces, from points of the cores.
+    // GatheredPoints of the surfaces, from points of the cores.
     void add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b) {
         const glm::dvec3 p = core_a + a_.body.radius() * touch_.normal, q = core_b - b_.body.radius() * touch_.normal;
         // A face that is not quite flat would seem deeper than the bodies overlap.
@@ -58,7 +58,7 @@ class Gatherer {
         if (points.count > 0) points.point[points.count - 1].depth = touch_.depth;
     }
 
-    Points points;
+    GatheredPoints points;
 
   private:
     const Placed &a_, &b_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/convex/query.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 
@@ -10,8 +11,6 @@
 
 namespace crofton::convex {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool finite_pair(const Pair& pair) {
     return pair.size < kInfinity && std::isfinite(pair.pose_a.rotation[0].x + pair.pose_a.rotation[1].y) &&

@@ -74,7 +74,7 @@ struct ThreadPool::State {
 
 thread_local const ThreadPool::State* ThreadPool::State::working_for = nullptr;
 
-ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>()) {
+ThreadPool::ThreadPool(unsigned threads) : state_(Owner<State>::make()) {
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
     for (unsigned worker = 1; worker < threads; ++worker)
         state_->threads.emplace_back([state = state_.get(), worker] { state->work(worker); });

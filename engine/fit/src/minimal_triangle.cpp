@@ -3,11 +3,11 @@
 #include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/fit/fit.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/measure.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 
 #include "planar_points.hpp"
@@ -17,7 +17,6 @@ namespace {
 
 using std::numbers::pi;
 using Triangle2 = std::array<glm::dvec2, 3>;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A convex polygon with one side on the x axis from 0 to (length, 0) and the rest above. `corners` go on
 // counter-clockwise and end with 0 again; `top` is the first of the highest. The right chain is [1, top], the left one

@@ -9,12 +9,11 @@
 #include <string>
 
 #include "planar_points.hpp"
+#include "rounding.hpp"
 #include "search/calipers.hpp"
 
 namespace crofton::fit {
 namespace {
-
-constexpr double kUnit = 0x1p-53;
 
 // The rectangle along `axis` around the points. dot(axis, p − c) rounds each difference, product and sum once: the
 // error is less than 4 units of Σ|axis_i d_i|, and 5 are added.

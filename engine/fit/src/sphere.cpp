@@ -8,10 +8,11 @@
 #include <limits>
 #include <string>
 
+#include "rounding.hpp"
+
 namespace crofton::fit {
 namespace {
 
-constexpr double kUnit = 0x1p-53;
 constexpr double kSlack = 1.0 + 1e-12;
 
 // The least sphere with all of up to four points on its surface: its centre c = p₀ + Σ t_k e_k solves

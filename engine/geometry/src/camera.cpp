@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
 namespace crofton {
-namespace {
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-}  // namespace
-
 Result<void> validate(const Camera& camera) {
     const auto bad = [](ErrorCode code, const char* why) { return fail(code, kNoItem, std::string("camera: ") + why); };
     if (!is_finite(camera.position) || !is_finite(camera.forward) || !is_finite(camera.up))

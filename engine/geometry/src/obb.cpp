@@ -3,13 +3,12 @@
 #include <cmath>
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/expansion.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 
 namespace crofton {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // half_extents[k] · axes[k]: exact, a product of two floats fits a double.
 glm::dvec3 half_edge(const Obb& box, int k) {
@@ -18,10 +17,6 @@ glm::dvec3 half_edge(const Obb& box, int k) {
 
 double half_extent(const Obb& box, int k) {
     return static_cast<double>(box.half_extents[k]);
-}
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 float float_at_least(double value) {

@@ -21,7 +21,7 @@ double half_area(const FloatBox& box) {
     return d.x >= 0.0 ? d.x * d.y + d.y * d.z + d.z * d.x : 0.0;
 }
 
-struct Range {
+struct BoxRange {
     std::uint32_t begin = 0, end = 0;
     int depth = 0;
     FloatBox box;
@@ -37,7 +37,7 @@ class Builder {
 
     BoxHierarchy build() {
         struct Todo {
-            Range range;
+            BoxRange range;
             std::uint32_t node;
         };
         BoxHierarchy result;
@@ -47,7 +47,7 @@ class Builder {
         while (!stack.empty()) {
             const Todo todo = stack.back();
             stack.pop_back();
-            std::array<Range, kWidth> parts;
+            std::array<BoxRange, kWidth> parts;
             const std::size_t count = split_into_eight(todo.range, parts);
             BoxNode node{};
             node.count = static_cast<std::uint32_t>(count);
@@ -74,14 +74,14 @@ class Builder {
         return 0.5f * boxes_[t].low[axis] + 0.5f * boxes_[t].high[axis];
     }
 
-    Range whole() const {
-        Range range{0, static_cast<std::uint32_t>(order_.size()), 0, {}};
+    BoxRange whole() const {
+        BoxRange range{0, static_cast<std::uint32_t>(order_.size()), 0, {}};
         for (const FloatBox& box : boxes_) range.box.include(box);
         return range;
     }
 
     // Splits the part of most area that is still too large for a leaf, until there are eight.
-    std::size_t split_into_eight(const Range& range, std::array<Range, kWidth>& parts) {
+    std::size_t split_into_eight(const BoxRange& range, std::array<BoxRange, kWidth>& parts) {
         parts[0] = range;
         std::size_t count = 1;
         while (count < kWidth) {
@@ -91,14 +91,14 @@ class Builder {
                     (widest == kWidth || half_area(parts[i].box) > half_area(parts[widest].box)))
                     widest = i;
             if (widest == kWidth) break;
-            const Range old = parts[widest];
+            const BoxRange old = parts[widest];
             split(old, parts[widest], parts[count]);
             ++count;
         }
         return count;
     }
 
-    void split(const Range& range, Range& left, Range& right) {
+    void split(const BoxRange& range, BoxRange& left, BoxRange& right) {
         std::uint32_t* const first = order_.data();
         std::uint32_t cut = range.begin + range.size() / 2;
         int axis = 0;
@@ -120,7 +120,7 @@ class Builder {
         }
         const auto make = [&](std::uint32_t begin, std::uint32_t end) {
             std::sort(first + begin, first + end);  // the same tree whatever the library's partition does
-            Range part{begin, end, range.depth + 1, {}};
+            BoxRange part{begin, end, range.depth + 1, {}};
             for (std::uint32_t i = begin; i < end; ++i) part.box.include(boxes_[order_[i]]);
             return part;
         };
@@ -129,7 +129,7 @@ class Builder {
     }
 
     // The bin border of least Σ area · count; false where all middles coincide.
-    bool best_plane(const Range& range, int& best_axis, float& best_at) const {
+    bool best_plane(const BoxRange& range, int& best_axis, float& best_at) const {
         FloatBox middles;
         for (std::uint32_t i = range.begin; i < range.end; ++i)
             middles.include(glm::vec3(middle(order_[i], 0), middle(order_[i], 1), middle(order_[i], 2)));

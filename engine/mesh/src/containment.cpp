@@ -34,13 +34,13 @@ Crossing crossing(const glm::dvec3& p, const Triangle& t) {
     return side > 0 ? Crossing::crosses : Crossing::none;
 }
 
-struct Ray {
+struct MeshRay {
     glm::dvec3 origin, direction;  // in the mesh's frame
     double error_bound;            // of positions carried to the mesh's frame
 };
 
 // Separating axes of a ray and a box: the cross products of the ray with the box's axes, and the ray itself.
-bool may_meet(const Ray& ray, const mesh::MeshNode& node, std::uint32_t lane) {
+bool may_meet(const MeshRay& ray, const mesh::MeshNode& node, std::uint32_t lane) {
     double o[3], d[3], h[3];
     glm::dvec3 offset;
     for (int i = 0; i < 3; ++i) offset[i] = ray.origin[i] - static_cast<double>(node.center[i][lane]);
@@ -67,8 +67,8 @@ bool is_inside(const mesh::MeshTree& mesh, const RigidTransform& pose, const glm
     const std::span<const MeshPiece> pieces = mesh.pieces();
     if (std::none_of(pieces.begin(), pieces.end(), [](const MeshPiece& piece) { return piece.closed; })) return false;
     const RigidTransform back = inverse(pose);
-    const Ray ray{transform(back, p), back.rotation * glm::dvec3(0.0, 0.0, 1.0),
-                  2e-6 * (static_cast<double>(mesh.extent()) + glm::length(p) + glm::length(pose.translation))};
+    const MeshRay ray{transform(back, p), back.rotation * glm::dvec3(0.0, 0.0, 1.0),
+                      2e-6 * (static_cast<double>(mesh.extent()) + glm::length(p) + glm::length(pose.translation))};
     const MeshParts& parts = mesh.parts();
     std::uint32_t stack[256];
     std::uint32_t height = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <cstddef>
 #include <glm/geometric.hpp>
@@ -15,8 +16,6 @@
 
 namespace crofton::mesh {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 float float_above(double value) {
     const float rounded = static_cast<float>(value);

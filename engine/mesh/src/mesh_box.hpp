@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The boxes of a mesh tree.
 #pragma once
+#include <cmath>
 #include <crofton/core/memory.hpp>
 #include <crofton/mesh/mesh_layout.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -11,6 +12,11 @@
 namespace crofton::mesh {
 
 inline constexpr float kMaxMeshCoordinate = 1e12f;  // cubes of differences stay within float
+
+[[nodiscard]] inline bool is_usable(const glm::vec3& p) {
+    return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
+           std::abs(p.z) <= kMaxMeshCoordinate;
+}
 
 class MeshBoxFitter {
   public:

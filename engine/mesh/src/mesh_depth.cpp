@@ -8,12 +8,12 @@
 namespace crofton::mesh {
 namespace {
 
-glm::dvec3 vector_of(const float (&v)[3]) {
+glm::dvec3 exact_vector(const float (&v)[3]) {
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
 double size_of(const mesh::MeshBox& box) {
-    return 2.0 * glm::length(vector_of(box.half));
+    return 2.0 * glm::length(exact_vector(box.half));
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
     glm::dvec3 normal(0.0);
     for (const MeshContact& contact : contacts) normal += contact.normal;
     const glm::dvec3 centers =
-        transform(b_to_a, vector_of(b.parts().root_box.center)) - vector_of(a.parts().root_box.center);
+        transform(b_to_a, exact_vector(b.parts().root_box.center)) - exact_vector(a.parts().root_box.center);
     for (const double sign : {1.0, -1.0}) {
         try_direction(sign * centers);
         try_direction(sign * normal);
@@ -52,8 +52,8 @@ MeshDepth penetration(const mesh::MeshTree& a, const mesh::MeshTree& b, const Ri
             try_direction(axis);
             try_direction(b_to_a.rotation * axis);
         }
-        for (const auto& axis : a.parts().root_box.axes) try_direction(sign * vector_of(axis));
-        for (const auto& axis : b.parts().root_box.axes) try_direction(sign * (b_to_a.rotation * vector_of(axis)));
+        for (const auto& axis : a.parts().root_box.axes) try_direction(sign * exact_vector(axis));
+        for (const auto& axis : b.parts().root_box.axes) try_direction(sign * (b_to_a.rotation * exact_vector(axis)));
     }
     return best;
 }

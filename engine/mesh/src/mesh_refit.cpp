@@ -11,14 +11,7 @@
 #include "mesh_box.hpp"
 
 namespace crofton::mesh {
-namespace {
-
-bool is_usable(const glm::vec3& p) {
-    return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
-           std::abs(p.z) <= kMaxMeshCoordinate;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 // Vertices of no triangle may be anything: which are used is looked up only when some vertex is bad.
 Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) const {

@@ -46,11 +46,6 @@ struct Task {
     std::uint32_t node;
 };
 
-bool is_usable(const glm::vec3& p) {
-    return std::abs(p.x) <= kMaxMeshCoordinate && std::abs(p.y) <= kMaxMeshCoordinate &&
-           std::abs(p.z) <= kMaxMeshCoordinate;
-}
-
 }  // namespace
 
 class MeshTreeBuilder {

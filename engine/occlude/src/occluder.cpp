@@ -34,7 +34,7 @@ Result<Occluder> occluder_of(ShapeId shape, const scene::Transform& transform, s
 
 }  // namespace
 
-OccluderSet::OccluderSet() : data_(std::make_unique<Data>()) {}
+OccluderSet::OccluderSet() : data_(Owner<Data>::make()) {}
 OccluderSet::~OccluderSet() = default;
 OccluderSet::OccluderSet(OccluderSet&&) noexcept = default;
 OccluderSet& OccluderSet::operator=(OccluderSet&&) noexcept = default;

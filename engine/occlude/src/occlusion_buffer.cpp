@@ -117,7 +117,7 @@ void count(OcclusionBuffer::Data& data, std::size_t chunks) {
 
 }  // namespace
 
-OcclusionBuffer::OcclusionBuffer() : data_(std::make_unique<Data>()) {}
+OcclusionBuffer::OcclusionBuffer() : data_(Owner<Data>::make()) {}
 OcclusionBuffer::~OcclusionBuffer() = default;
 OcclusionBuffer::OcclusionBuffer(OcclusionBuffer&&) noexcept = default;
 OcclusionBuffer& OcclusionBuffer::operator=(OcclusionBuffer&&) noexcept = default;

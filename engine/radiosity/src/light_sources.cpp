@@ -15,10 +15,6 @@ constexpr std::uint64_t kLampStream = 0, kSunStream = 1;
 constexpr double kSunRays = 2.0;  // per run on a patch of mean area
 constexpr std::uint64_t kMostSunRays = 8;
 
-double total(const glm::dvec3& v) {
-    return v.x + v.y + v.z;
-}
-
 // Points of the unit cube for each patch: shifted lattice points that go on from run to run.
 class PatchPoints {
   public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points and directions on patches.
+// Points and directions on patches, and colours there.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,6 +10,11 @@
 #include <glm/geometric.hpp>
 
 namespace crofton::radiosity {
+
+// Of red, green and blue.
+[[nodiscard]] inline double total(const glm::dvec3& color) {
+    return color.r + color.g + color.b;
+}
 
 struct Corners {
     glm::dvec3 a, b, c;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "local_lines.hpp"
 #include "ordered_tracing.hpp"
 
 namespace crofton::radiosity {
@@ -16,9 +17,6 @@ constexpr std::uint64_t kFewerLinesAtFirst = 4, kFewerLines = 8;
 constexpr double kEarlierEnd = 10.0;
 constexpr std::uint64_t kGatherStream = 8;
 
-double total(const glm::dvec3& v) {
-    return v.x + v.y + v.z;
-}
 double absolute(const glm::dvec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }

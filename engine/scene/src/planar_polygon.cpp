@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/core/recovery.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/scene/scene.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 
 namespace crofton::scene {
-namespace {
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-}  // namespace
-
 Result<void> validate(const PlanarPolygon& polygon) {
     const auto& points = polygon.polygon.points;
     const auto& ends = polygon.polygon.ring_ends;

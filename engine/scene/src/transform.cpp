@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/scene/transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,10 +14,6 @@ namespace {
 
 constexpr double kUnitTolerance = 0.01;    // of a quaternion's length
 constexpr double kUnitRounding = 0x1p-50;  // of its squared length: left as it is
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 }  // namespace
 

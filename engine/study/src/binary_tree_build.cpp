@@ -7,20 +7,13 @@
 #include <limits>
 #include <numeric>
 
+#include "binary_tree_value.hpp"
+
 namespace crofton::study {
 namespace {
 
 constexpr unsigned kBins = 16;
 constexpr std::size_t kMaxItems = std::size_t{1} << 30;
-
-double value(const measure::Criterion& criterion, const Aabb& box) {
-    const glm::dvec3 size = box.max - box.min;
-    return criterion(size.x, size.y, size.z);
-}
-
-double value(const measure::Criterion& criterion, const Obb& box) {
-    return criterion(measure::intrinsic_volumes_of_box(box));
-}
 
 }  // namespace
 

@@ -3,17 +3,14 @@
 #include <crofton/study/binary_tree.hpp>
 #include <limits>
 
+#include "binary_tree_value.hpp"
+
 namespace crofton::study {
 namespace {
 
 Aabb merged(Aabb a, const Aabb& b) {
     a.include(b);
     return a;
-}
-
-double value(const measure::Criterion& criterion, const Aabb& box) {
-    const glm::dvec3 size = box.max - box.min;
-    return criterion(size.x, size.y, size.z);
 }
 
 }  // namespace

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <queue>
 
 namespace crofton::study {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Where the circle through a, b and c has its centre on the bisector of a and b, along the left normal of a → b.
 double place_of_center(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {

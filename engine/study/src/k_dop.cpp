@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/predicates.hpp>
 #include <crofton/geometry/trigonometry.hpp>
@@ -8,13 +9,10 @@
 #include <crofton/study/k_dop.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <string>
 
 namespace crofton::study {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // All points where three faces meet and no other cuts off.
 void find_corners(KDop& dop) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/study/planar_bounds.hpp>
@@ -15,7 +16,6 @@ namespace crofton::study {
 namespace {
 
 using std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Problem {
     Vector<glm::dvec2> hull;

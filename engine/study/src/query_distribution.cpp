@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/sampling/sampling.hpp>
@@ -16,10 +17,6 @@ namespace {
 
 using std::numbers::pi;
 constexpr std::uint64_t kUniformDirections = 4096;
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // Number i of n: even heights, and longitudes by the golden angle.
 glm::dvec3 even_direction(std::uint64_t i, std::uint64_t n, double highest) {

@@ -11,7 +11,7 @@
 namespace crofton::triangulate {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoPatch = ~std::uint32_t{0};
 
 // The values of a patch, continued from its first triangle.
 class ValueField {
@@ -63,12 +63,12 @@ class PatchFinder {
     Vector<PlanarPatch> find() {
         find_partners();
         const auto count = static_cast<std::uint32_t>(mesh_.triangle_count());
-        patch_of_.assign(count, kNone);
-        start_.assign(mesh_.positions.size(), kNone);
-        local_.assign(mesh_.positions.size(), kNone);
+        patch_of_.assign(count, kNoPatch);
+        start_.assign(mesh_.positions.size(), kNoPatch);
+        local_.assign(mesh_.positions.size(), kNoPatch);
         Vector<PlanarPatch> patches;
         for (std::uint32_t seed = 0; seed < count; ++seed) {
-            if (patch_of_[seed] != kNone || normal(seed) == glm::dvec3(0.0)) continue;
+            if (patch_of_[seed] != kNoPatch || normal(seed) == glm::dvec3(0.0)) continue;
             grow(seed);
             if (members_.size() > 1) patches.push_back(make_patch(seed));
         }
@@ -97,7 +97,7 @@ class PatchFinder {
         std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
             return std::tie(a.low, a.high, a.side) < std::tie(b.low, b.high, b.side);
         });
-        partner_.assign(sides.size(), kNone);
+        partner_.assign(sides.size(), kNoPatch);
         for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
             for (j = i; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;
             if (j != i + 2 || corner(sides[i].side) == corner(sides[i + 1].side)) continue;
@@ -121,9 +121,9 @@ class PatchFinder {
             if (!field.agrees(corner(3 * std::size_t{seed} + k))) return;
         for (std::size_t i = 0; i < members_.size(); ++i) {
             for (std::size_t side = 3 * members_[i]; side < 3 * members_[i] + 3; ++side) {
-                if (partner_[side] == kNone) continue;
+                if (partner_[side] == kNoPatch) continue;
                 const std::uint32_t other = partner_[side] / 3;
-                if (patch_of_[other] != kNone || glm::dot(normal(other), n) <= 0.0) continue;
+                if (patch_of_[other] != kNoPatch || glm::dot(normal(other), n) <= 0.0) continue;
                 const std::uint32_t apex = corner(next(next(partner_[side])));
                 if (!in_plane(position(apex)) || !field.agrees(apex)) continue;
                 patch_of_[other] = seed;
@@ -150,7 +150,7 @@ class PatchFinder {
         for (const std::uint32_t t : members_) {
             for (std::size_t side = 3 * t; side < 3 * t + 3; ++side) {
                 const std::uint32_t p = partner_[side];
-                const bool inner = p != kNone && patch_of_[p / 3] == seed;
+                const bool inner = p != kNoPatch && patch_of_[p / 3] == seed;
                 if (inner && side < p)
                     patch.weight += glm::distance(position(corner(side)), position(corner(next(side))));
                 if (!inner) boundary_.push_back({static_cast<std::uint32_t>(side), start_[corner(side)]});
@@ -181,9 +181,9 @@ class PatchFinder {
     void collect_rings(PlanarPatch& patch, Add add) {
         for (std::size_t i = 0; i < boundary_.size(); ++i) {
             const std::uint32_t first = corner(boundary_[i].side);
-            if (start_[first] == kNone) continue;
+            if (start_[first] == kNoPatch) continue;
             std::uint32_t vertex = first;
-            while (start_[vertex] != kNone) {
+            while (start_[vertex] != kNoPatch) {
                 add(vertex);
                 const Boundary& side = boundary_[start_[vertex]];
                 start_[vertex] = side.next;

@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <crofton/core/error.hpp>
-#include <new>
 
 namespace crofton {
 
 namespace world {
 
 OccludedViewOwner make_occluded_view() {
-    void* const memory = detail::allocate(sizeof(OccludedView), alignof(OccludedView));
-    return OccludedViewOwner(new (memory) OccludedView());
+    return OccludedViewOwner(Owner<OccludedView>::make().release());
 }
 
 void OccludedViewDeleter::operator()(OccludedView* view) const {
-    view->~OccludedView();
-    detail::release(view, sizeof(OccludedView), alignof(OccludedView));
+    Destroy<OccludedView>()(view);
 }
 
 Result<void> OccludedView::resize(const occlude::BufferSize& size) {

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "must.hpp"
+
 namespace crofton::world {
 namespace {
 
@@ -17,10 +19,6 @@ using occlude::FoundOccluder;
 using occlude::OccluderId;
 using occlude::OccluderKind;
 using occlude::ShapeId;
-
-void must([[maybe_unused]] const Result<void>& done) {
-    CROFTON_ASSERT(done.has_value(), "occluders and their set disagree");
-}
 
 // Eight corners in float whose hull lies in the box. Rounding moves a corner by no more than e = 2^-24 max|coordinate|
 // along each axis: by e Σ|row k of the inverse of the axes| along the box's axis k, which is taken off beforehand. None

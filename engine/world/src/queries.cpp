@@ -5,6 +5,7 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/cull/cull.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/common.hpp>
@@ -29,9 +30,6 @@ Aabb bounds_of(const collide::Capsule& capsule) {
     return bounds;
 }
 
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
 bool is_valid(const Obb& box) {
     return validate(box).has_value();
 }

@@ -6,6 +6,8 @@
 #include <crofton/core/error.hpp>
 #include <utility>
 
+#include "must.hpp"
+
 namespace crofton::world {
 namespace {
 
@@ -22,10 +24,6 @@ constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 constexpr std::size_t kBudgetPerChange = 128;
 // The tree is rebuilt once such a part of its items has changed.
 constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
-
-void must([[maybe_unused]] const Result<void>& done) {
-    CROFTON_ASSERT(done.has_value(), "the index and its tree disagree");
-}
 
 }  // namespace
 

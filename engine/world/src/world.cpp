@@ -2,22 +2,15 @@
 #include <chrono>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
-#include <new>
 
 #include "world_state.hpp"
 
 namespace crofton {
 
-World::World(const WorldOptions& options)
-    : state_(new (detail::allocate(sizeof(State), alignof(State))) State(options)) {}
+World::World(const WorldOptions& options) : state_(Owner<State>::make(options)) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
-
-void World::Deleter::operator()(State* state) const {
-    state->~State();
-    detail::release(state, sizeof(State), alignof(State));
-}
 
 bool World::contains(ObjectHandle object) const {
     return state_->table.contains(object);

@@ -6,7 +6,6 @@
 #include <crofton/boxtree/structure.hpp>
 #include <crofton/core/executor.hpp>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "pipeline/pipeline.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -32,17 +32,6 @@ struct BakeOptions {
 };
 
 // Time on the wall, and on all of the process's cores: on a busy machine only the second one says much.
-struct Stopwatch {
-    Clock::time_point start = Clock::now();
-    std::clock_t cpu_start = std::clock();
-    [[nodiscard]] double milliseconds() const {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    }
-    [[nodiscard]] double cpu_milliseconds() const {
-        return 1e3 * static_cast<double>(std::clock() - cpu_start) / static_cast<double>(CLOCKS_PER_SEC);
-    }
-};
-
 struct Times {
     double milliseconds, cpu_milliseconds;
 };

@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Request {
+struct CollideRequest {
     ReadOptions read;
     std::string a, b, pose, mode = "any", json_path;
 };
@@ -157,7 +157,7 @@ Json document_of(const Answer& answer) {
     return document;
 }
 
-int run(const Request& request) {
+int run_collide(const CollideRequest& request) {
     const auto pose = pose_of(request.pose);
     if (!pose) return report_error("", pose.error());
     double build = 0.0;
@@ -189,7 +189,7 @@ int run(const Request& request) {
 }  // namespace
 
 void add_collide_command(CommandLine& line) {
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<CollideRequest>();
     Command command = line.command("collide", "Do two meshes meet, where, how deep, or how far apart are they?");
     command.option("A", request->a, "Mesh file (.obj, or any scene format)").required();
     command.option("B", request->b, "Mesh file that the pose moves").required();
@@ -217,7 +217,7 @@ void add_collide_command(CommandLine& line) {
         "  crofton collide bunny.obj bunny.obj --pose 0.05,0,0,1,0,0,0 --mode all --json -\n"
         "  crofton collide a.obj b.obj --pose pose.txt --mode distance");
     add_read_options(command, request->read);
-    command.action([request] { return run(*request); });
+    command.action([request] { return run_collide(*request); });
 }
 
 }  // namespace crofton::cli

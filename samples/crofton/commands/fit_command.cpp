@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // crofton fit: the best oriented box around each mesh, with the proof that it is.
 #include <algorithm>
-#include <chrono>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <cstdio>
@@ -16,11 +15,12 @@
 #include "json/json.hpp"
 #include "mesh_file.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 
 namespace crofton::cli {
 namespace {
 
-struct Request {
+struct FitRequest {
     std::vector<std::string> files;
     std::string criterion = "perimeter", quality = "exact", json_path, svg_path;
     double budget_seconds = 0.0;  // 0: none
@@ -47,18 +47,8 @@ Result<std::vector<glm::dvec3>> parse_directions(const std::string& text) {
     return directions;
 }
 
-class Stopwatch {
-  public:
-    [[nodiscard]] double milliseconds() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Criterion& criterion,
-                          const Request& request) {
+                          const FitRequest& request) {
     FittedBox fitted;
     const Stopwatch watch;
     if (request.quality == "exact") {
@@ -83,7 +73,7 @@ Result<FittedBox> fit_box(std::span<const glm::dvec3> points, const measure::Cri
     return fitted;
 }
 
-Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& criterion, const Request& request) {
+Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& criterion, const FitRequest& request) {
     FittedMesh mesh;
     mesh.file = file;
     const auto points = load_points(file, request.read);
@@ -121,7 +111,7 @@ Result<FittedMesh> fit_mesh(const std::string& file, const measure::Criterion& c
     return mesh;
 }
 
-int run(const Request& request) {
+int run_fit(const FitRequest& request) {
     if (request.planar) {
         const auto status = run_fit_planar({request.files, request.json_path, request.svg_path, request.read});
         return status ? *status : report_error("", status.error());
@@ -162,7 +152,7 @@ int run(const Request& request) {
 }  // namespace
 
 void add_fit_command(CommandLine& line) {
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<FitRequest>();
     Command command = line.command("fit", "The best oriented box around each mesh, for a criterion of your choice");
     command.option("files", request->files, "OBJ, glTF, GLB or WAD files; only their vertices count").required();
     command.option("--criterion", request->criterion, kCriterionSyntax).show_default();
@@ -218,7 +208,7 @@ void add_fit_command(CommandLine& line) {
         "  crofton fit bunny.obj --bounds all --directions '1,0,0;0,1,0;0,0,1;1,1,0;1,-1,0'\n"
         "  crofton fit --planar counties.poly --svg bounds.svg");
     add_read_options(command, request->read);
-    command.action([request] { return run(*request); });
+    command.action([request] { return run_fit(*request); });
 }
 
 }  // namespace crofton::cli

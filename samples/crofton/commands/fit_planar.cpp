@@ -22,7 +22,7 @@ namespace {
 
 using fit::PlanarCriterion;
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
+double cross_product(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
@@ -52,8 +52,8 @@ double flushness(const std::vector<glm::dvec2>& outline, const std::vector<glm::
         const double length = glm::length(side);
         if (!(length > 0.0)) continue;
         for (std::size_t k = 0; k < hull.size(); ++k)
-            least = std::min(least, std::max(std::abs(cross(side, hull[k] - outline[i])),
-                                             std::abs(cross(side, hull[(k + 1) % hull.size()] - outline[i]))) /
+            least = std::min(least, std::max(std::abs(cross_product(side, hull[k] - outline[i])),
+                                             std::abs(cross_product(side, hull[(k + 1) % hull.size()] - outline[i]))) /
                                         length);
     }
     return least;

@@ -9,12 +9,12 @@
 namespace crofton::cli {
 namespace {
 
-constexpr double kPanel = 300.0, kHeading = 22.0, kMargin = 14.0;
-constexpr const char* kColors[] = {"#0a58ca", "#c8553d"};  // by perimeter, by area
+constexpr double kPlanarPanel = 300.0, kPlanarHeading = 22.0, kPlanarMargin = 14.0;
+constexpr const char* kPlanarColors[] = {"#0a58ca", "#c8553d"};  // by perimeter, by area
 
 void draw(const PlanarFit& fit, std::size_t first, std::size_t count, const glm::dvec2& corner, std::string& svg) {
     const std::span shapes = std::span(fit.shapes).subspan(first, count);
-    SvgPanel panel(corner + 0.5 * kPanel, kPanel - 2.0 * kMargin, svg);
+    SvgPanel panel(corner + 0.5 * kPlanarPanel, kPlanarPanel - 2.0 * kPlanarMargin, svg);
     for (const glm::dvec2& p : fit.hull) panel.include(p);
     for (const PlanarShape& shape : shapes) {
         for (const glm::dvec2& p : shape.outline) panel.include(p);
@@ -23,7 +23,7 @@ void draw(const PlanarFit& fit, std::size_t first, std::size_t count, const glm:
     panel.path(fit.ring, "fill='#dfe6ee' stroke='none'");
     panel.path(fit.hull, "fill='none' stroke='#555' stroke-width='1' stroke-dasharray='3 2'");
     for (std::size_t s = 0; s < count; ++s) {
-        const std::string color = kColors[s];
+        const std::string color = kPlanarColors[s];
         const std::string style = "fill='none' stroke-width='1.5' stroke='" + color + "'";
         if (shapes[s].outline.empty())
             panel.disc(shapes[s].disc.center, shapes[s].disc.radius, style);
@@ -41,16 +41,17 @@ std::string planar_fits_svg(const std::vector<PlanarFit>& fits, std::size_t most
     std::stable_sort(shown.begin(), shown.end(),
                      [](const PlanarFit* a, const PlanarFit* b) { return a->hull.size() > b->hull.size(); });
     shown.resize(std::min(most, shown.size()));
-    std::string svg = svg_head(3.0 * kPanel, static_cast<double>(shown.size()) * (kPanel + kHeading) + kHeading);
-    svg_text(svg, kMargin, 15.0, kColors[0], "least perimeter; least disc");
-    svg_text(svg, kMargin + 200.0, 15.0, kColors[1], "least area");
-    svg_text(svg, kMargin + 320.0, 15.0, "#555", "hull dashed; dots: where a best bound touches");
+    std::string svg = svg_head(3.0 * kPlanarPanel,
+                               static_cast<double>(shown.size()) * (kPlanarPanel + kPlanarHeading) + kPlanarHeading);
+    svg_text(svg, kPlanarMargin, 15.0, kPlanarColors[0], "least perimeter; least disc");
+    svg_text(svg, kPlanarMargin + 200.0, 15.0, kPlanarColors[1], "least area");
+    svg_text(svg, kPlanarMargin + 320.0, 15.0, "#555", "hull dashed; dots: where a best bound touches");
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const double top = kHeading + static_cast<double>(i) * (kPanel + kHeading);
-        svg_text(svg, kMargin, top + 15.0, "#000", shown[i]->name);
+        const double top = kPlanarHeading + static_cast<double>(i) * (kPlanarPanel + kPlanarHeading);
+        svg_text(svg, kPlanarMargin, top + 15.0, "#000", shown[i]->name);
         constexpr std::size_t first[] = {0, 2, 3}, count[] = {2, 1, 2};
         for (std::size_t k = 0; k < 3; ++k)
-            draw(*shown[i], first[k], count[k], {static_cast<double>(k) * kPanel, top + kHeading}, svg);
+            draw(*shown[i], first[k], count[k], {static_cast<double>(k) * kPlanarPanel, top + kPlanarHeading}, svg);
     }
     return svg + "</svg>\n";
 }

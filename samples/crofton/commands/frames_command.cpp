@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <optional>
 
 #include "assets/flat_scene.hpp"
@@ -262,7 +263,7 @@ class FramesRun {
     std::vector<ReportPicture> report_pictures_;
 };
 
-constexpr const char* kExamples =
+constexpr const char* kFramesExamples =
     "The table, a line per frame: instances whose bound meets the view (visible), meets its surface\n"
     "(straddle), or does so while the object's triangles lie inside or outside as a whole (improper); tree\n"
     "nodes tested; triangles of what is visible (submitted), those that meet the frustum (passed), those that\n"
@@ -290,7 +291,7 @@ void add_frames_command(CommandLine& line) {
     auto options = std::make_shared<FramesOptions>();
     Command command =
         line.command("frames", "Run a camera path through a scene: cull, collide, draw and count each frame");
-    command.footer(kExamples);
+    command.footer(kFramesExamples);
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
     command.option("--frames", options->frames, "How many frames; where absent 120, or all of a recorded path");
     command.option("--camera", options->camera, "orbit, street, random, or a JSON file of cameras").show_default();

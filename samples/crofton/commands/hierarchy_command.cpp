@@ -25,7 +25,7 @@ namespace {
 using std::numbers::pi;
 using study::PlanarSupport;
 
-struct Options {
+struct HierarchyOptions {
     std::string file, json, svg;
     std::uint64_t levels = 3, lines = 1'000'000, seed = 1;
 };
@@ -36,7 +36,7 @@ struct Object {
 };
 
 // The paper's degenerate triangle, l = 1, and one that is none; or the polygons of a file.
-Result<std::vector<Object>> objects_of(const Options& options) {
+Result<std::vector<Object>> objects_of(const HierarchyOptions& options) {
     if (options.file.empty())
         return std::vector<Object>{{"the paper's triangle, l = 1", {{-1.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}}},
                                    {"a triangle", {{-1.0, -0.4}, {1.0, -0.3}, {0.3, 0.5}}}};
@@ -95,7 +95,7 @@ double support_of(const ChainLevel& level, const glm::dvec2& n) {
 
 // For every level the measure of the lines that hit it and all before it, by uniform lines of a circle around the
 // first.
-std::vector<VerifyRow> trials(const Chain& chain, const std::string& name, const Options& options) {
+std::vector<VerifyRow> trials(const Chain& chain, const std::string& name, const HierarchyOptions& options) {
     const Disc& first = *chain.levels[0].disc;
     const double reach = 1.25 * first.radius;
     const sampling::UnitPoints points(options.seed);
@@ -130,7 +130,7 @@ std::vector<VerifyRow> trials(const Chain& chain, const std::string& name, const
     return rows;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run_hierarchy(const HierarchyOptions& options) {
     const auto objects = objects_of(options);
     if (!objects) return tl::unexpected(objects.error());
     std::vector<VerifyRow> rows;
@@ -179,7 +179,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 void add_hierarchy_command(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<HierarchyOptions>();
     Command command =
         line.command("hierarchy", "Bounds of the plane, each the best given the ones before it, as in the paper");
     command.footer(
@@ -201,7 +201,7 @@ void add_hierarchy_command(CommandLine& line) {
     command.option("--json", options->json, "Write the chains as JSON; - for stdout").writable_file();
     command.option("--svg", options->svg, "Draw the chains; - for stdout").writable_file();
     command.action([options] {
-        const auto status = run(*options);
+        const auto status = run_hierarchy(*options);
         return status ? *status : report_error("", status.error());
     });
 }

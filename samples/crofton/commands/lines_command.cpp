@@ -19,7 +19,7 @@ namespace {
 
 using radiosity::LineMethod;
 
-struct Options {
+struct LinesOptions {
     std::vector<std::string> scenes;
     ReadOptions read;
     std::string scene = "town", map, json;
@@ -34,7 +34,7 @@ struct Seen {
     double surface_area = 0.0;  // of the body that the lines fill
 };
 
-Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const Options& options) {
+Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& source, const LinesOptions& options) {
     const auto seen = radiosity::visibility_complexity(tracer, source, options.blocks);
     const double n = static_cast<double>(options.blocks * radiosity::LineSource::kBlock);
     return {n, n * seen.mean_crossings, n * (std::pow(seen.deviation, 2.0) + std::pow(seen.mean_crossings, 2.0)),
@@ -43,7 +43,7 @@ Seen by_lines(const radiosity::LineTracer& tracer, const radiosity::LineSource& 
 
 // As many bundles as there are blocks / 2, of the size that the solver takes: a cell as large as a triangle.
 Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double box_area, std::uint64_t seed,
-                sampling::Sequence sequence, const Options& options) {
+                sampling::Sequence sequence, const LinesOptions& options) {
     const sampling::UnitPoints points(seed, sequence);
     radiosity::BundleTracer::Scratch scratch;
     radiosity::LineHits hits;
@@ -69,7 +69,8 @@ Seen by_bundles(const radiosity::BundleTracer& tracer, double cell_area, double 
 // How well a way to draw lines counts the scene's surface, a number known exactly: S = crossings · F / (2 N).
 // Efficiency is the reciprocal of error² · time, so it does not depend on how many lines were spent.
 template <class Look>
-Json compare(const char* method, sampling::Sequence sequence, double surface, const Options& options, Look&& look) {
+Json compare(const char* method, sampling::Sequence sequence, double surface, const LinesOptions& options,
+             Look&& look) {
     double squares = 0.0;
     Seen all;
     const auto start = std::chrono::steady_clock::now();
@@ -93,7 +94,7 @@ Json compare(const char* method, sampling::Sequence sequence, double surface, co
             {"efficiency", 1.0 / (error * error * seconds / options.repeats)}};
 }
 
-Result<void> run(const Options& options) {
+Result<void> run_lines(const LinesOptions& options) {
     assets::LoadOptions load;
     load.map = options.map;
     load.seed = options.seed;
@@ -151,7 +152,7 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 void add_lines_command(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<LinesOptions>();
     Command command = line.command("lines", "Compare the ways to draw global lines on a scene");
     command.footer(
         "Each way of drawing uniform lines counts the scene's surface S, a number known exactly, as\n"
@@ -195,7 +196,7 @@ void add_lines_command(CommandLine& line) {
             return report_error(
                 "", Error{ErrorCode::invalid_argument, kNoItem, "lines: one scene at a time, unless with --factors"});
         if (!options->scenes.empty()) options->scene = options->scenes[0];
-        const auto done = run(*options);
+        const auto done = run_lines(*options);
         return done ? int{kSuccess} : report_error("", done.error());
     });
 }

@@ -28,7 +28,7 @@ struct MeasureOptions {
 };
 
 // The mean of what was added, with its standard error.
-class Mean {
+class MeanAndError {
   public:
     void add(double x) {
         sum_ += x;
@@ -92,7 +92,7 @@ double area_of(const TriangleMesh& mesh) {
     return sum;
 }
 
-VerifyRow row(const char* claim, const char* formula, double exact, double factor, const Mean& mean) {
+VerifyRow row(const char* claim, const char* formula, double exact, double factor, const MeanAndError& mean) {
     return measured_row(claim, formula, exact, factor * mean.value(), factor * mean.standard_error());
 }
 
@@ -103,7 +103,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     const double ball_area = source.surface_area();
     if (hull.rank == 3) {
         const HalfSpaces solid(points, hull);
-        Mean hits, chords;
+        MeanAndError hits, chords;
         Vector<Line> lines;
         for (std::uint64_t block = 0; block < blocks; ++block) {
             source.draw(block, lines);
@@ -119,7 +119,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
     }
     study::ConvexBody body;
     for (const std::uint32_t v : hull.vertices) body.points.push_back(points[v]);
-    Mean breadths;
+    MeanAndError breadths;
     const sampling::UnitPoints numbers(options.seed);
     for (std::uint64_t i = 0; i < blocks * radiosity::LineSource::kBlock; ++i)
         breadths.add(study::breadth(body, sampling::direction(numbers.at<2>(i))));
@@ -127,7 +127,7 @@ void hull_rows(std::span<const glm::dvec3> points, const ConvexHull& hull, const
                        2.0 * std::numbers::pi, breadths));
 }
 
-Result<void> run(const MeasureOptions& options) {
+Result<void> run_measure(const MeasureOptions& options) {
     const auto mesh = load_mesh(options.file, options.read);
     if (!mesh) return tl::unexpected(mesh.error());
     const std::vector<glm::dvec3> points(mesh->positions.begin(), mesh->positions.end());
@@ -185,7 +185,7 @@ void add_measure_command(CommandLine& line) {
     command.option("--json", options->json, "Write the table as JSON; - for stdout").writable_file();
     add_read_options(command, options->read);
     command.action([options] {
-        const auto done = run(*options);
+        const auto done = run_measure(*options);
         return done ? kSuccess : report_error("", done.error());
     });
 }

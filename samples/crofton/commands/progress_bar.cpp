@@ -7,7 +7,7 @@
 
 namespace crofton::cli {
 namespace {
-constexpr std::size_t kWidth = 40;
+constexpr std::size_t kBarWidth = 40;
 }
 
 ProgressBar::ProgressBar(std::string label, std::size_t total)
@@ -20,11 +20,11 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::set(std::size_t done) {
-    const std::size_t width = std::min(kWidth, kWidth * done / total_);
+    const std::size_t width = std::min(kBarWidth, kBarWidth * done / total_);
     if (!terminal_ || width == shown_) return;
     shown_ = width;
     std::fprintf(stderr, "\r%s [%s%s] %zu/%zu", label_.c_str(), std::string(width, '#').c_str(),
-                 std::string(kWidth - width, '.').c_str(), std::min(done, total_), total_);
+                 std::string(kBarWidth - width, '.').c_str(), std::min(done, total_), total_);
     std::fflush(stderr);
 }
 

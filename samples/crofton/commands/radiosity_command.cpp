@@ -25,7 +25,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct RadiosityOptions {
     ReadOptions read;
     std::string scene, method = "global", out, png, light_field, json, checkpoint, map;
     std::uint64_t lines = 20'000'000, seed = 1, stored_lines = 1 << 22;
@@ -33,7 +33,7 @@ struct Options {
     unsigned threads = 1;
 };
 
-Result<radiosity::SolverOptions> solver_options(const Options& options) {
+Result<radiosity::SolverOptions> solver_options(const RadiosityOptions& options) {
     radiosity::SolverOptions result;
     result.seed = options.seed;
     if (options.method == "local")
@@ -74,7 +74,7 @@ Result<void> save_checkpoint(const std::string& path, const radiosity::Solver& s
 }
 
 // Runs until the error or the number of lines is reached.
-Result<void> solve(const Options& options, radiosity::Solver& solver, Executor& executor) {
+Result<void> solve(const RadiosityOptions& options, radiosity::Solver& solver, Executor& executor) {
     if (!options.checkpoint.empty() && std::filesystem::exists(options.checkpoint)) {
         const auto bytes = read_file(options.checkpoint);
         if (!bytes) return tl::unexpected(bytes.error());
@@ -99,7 +99,7 @@ Result<void> solve(const Options& options, radiosity::Solver& solver, Executor& 
     return {};
 }
 
-Result<int> run(const Options& options) {
+Result<int> run_radiosity(const RadiosityOptions& options) {
     catch_interrupts();
     const auto parameters = solver_options(options);
     if (!parameters) return tl::unexpected(parameters.error());
@@ -194,7 +194,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 void add_radiosity_command(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RadiosityOptions>();
     Command command = line.command("radiosity", "Light a scene by global lines and bake it into vertex colours");
     command.footer(
         "Colours are reflectances; above 0.9, white paint's, they count as 0.9, so that light ends. Triangles of no "
@@ -240,7 +240,7 @@ void add_radiosity_command(CommandLine& line) {
         .writable_file();
     add_read_options(command, options->read);
     command.action([options] {
-        const auto done = run(*options);
+        const auto done = run_radiosity(*options);
         return done ? *done : report_error("", done.error());
     });
 }

@@ -156,7 +156,7 @@ Result<int> run_polygons(const TriangulateOptions& options, Method method) {
     return totals.refused ? kBadInput : kSuccess;
 }
 
-Result<int> run(const TriangulateOptions& options) {
+Result<int> run_triangulate(const TriangulateOptions& options) {
     catch_interrupts();
     const auto method = method_from(options.method);
     if (!method) return tl::unexpected(method.error());
@@ -198,7 +198,7 @@ Result<int> run(const TriangulateOptions& options) {
                        options.tolerance, options.attribute_tolerance, options.no_indices, options.read});
 }
 
-constexpr const char* kExamples =
+constexpr const char* kTriangulateExamples =
     "Polygons: .poly, .json (earcut's rings or GeoJSON), .geojson, .wad. Meshes, whose planar patches are triangulated "
     "anew:\n"
     ".obj, .glb, .gltf. Indices count a polygon's points ring by ring. A polygon that is refused is named on stderr, "
@@ -221,7 +221,7 @@ constexpr const char* kExamples =
 void add_triangulate_command(CommandLine& line) {
     auto options = std::make_shared<TriangulateOptions>();
     Command command = line.command("triangulate", "Polygons with holes, or the planar patches of meshes, to triangles");
-    command.footer(kExamples);
+    command.footer(kTriangulateExamples);
     command.option("file", options->file, "What to triangulate").required();
     command.option("--method", options->method, "ear, delaunay or minimum-weight").show_default();
     command.option("--map", options->map, "Only this level of a .wad");
@@ -254,7 +254,7 @@ void add_triangulate_command(CommandLine& line) {
     add_read_options(command, options->read);
     command.action([options, tolerance] {
         options->has_tolerance = tolerance.given();
-        const auto status = run(*options);
+        const auto status = run_triangulate(*options);
         return status ? *status : report_error("", status.error());
     });
 }

@@ -22,7 +22,7 @@ namespace {
 using triangulate::Method;
 
 constexpr std::array<Method, 3> kMethods = {Method::ear, Method::delaunay, Method::minimum_weight};
-constexpr std::array<const char*, 3> kNames = {"ear", "delaunay", "minimum-weight"};
+constexpr std::array<const char*, 3> kMethodNames = {"ear", "delaunay", "minimum-weight"};
 constexpr double kQuadSize = 64.0;
 constexpr int kFrames = 60;
 
@@ -96,7 +96,7 @@ Json to_json(const Study& study, const Comparison& passed, const QuadComparison&
              const Result<std::vector<DrawCost>>& drawn) {
     Json rows = Json::array();
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
-        Json row{{"method", kNames[m]},
+        Json row{{"method", kMethodNames[m]},
                  {"weight", study.weight[m]},
                  {"triangles_passed",
                   {{"predicted", passed.predicted[m]},
@@ -124,7 +124,7 @@ void print(const Study& study, const Comparison& passed, const QuadComparison& q
     std::printf("%-15s %13s %7s | %9s %20s | %9s %18s %9s | %9s %9s\n", "method", "weight", "ratio", "passed:(6)",
                 "measured (95 %)", "quads:(A)", "met (95 %)", "covered", "clipped", "ms");
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
-        std::printf("%-15s %13.7g %7.4f | %9.5f %9.5f +- %7.5f | %9.2f %9.2f +- %5.2f %9.2f", kNames[m],
+        std::printf("%-15s %13.7g %7.4f | %9.5f %9.5f +- %7.5f | %9.2f %9.2f +- %5.2f %9.2f", kMethodNames[m],
                     study.weight[m], study.weight[m] / study.weight[2], passed.predicted[m], passed.measured[m],
                     1.96 * passed.error[m], quads.met.predicted[m], quads.met.measured[m], 1.96 * quads.met.error[m],
                     quads.covered[m]);

@@ -18,7 +18,7 @@ namespace {
 
 using Corners = std::array<glm::dvec2, 3>;
 
-struct Mean {
+struct MeanOfCosts {
     double predicted = 0.0, measured = 0.0, squares = 0.0;
 
     void add(double expected, double counted) {
@@ -28,10 +28,10 @@ struct Mean {
     }
 };
 
-Comparison comparison_of(std::span<const Mean> means, std::uint64_t trials) {
+Comparison comparison_of(std::span<const MeanOfCosts> means, std::uint64_t trials) {
     Comparison result;
     const auto n = static_cast<double>(trials);
-    for (const Mean& m : means) {
+    for (const MeanOfCosts& m : means) {
         const double difference = (m.measured - m.predicted) / n;
         result.predicted.push_back(m.predicted / n);
         result.measured.push_back(m.measured / n);
@@ -121,7 +121,7 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
     const double cell = size.x * size.y * size.z;
     const sampling::UnitPoints points(6);
     const std::size_t methods = polygons[0].results.size();
-    std::vector<Mean> means(methods);
+    std::vector<MeanOfCosts> means(methods);
     std::vector<std::vector<double>> expected;
     for (const auto& p : polygons) {
         expected.emplace_back();
@@ -153,7 +153,7 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
 QuadComparison pixel_quads(std::span<const TriangulatedPolygon> polygons, std::uint64_t trials, double size) {
     const std::size_t methods = polygons[0].results.size();
     const sampling::UnitPoints points(7);
-    std::vector<Mean> means(methods);
+    std::vector<MeanOfCosts> means(methods);
     QuadComparison result;
     result.covered.assign(methods, 0.0);
     for (std::uint64_t i = 0; i < trials; ++i) {

@@ -26,7 +26,7 @@ constexpr Topic kTopics[] = {
     {"occlude", verify_occlude}, {"collide", verify_collide},
 };
 
-struct Request {
+struct VerifyRequest {
     std::string topic;
     std::vector<std::string> scenes;
     std::uint32_t instances = 0;
@@ -34,7 +34,7 @@ struct Request {
     std::string json_path;
 };
 
-int run(const Request& request) {
+int run_verify(const VerifyRequest& request) {
     if (!request.scenes.empty() && request.topic != "occlude") {
         std::fputs("crofton: --scene goes with the topic occlude\n", stderr);
         return kBadInput;
@@ -61,7 +61,7 @@ int run(const Request& request) {
 }  // namespace
 
 void add_verify_command(CommandLine& line) {
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<VerifyRequest>();
     Command command = line.command("verify", "Check the claims Crofton is built on, one row each");
     std::vector<std::string> names;
     for (const Topic& topic : kTopics) names.emplace_back(topic.name);
@@ -86,7 +86,7 @@ void add_verify_command(CommandLine& line) {
         "  crofton verify lines --trials 1000000 --seed 7\n"
         "  crofton verify occlude --scene town --scene forest.glb --trials 1000000\n"
         "  crofton verify paper --json - | jq '.[] | select(.holds | not)'");
-    command.action([request] { return run(*request); });
+    command.action([request] { return run_verify(*request); });
 }
 
 }  // namespace crofton::cli

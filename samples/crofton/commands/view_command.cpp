@@ -54,7 +54,7 @@ constexpr const char* kScriptHelp =
     "  screenshot \"a.png\"              the picture of this frame, with panels\n"
     "  scale 2.0                       as if the window had come onto a display of that scale\n"
     "  lose_device true, quit true\n";
-constexpr const char* kExamples =
+constexpr const char* kViewExamples =
     "Examples:\n"
     "  crofton view                                        the town\n"
     "  crofton view level.wad --map MAP07\n"
@@ -68,7 +68,7 @@ void add_view_command(CommandLine& line) {
     auto arguments = std::make_shared<ViewArguments>();
     viewer::ViewerOptions& options = arguments->options;
     Command command = line.command("view", "Fly through a scene and see what is culled, why, and what it costs");
-    command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kExamples);
+    command.footer(viewer::key_help() + "\n" + kScriptHelp + "\n" + kViewExamples);
     command.option("SCENE", options.scene.source, "town, room, or a .glb, .gltf, .obj or .wad file").show_default();
     command.option("--map", options.scene.map, "which level of a WAD");
     command.option("--seed", options.scene.seed, "of the town").show_default();

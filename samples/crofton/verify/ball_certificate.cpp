@@ -11,7 +11,7 @@ namespace {
 
 // What double arithmetic on differences, products and fewer than forty additions can be off by, as a part of the sum of
 // all magnitudes.
-constexpr double kRounding = 0x1p-46;
+constexpr double kBallRounding = 0x1p-46;
 
 // Points are relative to the frustum's origin.
 struct Ball {
@@ -42,7 +42,7 @@ bool is_common_point(const Frustum& frustum, const Ball& ball, const glm::dvec3&
     const glm::dvec3 from_center = point - ball.center;
     const double square = ball.radius * ball.radius, rough = square - glm::dot(from_center, from_center);
     const glm::dvec3 magnitude = glm::abs(point) + glm::abs(ball.center);
-    const double bound = kRounding * (square + glm::dot(magnitude, magnitude));
+    const double bound = kBallRounding * (square + glm::dot(magnitude, magnitude));
     if (rough < -bound) return false;
     const std::array<Dyadic, 3> exact{Dyadic(point.x), Dyadic(point.y), Dyadic(point.z)};
     if (rough <= bound) {
@@ -54,21 +54,21 @@ bool is_common_point(const Frustum& frustum, const Ball& ball, const glm::dvec3&
         if (left.sign() < 0) return false;
     }
     for (const Plane& plane : frustum.view()) {
-        const double here = value(plane, point), error = kRounding * size(plane, point);
+        const double here = value(plane, point), error = kBallRounding * size(plane, point);
         if (here < -error || (here <= error && exact_value(plane, exact).sign() < 0)) return false;
     }
     return true;
 }
 
 // Up to three half-spaces, and what each is multiplied by.
-struct Factors {
+struct BallFactors {
     std::array<std::size_t, 3> plane{};
     std::array<double, 3> factor{};
     std::size_t count = 0;
 };
 
 // The sum's largest value on the ball is Σ factor · value(centre) + radius · |Σ factor · normal|.
-bool excludes(const Frustum& frustum, const Ball& ball, const Factors& factors) {
+bool excludes(const Frustum& frustum, const Ball& ball, const BallFactors& factors) {
     double sum = 0.0, total = 0.0;
     glm::dvec3 normal(0.0);
     for (std::size_t n = 0; n < factors.count; ++n) {
@@ -79,8 +79,8 @@ bool excludes(const Frustum& frustum, const Ball& ball, const Factors& factors) 
         normal += factors.factor[n] * plane.normal;
     }
     const double rough = sum + ball.radius * glm::length(normal);
-    if (rough < -kRounding * total) return true;
-    if (rough > kRounding * total) return false;
+    if (rough < -kBallRounding * total) return true;
+    if (rough > kBallRounding * total) return false;
     Dyadic at_center;
     std::array<Dyadic, 3> exact;
     for (std::size_t n = 0; n < factors.count; ++n) {
@@ -98,7 +98,7 @@ bool excludes(const Frustum& frustum, const Ball& ball, const Factors& factors) 
 
 // The nearest point of the common part of some planes to the ball's centre, and how it comes about: centre + Σ factor ·
 // normal. False where they have none in common, or many.
-bool project(const Frustum& frustum, const glm::dvec3& center, Factors& factors, glm::dvec3& nearest) {
+bool project(const Frustum& frustum, const glm::dvec3& center, BallFactors& factors, glm::dvec3& nearest) {
     std::array<std::array<long double, 4>, 3> rows{};
     for (std::size_t a = 0; a < factors.count; ++a) {
         const Plane& plane = frustum.planes[factors.plane[a]];
@@ -135,13 +135,13 @@ bool is_inside(const Frustum& frustum, const glm::dvec3& point) {
 
 // The point of the frustum nearest to the centre has the largest distance from it among the projections onto one, two
 // or three of its planes with factors ≥ 0: each of these bounds the distance from below. `middle`: of the corners.
-Factors nearest_point(const Frustum& frustum, const glm::dvec3& center, glm::dvec3& nearest, glm::dvec3& middle) {
-    Factors best;
+BallFactors nearest_point(const Frustum& frustum, const glm::dvec3& center, glm::dvec3& nearest, glm::dvec3& middle) {
+    BallFactors best;
     nearest = center;
     double farthest = 0.0;
     glm::dvec3 corners(0.0);
     int corner_count = 0;
-    const auto consider = [&](Factors guess) {
+    const auto consider = [&](BallFactors guess) {
         glm::dvec3 point;
         if (!project(frustum, center, guess, point)) return;
         if (guess.count == 3 && is_inside(frustum, point)) {
@@ -173,7 +173,7 @@ Proof prove(const Frustum& frustum, const Sphere& sphere) {
     const Ball ball(frustum, sphere);
     if (is_common_point(frustum, ball, ball.center)) return Proof::meets;
     glm::dvec3 nearest, middle;
-    const Factors factors = nearest_point(frustum, ball.center, nearest, middle);
+    const BallFactors factors = nearest_point(frustum, ball.center, nearest, middle);
     if (excludes(frustum, ball, factors)) return Proof::disjoint;
     // From the nearest point towards the frustum's middle, as far as the ball may reach.
     const double spare = ball.radius - glm::length(nearest - ball.center), way = glm::length(middle - nearest);

@@ -68,10 +68,6 @@ double distance(const glm::dvec3& p, const Body& body) {
     return inside ? 0.0 : least;
 }
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 // The area of the triangle (0, a, b) within the disc of radius r around 0, signed: sectors where a side is outside.
 double disc_area(const glm::dvec2& a, const glm::dvec2& b, double r) {
     const glm::dvec2 d = b - a;

@@ -57,6 +57,9 @@ class Placements {
 
 // The same in the plane, for convex polygons (counter-clockwise) and segments (two points).
 using Figure = std::vector<glm::dvec2>;
+[[nodiscard]] inline double cross(const glm::dvec2& a, const glm::dvec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
 [[nodiscard]] bool meet(const Figure& a, const Figure& b);
 [[nodiscard]] bool holds(const Figure& outer, const Figure& inner);
 [[nodiscard]] Figure moved(const Figure& figure, const sampling::PlanarMotion& motion);

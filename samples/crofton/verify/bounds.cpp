@@ -24,7 +24,7 @@ using std::numbers::pi;
 
 // Five points whose best boxes by V, by F and by M are three: each exceeds the others' optimum by 2.5 % at least.
 const Corners3 kPoints = {{1.1, -0.5, -0.1}, {1.3, 0.8, 0.5}, {0.4, 0.2, -0.4}, {1.1, 0.5, -0.2}, {-0.8, -0.2, -0.3}};
-constexpr std::array<const char*, 3> kNames = {"volume", "area", "edge sum"};
+constexpr std::array<const char*, 3> kLeastOf = {"volume", "area", "edge sum"};
 
 double size_of(int which, const glm::dvec3& edge) {
     if (which == 0) return edge.x * edge.y * edge.z;
@@ -78,7 +78,7 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         const auto c = corners(*box);
         boxes[std::size_t(which)] = faceted(Corners3(c.begin(), c.end()));
         rows.push_back(computed_row(
-            std::string("the box of least ") + kNames[std::size_t(which)] + ", against a search over rotations",
+            std::string("the box of least ") + kLeastOf[std::size_t(which)] + ", against a search over rotations",
             "theory.md section 3", size_of(which, 2.0 * glm::dvec3(box->half_extents)), search(which).size,
             1e-4 * size_of(which, glm::dvec3(box->half_extents))));
     }
@@ -102,7 +102,7 @@ void box_optima(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
             const double ratio = measured[q].value() / measured[b].value();
             const double error = ratio * std::hypot(measured[q].standard_error() / measured[q].value(),
                                                     measured[b].standard_error() / measured[b].value());
-            rows.push_back(at_most_row(claims[q] + std::string(kNames[b]) + " (ratio)",
+            rows.push_back(at_most_row(claims[q] + std::string(kLeastOf[b]) + " (ratio)",
                                        "paper, section 3; theory.md section 2", 0.985, ratio, error));
         }
     }

@@ -11,7 +11,7 @@ namespace crofton::cli {
 namespace {
 
 __extension__ typedef __int128 Int128;
-using Random = std::mt19937_64;
+using Engine = std::mt19937_64;
 
 // Boxes on a lattice, so that the separating-axis theorem can be put into integers of 128 bits: axes in steps of 2^-22,
 // extents of 2^-24, offsets of 2^-52. Reaches are then multiples of 2^-90, distances of 2^-96, both below 2^8.
@@ -52,19 +52,19 @@ bool meet_in_integers(const Obb& a, const Obb& b) {
     return true;
 }
 
-glm::dvec3 random_vector(Random& random) {
+glm::dvec3 random_vector(Engine& random) {
     std::uniform_real_distribution<double> number(-1.0, 1.0);
     const double x = number(random), y = number(random), z = number(random);
     return {x, y, z};
 }
 
-glm::dquat random_rotation(Random& random) {
+glm::dquat random_rotation(Engine& random) {
     std::normal_distribution<double> normal;
     const double w = normal(random), x = normal(random), y = normal(random), z = normal(random);
     return glm::normalize(glm::dquat(w, x, y, z));
 }
 
-Obb lattice_box(Random& random, const glm::dquat& frame) {
+Obb lattice_box(Engine& random, const glm::dquat& frame) {
     Obb box;
     const glm::dmat3 rotation = glm::mat3_cast(frame);
     for (int k = 0; k < 3; ++k)
@@ -91,7 +91,7 @@ struct Class {
 };
 
 VerifyRow wrong_answers(const Class& kind, const VerifyOptions& options, bool batch) {
-    Random random(options.seed);
+    Engine random(options.seed);
     const std::uint64_t trials = std::max<std::uint64_t>(100, options.trials / 20);
     std::vector<Obb> first, second;
     std::vector<std::uint8_t> truth, answers;

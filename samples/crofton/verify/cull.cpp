@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBatch = 2048;  // bounds per view
 
-struct Counts {
+struct CullCounts {
     std::uint64_t meeting = 0, disjoint = 0, unproved = 0, false_culls = 0, false_accepts = 0,
                   false_culls_conservative = 0, disagreements = 0;
 };
@@ -38,7 +38,7 @@ std::vector<cull::Verdict> tree_verdicts(const std::vector<Bound>&, const cull::
 // One view, many bounds: the list's vectors, alone and with a second view, the tree and the single test must agree, and
 // the proofs judge them.
 template <class Bound>
-void run_batch(Straddlers& straddlers, std::size_t count, Counts& counts) {
+void run_batch(Straddlers& straddlers, std::size_t count, CullCounts& counts) {
     const auto frustum = frustum_of(straddlers.camera());
     const auto corners = frustum_corners(*frustum);
     std::vector<Bound> bounds(count);
@@ -79,7 +79,7 @@ void run_batch(Straddlers& straddlers, std::size_t count, Counts& counts) {
 template <class Bound>
 void add_rows(const char* kind, double offset, const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     Straddlers straddlers(options.seed, offset);
-    Counts counts;
+    CullCounts counts;
     for (std::uint64_t done = 0; done < options.trials; done += kBatch)
         run_batch<Bound>(straddlers, static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, options.trials - done)),
                          counts);

@@ -15,10 +15,6 @@ namespace {
 
 constexpr std::uint64_t kBatches = 128;
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 template <std::size_t D, class Value>
 Mean batched(std::uint64_t seed, std::uint64_t points, Value value) {
     Mean mean;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bodies.hpp"
+#include "frustum_volumes.hpp"
 #include "topics.hpp"
 
 namespace crofton::cli {

@@ -16,7 +16,7 @@ namespace {
 
 using sampling::Random;
 
-struct Counts {
+struct OccludeCounts {
     std::uint64_t rays = 0, free = 0, hidden = 0, culled = 0, covered_rays = 0, passed = 0;
 };
 
@@ -72,7 +72,7 @@ WitnessRay ray_to(const Camera& camera, const glm::dvec3& point) {
 }
 
 void ask_for_objects(Random& random, const OccludeSetup& setup, const occlude::OcclusionBuffer& buffer,
-                     Counts& counts) {
+                     OccludeCounts& counts) {
     occlude::VisibleSet visible;
     occlude::find_visible(setup.objects, {}, buffer, visible);
     std::vector<bool> shown(setup.objects.size(), false);
@@ -96,7 +96,8 @@ void ask_for_objects(Random& random, const OccludeSetup& setup, const occlude::O
 }
 
 // A ray through each of some covered squares, up to the depth that is stored there: it must not be free.
-void ask_for_pixels(Random& random, const OccludeSetup& setup, const occlude::OcclusionBuffer& buffer, Counts& counts) {
+void ask_for_pixels(Random& random, const OccludeSetup& setup, const occlude::OcclusionBuffer& buffer,
+                    OccludeCounts& counts) {
     const Camera& camera = setup.camera;
     const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
     const double half_x = 0.5 * setup.size.width, half_y = 0.5 * setup.size.height;
@@ -125,8 +126,8 @@ void ask_for_pixels(Random& random, const OccludeSetup& setup, const occlude::Oc
 }
 
 template <class Make>
-Counts run_setups(Random& random, std::uint64_t rays, const Make& make) {
-    Counts counts;
+OccludeCounts run_setups(Random& random, std::uint64_t rays, const Make& make) {
+    OccludeCounts counts;
     while (counts.rays < rays) {
         const OccludeSetup setup = make();
         occlude::OccluderSet set;
@@ -144,7 +145,7 @@ void add_none(std::vector<VerifyRow>& rows, const std::string& claim, std::uint6
     rows.back().cases = cases;
 }
 
-void add_rows(std::vector<VerifyRow>& rows, const std::string& where, const Counts& counts) {
+void add_rows(std::vector<VerifyRow>& rows, const std::string& where, const OccludeCounts& counts) {
     add_none(rows, "of " + std::to_string(counts.free) + " rays that witness an object none has it culled, " + where,
              counts.free, counts.culled);
     add_none(rows, "no ray passes a covered pixel, " + where, counts.covered_rays, counts.passed);
@@ -159,7 +160,7 @@ std::vector<VerifyRow> verify_occlude(const VerifyOptions& options) {
     std::vector<VerifyRow> rows;
     for (const double offset : kOffsets) {
         Random random(options.seed);
-        const Counts counts = run_setups(random, options.trials, [&] { return random_setup(random, offset); });
+        const OccludeCounts counts = run_setups(random, options.trials, [&] { return random_setup(random, offset); });
         char where[64];
         std::snprintf(where, sizeof where, "at camera offset %g", offset);
         add_rows(rows, where, counts);
@@ -169,7 +170,7 @@ std::vector<VerifyRow> verify_occlude(const VerifyOptions& options) {
         std::size_t turn = 0;
         const bool is_dear = hard.make(random, 0.0).occluders.size() > kManyOccluders;
         const std::uint64_t rays = is_dear ? options.trials / 100 : options.trials / 5;
-        const Counts counts =
+        const OccludeCounts counts =
             run_setups(random, rays, [&] { return hard.make(random, kOffsets[turn++ % std::size(kOffsets)]); });
         add_rows(rows, std::string(hard.name) + ", offsets 0 to 1e7", counts);
     }

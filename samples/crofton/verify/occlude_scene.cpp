@@ -18,7 +18,7 @@ using sampling::Random;
 
 constexpr std::size_t kThings = 1000, kMostParts = 16;
 constexpr int kRaysPerView = 4096, kThingsEvery = 16;
-constexpr occlude::BufferSize kSizes[] = {{160, 90}, {320, 180}, {480, 270}, {640, 360}};
+constexpr occlude::BufferSize kSceneSizes[] = {{160, 90}, {320, 180}, {480, 270}, {640, 360}};
 
 // Small boxes beside what the scene has, all under one node that moves the scene.
 struct Stage {
@@ -119,7 +119,7 @@ Camera camera_in(Random& random, const Stage& stage) {
     return camera;
 }
 
-struct Counts {
+struct SceneCounts {
     std::uint64_t rays = 0, witnesses = 0, culled = 0, in_view = 0, hidden = 0;
 };
 
@@ -138,9 +138,9 @@ Ray random_ray(Random& random, const Camera& camera) {
     return {from + 1.0001 * camera.near_distance * ahead, ahead, camera.far_distance * 0.999};
 }
 
-void look(Random& random, const Stage& stage, VisibleObjects& visible, std::vector<bool>& seen, Counts& counts) {
+void look(Random& random, const Stage& stage, VisibleObjects& visible, std::vector<bool>& seen, SceneCounts& counts) {
     const Camera camera = camera_in(random, stage);
-    const OcclusionOptions occlusion{.size = kSizes[random.bits() % 4], .list_occluded = true};
+    const OcclusionOptions occlusion{.size = kSceneSizes[random.bits() % 4], .list_occluded = true};
     if (!stage.world.view(camera, occlusion, visible)) return;
     counts.hidden += visible.occluded_ids().size();
     counts.in_view += visible.occluded_ids().size() + visible.size();
@@ -169,7 +169,7 @@ Result<std::vector<VerifyRow>> verify_occluded_scene(const std::string& name, st
     std::vector<bool> seen(stage->world.object_count(), false);
     for (const double offset : {0.0, 1e3, 1e5, 1e7}) {
         Random random(options.seed);
-        Counts counts;
+        SceneCounts counts;
         for (int view = 0; counts.rays < options.trials; ++view) {
             if (view % kThingsEvery == 0) move(random, offset, *stage);
             look(random, *stage, visible, seen, counts);

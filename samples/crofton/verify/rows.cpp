@@ -26,7 +26,7 @@ VerifyRow row(std::string claim, std::string source, double predicted, double me
     return result;
 }
 
-std::string number(double value) {
+std::string six_digits(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
     return text;
@@ -96,8 +96,8 @@ std::string table_of(const std::vector<VerifyRow>& rows) {
     std::string table = padded("claim", claim_width) + padded("source", source_width) + right("predicted") +
                         right("measured") + right("std. error") + right("z") + right("resolves") + "  holds\n";
     for (const VerifyRow& r : rows)
-        table += padded(r.claim, claim_width) + padded(r.source, source_width) + right(number(r.predicted)) +
-                 right(number(r.measured)) + right(number(r.standard_error)) + right(number(r.z)) +
+        table += padded(r.claim, claim_width) + padded(r.source, source_width) + right(six_digits(r.predicted)) +
+                 right(six_digits(r.measured)) + right(six_digits(r.standard_error)) + right(six_digits(r.z)) +
                  right(percent(r.resolution, r.cases)) + (r.holds ? "  yes\n" : "  NO\n");
     return table;
 }

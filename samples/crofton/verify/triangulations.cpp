@@ -32,10 +32,6 @@ Polygon wall() {
                        {{4, 0.9}, {6, 1}, {6, 2.2}, {4, 2.1}}});
 }
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 // Of all rings: boundary and area (outer ring less holes, whichever way they turn).
 measure::TriangulationMeasures measures_of(const Polygon& polygon, const triangulate::Triangulation& result) {
     measure::TriangulationMeasures sums;

@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "frustum_volumes.hpp"
 #include "geometry.hpp"
 #include "topics.hpp"
 
@@ -22,7 +23,7 @@ namespace {
 using measure::IntrinsicVolumes;
 using std::numbers::pi;
 
-struct Solid {
+struct NamedSolid {
     const char* name;
     Corners3 corners;
     IntrinsicVolumes volumes;
@@ -31,7 +32,7 @@ struct Solid {
 const Corners3 kTetrahedron = {{0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}, {0.2, 0.9, 0.1}, {0.3, 0.2, 0.7}};
 const std::vector<std::uint32_t> kFaces = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
 
-std::vector<Solid> views() {
+std::vector<NamedSolid> views() {
     return {{"a perspective frustum", frustum_body(1.0, 0.6, 0.1, 4.0, true).corners,
              frustum_volumes(1.0, 0.6, 0.1, 4.0, true)},
             {"an orthographic volume", frustum_body(1.5, 0.8, 0.0, 3.0, false).corners,
@@ -41,7 +42,7 @@ std::vector<Solid> views() {
             {"a segment, as a ray", segment_body(3.0).corners, measure::intrinsic_volumes_of_segment(3.0)}};
 }
 
-std::vector<Solid> objects() {
+std::vector<NamedSolid> objects() {
     return {{"a plate", box_body({1.2, 0.35, 0.025}).corners, measure::intrinsic_volumes_of_box(2.4, 0.7, 0.05)},
             {"a tetrahedron", kTetrahedron, *measure::intrinsic_volumes_of_polytope(kTetrahedron, kFaces)},
             {"a triangle", flat_body({{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}}).corners,
@@ -58,8 +59,8 @@ VerifyRow row(std::string claim, const char* source, double predicted, const Mea
 void kinematic(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     std::uint64_t seed = options.seed * 1000 + 300;
     double by_faces = 0.0, by_hull = 0.0;
-    for (const Solid& b : views())
-        for (const Solid& k : objects()) {
+    for (const NamedSolid& b : views())
+        for (const NamedSolid& k : objects()) {
             const Faceted first = faceted(b.corners), second = faceted(k.corners);
             // Thin bodies spread more.
             const Mean mean =
@@ -85,12 +86,12 @@ void kinematic(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
 // Section 1: Cauchy's formula and the mean breadth, for every function that gives F and M.
 void cauchy(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     std::uint64_t seed = options.seed * 1000 + 330;
-    std::vector<Solid> solids = views();
-    for (Solid& k : objects()) solids.push_back(std::move(k));
+    std::vector<NamedSolid> solids = views();
+    for (NamedSolid& k : objects()) solids.push_back(std::move(k));
     Corners3 hull_of = kTetrahedron;
     hull_of.emplace_back(0.3, 0.3, 0.2);  // inside
     solids.push_back({"the hull of five points", hull_of, *measure::intrinsic_volumes_of_hull(hull_of)});
-    for (const Solid& k : solids) {
+    for (const NamedSolid& k : solids) {
         if (k.corners.size() > 2)
             rows.push_back(row(std::string("F of ") + k.name + ": 4 × the mean shadow", "theory.md section 1, Cauchy",
                                k.volumes.area,
@@ -106,7 +107,7 @@ void cauchy(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
             rows.push_back(computed_row(std::string("V of ") + k.name + ": tetrahedra", "theory.md section 1",
                                         k.volumes.volume, hull_volume(k.corners), 1e-9 * k.volumes.volume));
     }
-    const std::vector<Solid> kept = objects();
+    const std::vector<NamedSolid> kept = objects();
     const Corners3& plate = kept[0].corners;
     rows.push_back(row(
         "measure of the lines that hit a plate: 2π × its mean shadow", "theory.md section 6, Crofton",
@@ -161,7 +162,7 @@ void improper(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                            o = *measure::intrinsic_volumes_of_hull(object);
     const Faceted faceted_bound = faceted(bound), faceted_object = faceted(object);
     std::uint64_t seed = options.seed * 1000 + 390;
-    for (const Solid& query : views()) {
+    for (const NamedSolid& query : views()) {
         const Faceted moving = faceted(query.corners);
         rows.push_back(row(std::string("improper outside tests of ") + query.name, "theory.md section 2, m_o",
                            measure::improper_outside(query.volumes, b, o),

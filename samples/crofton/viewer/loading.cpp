@@ -2,6 +2,7 @@
 // The session's beginnings: window, device, interface, scene.
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>
+#include <memory>
 
 #include <crofton/render/vertex.hpp>
 #include <filesystem>

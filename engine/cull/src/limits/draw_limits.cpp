@@ -42,7 +42,7 @@ bool is_moderate_limit(double value) {
 }  // namespace
 
 KernelLimits kernel_limits_of(const DrawLimits& limits) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kEndless = std::numeric_limits<float>::infinity();
     const double longer = std::min(std::max(1.0, limits.longer), kMaxCoordinate), radii = std::max(0.0, limits.radii),
                  least = limits.least_radius;
     KernelLimits result{};
@@ -50,10 +50,10 @@ KernelLimits kernel_limits_of(const DrawLimits& limits) {
     // Radii are at least 1e-18 in floats: up to 1e9 of them are a length that is truly too long.
     const bool is_eye = is_usable(Sphere{limits.eye, 0.0});  // otherwise no limit counts
     const bool has_radii = is_eye && counts(limits.radii), radii_fit = radii * longer <= 1e9;
-    result.radii[0] = !has_radii ? kInfinity : radii_fit ? static_cast<float>(radii * radii) : 0.0f;
-    result.radii[1] = has_radii && radii_fit ? static_cast<float>(radii * longer * (radii * longer)) : kInfinity;
+    result.radii[0] = !has_radii ? kEndless : radii_fit ? static_cast<float>(radii * radii) : 0.0f;
+    result.radii[1] = has_radii && radii_fit ? static_cast<float>(radii * longer * (radii * longer)) : kEndless;
     const bool has_least = is_eye && counts(least) && least > 0.0, least_fits = is_moderate_limit(least);
-    result.least_radius[0] = !has_least ? 0.0f : least_fits ? static_cast<float>(least * least) : kInfinity;
+    result.least_radius[0] = !has_least ? 0.0f : least_fits ? static_cast<float>(least * least) : kEndless;
     result.least_radius[1] = has_least && least_fits ? static_cast<float>(least / longer * (least / longer)) : 0.0f;
     result.has_layers = is_eye && limits.layer_distances.size() >= 32;
     result.has_items = is_eye && !limits.item_distances.empty();

@@ -3,16 +3,13 @@
 #include <array>
 #include <cmath>
 #include <crofton/cull/lights.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 
 #include "lights/power.hpp"
 
 namespace crofton::cull {
 namespace {
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // A rectangle in the plane of two axes: `side` is the first one's direction in them.
 struct TurnedRectangle {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <crofton/cull/cull.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
 
 namespace crofton::cull {
 namespace {
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // `at_light[i]` is plane i's value at the light, a point or a direction: the sign says on which side it is.
 Result<Frustum> toward(const Frustum& view, const double (&at_light)[Frustum::kMaxPlanes]) {

@@ -8,10 +8,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "rounding.hpp"
+
 namespace crofton::fit {
 namespace {
-
-constexpr double kUnit = 0x1p-53;  // unit roundoff of double
 
 // The reciprocal basis up to scale: a point c + d is inside iff |dot(normal[k], d)| ≤ half_extents[k] · determinant for
 // all k. A product of floats is exact in double, so each component of a normal carries one rounding, and the

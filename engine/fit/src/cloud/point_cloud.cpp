@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/geometry/box.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <string>
 #include <type_traits>
 
@@ -17,7 +17,6 @@ namespace {
 // Error bound of a projection of normalised coordinates computed in double: the true one is below 1e-15.
 constexpr double kErrorBound = 1e-13;
 constexpr std::size_t kScanAllChunks = 16;  // up to this many, picking the promising ones costs more than it saves
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class T>
 tl::unexpected<Error> first_bad(const T* points, std::size_t count) {

@@ -13,14 +13,14 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-bool lexicographic(const glm::dvec2& a, const glm::dvec2& b) {
+bool comes_before(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
 }  // namespace
 
 std::size_t convex_hull(std::span<glm::dvec2> points, std::span<glm::dvec2> hull) {
-    std::sort(points.begin(), points.end(), lexicographic);
+    std::sort(points.begin(), points.end(), comes_before);
     std::size_t size = 0;
     const auto push = [&](const glm::dvec2& p, std::size_t floor) {
         while (size >= floor + 2 && cross(hull[size - 1] - hull[size - 2], p - hull[size - 1]) <= 0.0) --size;

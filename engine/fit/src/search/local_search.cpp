@@ -2,16 +2,13 @@
 #include "search/local_search.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "search/calipers.hpp"
 
 namespace crofton::fit {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Turns about axes[k] to the best angle; true if the value fell by more than rounding.
 bool turn(const Weights& weights, std::span<const glm::dvec3> points, int k, Candidate& candidate,

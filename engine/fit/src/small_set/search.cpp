@@ -23,13 +23,13 @@ struct Frames {
 
     Frames() {
         std::array<glm::dvec3, kFrames> rodrigues;
-        constexpr double kRootHalf = 0.41421356237309515;
+        constexpr double kFarthest = 0.41421356237309515;  // √2 − 1
         constexpr double kStep[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
         double at = 0.5;
         for (glm::dvec3& c : rodrigues) {
             do {
                 for (int k = 0; k < 3; ++k)
-                    c[k] = (2.0 * (at * kStep[k] - std::floor(at * kStep[k])) - 1.0) * kRootHalf;
+                    c[k] = (2.0 * (at * kStep[k] - std::floor(at * kStep[k])) - 1.0) * kFarthest;
                 at += 1.0;
             } while (std::abs(c.x) + std::abs(c.y) + std::abs(c.z) > 1.0);
         }
@@ -84,9 +84,9 @@ const DirectionTable& directions() {
 }
 
 constexpr double kNoValue = 1e30;
-constexpr float kFlush = 3e-6f;      // points this near a face lie on it: above the rounding of float coordinates
-constexpr double kShortEdge = 1e-4;  // a shorter edge has no direction that could be trusted
-constexpr double kGain = 2e-7;       // relative; a smaller gain may be rounding
+constexpr float kFlushInFloat = 3e-6f;  // points this near a face lie on it: above the rounding of float coordinates
+constexpr double kShortEdge = 1e-4;     // a shorter edge has no direction that could be trusted
+constexpr double kGain = 2e-7;          // relative; a smaller gain may be rounding
 
 // Whether two frames lie within about 15 degrees, up to the symmetries of a box.
 bool alike(const glm::dmat3& a, const glm::dmat3& b) {
@@ -189,7 +189,7 @@ void SmallSetSearch::find_flush_edges(const glm::dmat3& frame) {
     float axes[9];
     for (int k = 0; k < 3; ++k) to_floats(frame[k], axes + 3 * k);
     kernels::FlushSide sides[6];
-    kernels::flush_points(subset_points(), axes, kFlush, scratch_.data(), sides);
+    kernels::flush_points(subset_points(), axes, kFlushInFloat, scratch_.data(), sides);
     for (std::size_t side = 0; side < 6; ++side)
         for (std::size_t i = 0; i < sides[side].count; ++i)
             for (std::size_t j = i + 1; j < sides[side].count; ++j) {

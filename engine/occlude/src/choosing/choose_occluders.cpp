@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <crofton/geometry/camera.hpp>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/occlude/occlusion.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -16,10 +17,6 @@ namespace {
 constexpr double kMostCoordinate = 1e15;
 constexpr std::ptrdiff_t kSpare = 32;  // sorted beyond the budget
 constexpr std::size_t kPadding = 64;   // so that a vector that starts at a candidate stays within the columns
-
-bool is_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 ChooseView choose_view_of(const OccluderCandidates& candidates, const OcclusionView& given,
                           const ChooseBudget& budget) {

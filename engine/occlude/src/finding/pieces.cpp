@@ -66,31 +66,31 @@ void read_triangles(const TriangleMesh& mesh, PieceMesh& result) {
 }
 
 // A side of a triangle, as an edge without direction.
-struct Side {
+struct PieceSide {
     std::uint32_t low, high, triangle, corner;
     bool upward;  // from low to high
 
-    [[nodiscard]] bool same_edge(const Side& other) const { return low == other.low && high == other.high; }
+    [[nodiscard]] bool same_edge(const PieceSide& other) const { return low == other.low && high == other.high; }
 };
 
 // Ordered by edge, then by triangle. Bucketed by the lower vertex, which leaves few to sort.
-Vector<Side> sorted_sides(const PieceMesh& mesh) {
+Vector<PieceSide> sorted_sides(const PieceMesh& mesh) {
     Vector<std::uint32_t> end(mesh.positions.size() + 1, 0);
     const auto for_each_side = [&](auto visit) {
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-                if (a != b) visit(Side{std::min(a, b), std::max(a, b), t, k, a < b});
+                if (a != b) visit(PieceSide{std::min(a, b), std::max(a, b), t, k, a < b});
             }
     };
-    for_each_side([&](const Side& side) { ++end[side.low + 1]; });
+    for_each_side([&](const PieceSide& side) { ++end[side.low + 1]; });
     std::partial_sum(end.begin(), end.end(), end.begin());
-    Vector<Side> sides(end.back());
-    for_each_side([&](const Side& side) { sides[end[side.low]++] = side; });
+    Vector<PieceSide> sides(end.back());
+    for_each_side([&](const PieceSide& side) { sides[end[side.low]++] = side; });
     std::uint32_t begin = 0;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         std::stable_sort(sides.begin() + begin, sides.begin() + end[v],
-                         [](const Side& a, const Side& b) { return a.high < b.high; });
+                         [](const PieceSide& a, const PieceSide& b) { return a.high < b.high; });
         begin = end[v];
     }
     return sides;
@@ -134,7 +134,7 @@ bool runs_right_of(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b
 PieceMesh split_into_pieces(const TriangleMesh& mesh) {
     PieceMesh result;
     read_triangles(mesh, result);
-    const Vector<Side> sides = sorted_sides(result);
+    const Vector<PieceSide> sides = sorted_sides(result);
     DisjointSets sets(result.triangles.size());
     for (std::size_t i = 1; i < sides.size(); ++i)
         if (sides[i].same_edge(sides[i - 1])) sets.unite(sides[i].triangle, sides[i - 1].triangle);

@@ -67,8 +67,8 @@ std::array<Wall, 6> largest_walls(const PieceMesh& mesh) {
 // Bounded by the walls across all axes but `open_axis` (3: none), and along that axis as far as all these walls reach.
 std::optional<WallBox> box_between(const std::array<Wall, 6>& walls, int open_axis, double least_area) {
     WallBox box;
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    float open_low = -kInfinity, open_high = kInfinity;
+    constexpr float kEndless = std::numeric_limits<float>::infinity();
+    float open_low = -kEndless, open_high = kEndless;
     for (int axis = 0; axis < 3; ++axis) {
         if (axis == open_axis) continue;
         const Wall &high = walls[static_cast<std::size_t>(2 * axis)],

@@ -19,6 +19,7 @@ struct CandidateGraph {
         kDead = 16,        // proven to be in none
         kLeftSimple = 32,  // a face that needs no further pruning lies on its left or around it
     };
+    static constexpr std::uint8_t kFixed = kConstraint | kCertain;
     Vector<Index> first;
     Vector<Index> destination;
     Vector<Index> twin;

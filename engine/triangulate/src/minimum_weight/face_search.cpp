@@ -11,8 +11,6 @@
 namespace crofton::triangulate {
 namespace {
 
-constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
-
 constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 constexpr double kSearching = 0.9;  // the share of the work that is done when searching begins, as told to the caller
 
@@ -101,7 +99,7 @@ void FaceSearch::extract(std::span<const glm::dvec2> points, const CandidateGrap
         const Index outer = members_[h];
         g.twin[h] = local(level.outer_half_edge, graph.twin[outer]);
         g.destination[h] = local(level.outer_vertex, graph.destination[outer]);
-        const bool fixed = (graph.flags[outer] & kFixed) != 0;
+        const bool fixed = (graph.flags[outer] & CandidateGraph::kFixed) != 0;
         g.flags[h] = fixed ? CandidateGraph::kConstraint : 0;
         if (fixed && !member(outer)) g.flags[h] |= CandidateGraph::kLeftOutside;
     }
@@ -112,7 +110,7 @@ void FaceSearch::choose(Level& level) {
     const CandidateGraph& g = level.graph;
     const auto& walk_of = level.faces.walk_of;
     const std::span<const glm::dvec2> points = level.points;
-    const auto open = [&](Index h) { return (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0; };
+    const auto open = [&](Index h) { return (g.flags[h] & (CandidateGraph::kFixed | CandidateGraph::kDead)) == 0; };
     bool found = false;
     // Candidates from v strictly left of the line through points[a] and points[b].
     const auto consider = [&](Index v, Index walk, const glm::dvec2& a, const glm::dvec2& b) {
@@ -154,7 +152,7 @@ FaceSearch::Outcome FaceSearch::solve_level(std::size_t depth, Watch& watch) {
     Level& level = levels_[depth];
     if (!support_.build(level.points, level.graph, kNoLimit, watch, level.lists)) return Outcome::infeasible;
     if (watch.stopped_now(kSearching)) return Outcome::gave_up;
-    find_faces(level.graph, kFixed, level.faces);
+    find_faces(level.graph, CandidateGraph::kFixed, level.faces);
     choose(level);
     level.witness.assign(level.graph.half_edge_count(), kNone);
     level.flags = level.graph.flags;
@@ -197,7 +195,7 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Wa
     dead_.clear();
     for (Index h = 0; h < g.half_edge_count(); ++h) {
         const Index c = g.destination[g.twin[h]], d = g.destination[h];
-        if (c < d && (g.flags[h] & (kFixed | CandidateGraph::kDead)) == 0 &&
+        if (c < d && (g.flags[h] & (CandidateGraph::kFixed | CandidateGraph::kDead)) == 0 &&
             candidates_cross(level.points, from, to, c, d)) {
             dead_.push_back(h);
             g.flags[h] |= CandidateGraph::kDead;
@@ -212,7 +210,7 @@ FaceSearch::Outcome FaceSearch::solve_choice(std::size_t depth, Index choice, Wa
     level.triangles.clear();
     level.diagonals.clear();
     for (Index h = 0; h < g.half_edge_count(); ++h) {
-        const bool fresh = (g.flags[h] & kFixed) != 0 && (level.flags[h] & kFixed) == 0;
+        const bool fresh = (g.flags[h] & CandidateGraph::kFixed) != 0 && (level.flags[h] & CandidateGraph::kFixed) == 0;
         if (fresh && h < g.twin[h]) level.diagonals.push_back({g.destination[g.twin[h]], g.destination[h]});
     }
     return solve_rest(depth, watch);
@@ -222,7 +220,7 @@ bool FaceSearch::mark_certain(Level& level, Watch& watch) const {
     CandidateGraph& g = level.graph;
     if (watch.stopped_now(kSearching)) return false;
     for (Index h = 0; h < g.half_edge_count(); ++h) {
-        if (h > g.twin[h] || (g.flags[h] & (kFixed | CandidateGraph::kDead)) != 0) continue;
+        if (h > g.twin[h] || (g.flags[h] & (CandidateGraph::kFixed | CandidateGraph::kDead)) != 0) continue;
         std::size_t steps = 1;
         const bool crossed = has_crossing(level, h, steps);
         if (watch.stopped(kSearching, steps)) return false;
@@ -280,7 +278,7 @@ bool FaceSearch::has_crossing(Level& level, Index h, std::size_t& steps) const {
 
 FaceSearch::Outcome FaceSearch::solve_rest(std::size_t depth, Watch& watch) {
     Level& level = levels_[depth];
-    find_faces(level.graph, kFixed, level.faces);
+    find_faces(level.graph, CandidateGraph::kFixed, level.faces);
     const auto pieces = static_cast<Index>(level.faces.component.size());
     Outcome result = Outcome::solved;
     // Simple faces first: they tell at once if this branch has no triangulation.

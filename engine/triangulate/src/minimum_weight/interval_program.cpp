@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <crofton/geometry/finite.hpp>
 
 #include "minimum_weight/least_sum.hpp"
 
 namespace crofton::triangulate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Combinations of two sub-polygons tried in one of the watch's steps.
 constexpr std::size_t kCombinationsPerStep = 8;
 

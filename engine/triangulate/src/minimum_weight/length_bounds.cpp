@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <crofton/geometry/finite.hpp>
 
 namespace crofton::triangulate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostLooks = 64;
 
 double square(const glm::dvec2& v) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <crofton/geometry/finite.hpp>
 #include <crofton/geometry/predicates.hpp>
-#include <limits>
 
 #include "minimum_weight/least_sum.hpp"
 #include "minimum_weight/local_minimality.hpp"
@@ -12,7 +12,6 @@
 namespace crofton::triangulate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A window's programme takes about window³ / 6 steps of 1 ns for half as many triangles that are then done.
 constexpr Index kWindow = 48;
 constexpr int kMostSweeps = 6;

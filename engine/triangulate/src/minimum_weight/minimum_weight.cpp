@@ -10,7 +10,6 @@
 namespace crofton::triangulate {
 namespace {
 
-constexpr std::uint8_t kFixed = CandidateGraph::kConstraint | CandidateGraph::kCertain;
 // Candidates, their twins, certificates, walks and programme slots, with the growth of their arrays.
 constexpr std::size_t kBytesPerHalfEdge = 96;
 // Of one operation of a sum, with room for the roots in it.
@@ -135,7 +134,7 @@ bool MinimumWeight::divide_into_faces(const Domain& domain, const TriangulateOpt
     if (prune || has_pieces()) {
         skeleton_.prune(points, graph_, watch);
         if (watch.stopped_now(kPruned) || !skeleton_.mark_certain(domain.mesh(), graph_, watch)) return false;
-        find_faces(graph_, kFixed, faces_);
+        find_faces(graph_, CandidateGraph::kFixed, faces_);
     }
     if (has_pieces()) {
         mark_simple_faces();
@@ -143,7 +142,7 @@ bool MinimumWeight::divide_into_faces(const Domain& domain, const TriangulateOpt
         // The faces found before are a valid division, too.
         if (infeasible_ || watch.stopped_now(kPruned) || !skeleton_.mark_certain(domain.mesh(), graph_, watch))
             return true;
-        find_faces(graph_, kFixed, faces_);
+        find_faces(graph_, CandidateGraph::kFixed, faces_);
     }
     return true;
 }
@@ -209,7 +208,8 @@ void MinimumWeight::bound_whole(const Domain& domain, bool candidates) {
         }
         lengths_.clear();
         for (Index h = 0; h < graph_.half_edge_count(); ++h) {
-            if ((graph_.flags[h] & (kFixed | CandidateGraph::kDead)) != 0 || h > graph_.twin[h]) continue;
+            if ((graph_.flags[h] & (CandidateGraph::kFixed | CandidateGraph::kDead)) != 0 || h > graph_.twin[h])
+                continue;
             lengths_.push_back(length(mesh.points, {graph_.destination[h], graph_.destination[graph_.twin[h]]}));
         }
         bound = std::max(bound, slits + sum_of_shortest(lengths_, diagonals));
@@ -228,7 +228,8 @@ void MinimumWeight::bound_unsolved(std::span<const glm::dvec2> points) {
     for (std::size_t w = 0; w < faces_.walk_count(); ++w)
         faces[faces_.component[w]].sides += static_cast<Index>(faces_.walk(w).size());
     const auto face_of = [&](Index h) {
-        const bool open = (graph_.flags[h] & (kFixed | CandidateGraph::kDead)) == 0 && h < graph_.twin[h];
+        const bool open =
+            (graph_.flags[h] & (CandidateGraph::kFixed | CandidateGraph::kDead)) == 0 && h < graph_.twin[h];
         return open && faces_.walk_of[h] != kNone ? faces_.component[faces_.walk_of[h]] : kNone;
     };
     for (Index h = 0; h < graph_.half_edge_count(); ++h) {
@@ -259,7 +260,8 @@ void MinimumWeight::finish(const Domain& domain, bool complete, Triangulation& r
     double weight = 0.0;
     for (Index h = 0; h < graph_.half_edge_count(); ++h) {
         const auto flags = graph_.flags[h] | graph_.flags[graph_.twin[h]];
-        if (h > graph_.twin[h] || (flags & CandidateGraph::kLeftOutside) != 0 || (flags & kFixed) == 0) continue;
+        if (h > graph_.twin[h] || (flags & CandidateGraph::kLeftOutside) != 0 || (flags & CandidateGraph::kFixed) == 0)
+            continue;
         const Segment edge{graph_.destination[h], graph_.destination[graph_.twin[h]]};
         weight += length(points, edge);
         if (!complete) diagonals_.push_back(edge);

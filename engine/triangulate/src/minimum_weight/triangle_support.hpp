@@ -56,9 +56,7 @@ class TriangleSupport {
     void remove_entry(Index h, Index next);
     void kill(Index h);
     [[nodiscard]] bool alive(Index h) const { return (graph_->flags[h] & CandidateGraph::kDead) == 0; }
-    [[nodiscard]] bool fixed(Index h) const {
-        return (graph_->flags[h] & (CandidateGraph::kConstraint | CandidateGraph::kCertain)) != 0;
-    }
+    [[nodiscard]] bool fixed(Index h) const { return (graph_->flags[h] & CandidateGraph::kFixed) != 0; }
     [[nodiscard]] bool left_inside(Index h) const {
         return (graph_->flags[h] & (CandidateGraph::kLeftOutside | CandidateGraph::kLeftSimple)) == 0;
     }

@@ -7,7 +7,6 @@
 #include <crofton/measure/measure.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 namespace crofton::boxtree {
@@ -97,9 +96,9 @@ class BoxTree {
     [[nodiscard]] Result<void> check_item(ItemId item) const;
     [[nodiscard]] Result<ItemId> new_item(const Obb& box, std::uint32_t layer_mask);
 
-    std::unique_ptr<Items> items_;
-    std::unique_ptr<Structure> structure_;
-    std::unique_ptr<Rebuilder> rebuilder_;
+    Owner<Items> items_;
+    Owner<Structure> structure_;
+    Owner<Rebuilder> rebuilder_;
 };
 
 }  // namespace crofton::boxtree

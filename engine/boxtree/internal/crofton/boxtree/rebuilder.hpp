@@ -20,7 +20,7 @@ class Rebuilder {
 
     // Begins a rebuild where none is under way and there are items, and works on (see BoxTree::rebuild_step). Returns
     // the new structure when it is complete, otherwise nothing.
-    [[nodiscard]] std::unique_ptr<Structure> step(const Structure& current, Items& items, std::size_t budget);
+    [[nodiscard]] Owner<Structure> step(const Structure& current, Items& items, std::size_t budget);
 
     // The item was moved, inserted, removed or given other layers; `placed`: it was inserted or attached, so that it
     // may be far from where the new structure has it.

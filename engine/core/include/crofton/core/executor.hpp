@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Work handed to the host's threads: callables by reference, the hook, and a pool for hosts without a job system.
 #pragma once
+#include <crofton/core/memory.hpp>
 #include <crofton/core/version.hpp>
 #include <cstddef>
-#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -20,7 +20,7 @@ class FunctionRef<R(Args...)> {
     template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Args...>)
         FunctionRef(F&& callable)
-        : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
+        : object_(&const_cast<char&>(reinterpret_cast<const volatile char&>(callable))),  // std::addressof
           call_([](void* object, Args... args) -> R {
               return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
           }) {}
@@ -70,7 +70,7 @@ class ThreadPool final : public Executor {
 
   private:
     struct State;
-    std::unique_ptr<State> state_;
+    Owner<State> state_;
 };
 
 }  // namespace crofton

@@ -3,6 +3,7 @@
 #pragma once
 #include <crofton/core/version.hpp>
 #include <cstddef>
+#include <new>
 #include <vector>
 
 namespace crofton {
@@ -48,5 +49,56 @@ struct Allocator {
 
 template <class T>
 using Vector = std::vector<T, Allocator<T>>;
+
+// Owns an object of a class that only its own sources know, in memory of the hooks. As std::unique_ptr, whose header
+// would cost everyone who includes ours a third more.
+template <class T>
+struct Destroy {
+    void operator()(T* object) const {
+        object->~T();
+        detail::release(object, sizeof(T), alignof(T));
+    }
+};
+
+template <class T, class Deleter = Destroy<T>>
+class Owner {
+  public:
+    Owner() = default;
+    explicit Owner(T* object) : object_(object) {}
+    Owner(Owner&& other) noexcept : object_(other.release()) {}
+    Owner& operator=(Owner&& other) noexcept {
+        Owner old(object_);
+        object_ = other.release();
+        return *this;
+    }
+    ~Owner() {
+        if (object_) Deleter()(object_);
+    }
+
+    // Requires the Deleter above.
+    template <class... Arguments>
+    [[nodiscard]] static Owner make(Arguments&&... arguments) {
+        struct Memory {
+            void* block = detail::allocate(sizeof(T), alignof(T));
+            ~Memory() { detail::release(block, sizeof(T), alignof(T)); }  // where the constructor throws
+        } memory;
+        Owner made(new (memory.block) T(static_cast<Arguments&&>(arguments)...));
+        memory.block = nullptr;
+        return made;
+    }
+
+    T* get() const { return object_; }
+    T& operator*() const { return *object_; }
+    T* operator->() const { return object_; }
+    explicit operator bool() const { return object_ != nullptr; }
+    T* release() {
+        T* object = object_;
+        object_ = nullptr;
+        return object;
+    }
+
+  private:
+    T* object_ = nullptr;
+};
 
 }  // namespace crofton

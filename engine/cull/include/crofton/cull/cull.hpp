@@ -22,13 +22,13 @@ class VisibleSet {
   public:
     // The items seen, each once: in ResultOrder::ascending by id; in ResultOrder::tree in an order that depends on tree
     // and view alone: those inside first, then those straddling, each part by and large along the tree.
-    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
+    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return {ids_.data(), size_}; }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_; }
     // In ResultOrder::ascending the verdict of ids()[i] is verdicts()[i]. In ResultOrder::tree there are none: the
     // first inside_count() ids are inside, the others straddle.
     [[nodiscard]] std::span<const Verdict> verdicts() const {
-        return std::span(verdicts_).first(verdicts_.empty() ? 0 : size_);
+        return {verdicts_.data(), verdicts_.empty() ? 0 : size_};
     }
     [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
@@ -89,7 +89,7 @@ class ManyVisible {
   public:
     // The items that at least one view sees, each once: first those in leaves that each view sees whole or not at all,
     // then the others, both in the order of the tree's slots.
-    [[nodiscard]] std::span<const ItemId> ids() const { return std::span(ids_).first(size_); }
+    [[nodiscard]] std::span<const ItemId> ids() const { return {ids_.data(), size_}; }
     // Bit v: view v sees ids()[i].
     [[nodiscard]] std::uint32_t view_mask(std::size_t i) const {
         std::uint32_t mask = 0;

@@ -34,7 +34,7 @@ struct Polygon {
     [[nodiscard]] std::size_t ring_count() const { return ring_ends.size(); }
     [[nodiscard]] std::span<const glm::dvec2> ring(std::size_t r) const {
         const std::size_t begin = r == 0 ? 0 : ring_ends[r - 1];
-        return std::span<const glm::dvec2>(points).subspan(begin, ring_ends[r] - begin);
+        return {points.data() + begin, ring_ends[r] - begin};
     }
 };
 

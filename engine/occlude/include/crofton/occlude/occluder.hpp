@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
-#include <memory>
 #include <span>
 
 namespace crofton::occlude {
@@ -71,7 +70,7 @@ class OccluderSet {
   private:
     friend struct OccluderStorage;
     struct Data;
-    std::unique_ptr<Data> data_;
+    Owner<Data> data_;
 };
 
 // What of a mesh hides most per edge drawn: boxes and convex bodies inside it, and large flat parts of its surface.
@@ -84,8 +83,8 @@ enum class OccluderKind : std::uint8_t {
 };
 
 [[nodiscard]] inline Aabb everywhere() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    return {glm::dvec3(-kEndless), glm::dvec3(kEndless)};
 }
 
 // In the mesh's frame.

@@ -17,7 +17,6 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
-#include <memory>
 #include <span>
 
 namespace crofton::occlude {
@@ -200,7 +199,7 @@ class OcclusionBuffer {
     OcclusionBuffer();
     void draw(const OccluderSet& occluders, const OccluderId* chosen, std::size_t count, const OcclusionView& view,
               Executor& executor);
-    std::unique_ptr<Data> data_;
+    Owner<Data> data_;
 };
 
 // Which items does a view see, occluders considered? Of a tree, of a list, of what moves.
@@ -220,7 +219,7 @@ struct VisibleStatistics {
 class VisibleSet {
   public:
     // Ascending; each is inside or straddling.
-    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return std::span(ids_).first(size_); }
+    [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return {ids_.data(), size_}; }
     [[nodiscard]] std::span<const cull::Verdict> verdicts() const { return visible_.verdicts(); }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return visible_.inside_count(); }

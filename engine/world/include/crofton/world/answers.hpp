@@ -8,7 +8,6 @@
 #include <crofton/occlude/occlusion.hpp>
 #include <crofton/world/inputs.hpp>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 namespace crofton {
@@ -24,7 +23,7 @@ struct OccludedView;  // a view's depth buffer, and what was found with it
 struct OccludedViewDeleter {
     void operator()(OccludedView* view) const;
 };
-using OccludedViewOwner = std::unique_ptr<OccludedView, OccludedViewDeleter>;
+using OccludedViewOwner = Owner<OccludedView, OccludedViewDeleter>;
 }  // namespace world
 
 struct ObjectRef {
@@ -87,7 +86,7 @@ class VisibleInViews {
     [[nodiscard]] std::size_t size() const { return ids().size(); }
     // With occlusion ascending.
     [[nodiscard]] std::span<const std::uint32_t> ids() const {
-        return hides_ ? std::span<const std::uint32_t>(ids_) : set_.ids();
+        return hides_ ? std::span<const std::uint32_t>(ids_.data(), ids_.size()) : set_.ids();
     }
     [[nodiscard]] ObjectRef operator[](std::size_t i) const {
         const std::uint32_t id = ids()[i];

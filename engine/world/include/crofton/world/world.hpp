@@ -4,11 +4,11 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/core/memory.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/world/answers.hpp>
 #include <crofton/world/inputs.hpp>
-#include <memory>
 #include <optional>
 #include <span>
 
@@ -158,10 +158,7 @@ class World {
 
   private:
     struct State;
-    struct Deleter {
-        void operator()(State* state) const;
-    };
-    std::unique_ptr<State, Deleter> state_;
+    Owner<State> state_;
 };
 
 }  // namespace crofton
