@@ -12,14 +12,14 @@ namespace crofton::convex {
 namespace {
 
 constexpr std::uint32_t kBlock = 4;  // cells, and blocks, along a side of a block
-constexpr std::uint32_t kMaxCorners = 32768;
+constexpr std::uint32_t kMaxLine = 32768;  // corners
 
 std::uint32_t blocks_of(std::uint32_t count) {
     return (count + kBlock - 1) / kBlock;
 }
 
 Result<void> check(const HeightFieldDescription& d) {
-    if (d.columns < 2 || d.rows < 2 || d.columns > kMaxCorners || d.rows > kMaxCorners)
+    if (d.columns < 2 || d.rows < 2 || d.columns > kMaxLine || d.rows > kMaxLine)
         return fail(ErrorCode::out_of_range, kNoItem, "height field: columns and rows must be in [2, 32768]");
     for (int k = 0; k < 2; ++k)
         if (!(d.spacing[k] >= 1e-6 && d.spacing[k] <= 1e6))

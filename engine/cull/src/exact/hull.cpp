@@ -24,36 +24,24 @@ int side(const Plane& plane, const glm::dvec3& origin, const glm::dvec3& point) 
 }
 
 template <class Number>
-using Vec = std::array<Number, 3>;
-
-template <class Number>
-Vec<Number> numbers(const glm::dvec3& v) {
+Vector3<Number> numbers(const glm::dvec3& v) {
     return {Number(v.x), Number(v.y), Number(v.z)};
 }
-template <class Number>
-Vec<Number> cross(const Vec<Number>& a, const Vec<Number>& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-template <class Number>
-Number dot(const Vec<Number>& a, const Vec<Number>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 // Whether the point where planes i, j, k meet, if they do in one, lies in the frustum and in the hull. It is origin +
 // point / scale. `unknown`: rounding hides a sign.
 template <class Number>
 Answer is_common_corner(const Frustum& frustum, const convex::Hull& hull, std::array<std::uint32_t, 3> at,
                         bool& in_frustum) {
     in_frustum = false;
-    std::array<Vec<Number>, 3> normals;
+    std::array<Vector3<Number>, 3> normals;
     for (std::size_t k = 0; k < 3; ++k) normals[k] = numbers<Number>(frustum.planes[at[k]].normal);
-    const std::array<Vec<Number>, 3> sides{cross(normals[1], normals[2]), cross(normals[2], normals[0]),
+    const std::array<Vector3<Number>, 3> sides{cross(normals[1], normals[2]), cross(normals[2], normals[0]),
                                            cross(normals[0], normals[1])};
     Number scale = dot(normals[0], sides[0]);
     const bool turned = scale.is_negative();
     if (!turned && !scale.is_positive()) return std::is_same_v<Number, Exact> ? Answer::no : Answer::unknown;
     const Number zero(0.0);
-    Vec<Number> point{zero, zero, zero};
+    Vector3<Number> point{zero, zero, zero};
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t c = 0; c < 3; ++c) point[c] = point[c] - Number(frustum.planes[at[k]].offset) * sides[k][c];
     if (turned) {
@@ -74,9 +62,9 @@ Answer is_common_corner(const Frustum& frustum, const convex::Hull& hull, std::a
     const auto indices = hull.triangles();
     const auto origin = numbers<Number>(frustum.origin);
     for (std::size_t t = 0; t < indices.size(); t += 3) {
-        std::array<Vec<Number>, 3> corner;
+        std::array<Vector3<Number>, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) corner[k] = numbers<Number>(glm::dvec3(hull.vertices()[indices[t + k]]));
-        Vec<Number> x, y, from;
+        Vector3<Number> x, y, from;
         for (std::size_t c = 0; c < 3; ++c) {
             x[c] = corner[1][c] - corner[0][c], y[c] = corner[2][c] - corner[0][c];
             from[c] = (corner[0][c] - origin[c]) * scale - point[c];

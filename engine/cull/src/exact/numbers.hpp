@@ -2,6 +2,7 @@
 // Numbers that a test of signs is written for once: doubles with an error bound first, exact ones where these cannot
 // tell.
 #pragma once
+#include <array>
 #include <cmath>
 #include <crofton/geometry/dyadic.hpp>
 #include <cstdint>
@@ -52,5 +53,17 @@ class Exact {
 };
 
 enum class Answer : std::uint8_t { no, yes, unknown };
+
+template <class Number>
+using Vector3 = std::array<Number, 3>;
+
+template <class Number>
+Number dot(const Vector3<Number>& a, const Vector3<Number>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class Number>
+Vector3<Number> cross(const Vector3<Number>& a, const Vector3<Number>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 
 }  // namespace crofton::cull
