@@ -3,6 +3,7 @@
 
 #include <array>
 #include <crofton/boxtree/radius_range.hpp>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -11,6 +12,13 @@
 #include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
+namespace {
+
+bool same(const Aabb& a, const Aabb& b) {
+    return a.min == b.min && a.max == b.max;
+}
+
+}  // namespace
 
 // The leaf's last item moves into the gap.
 void Placement::vacate(ItemId item) {
@@ -224,16 +232,32 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
     for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
 }
 
-// All lanes of the node; above it, where bounding a child along other axes is dear, only those on the path.
+// All lanes of the node; above it the contents of those on the path, and the bounds if the child's are no longer what
+// they were. Where bounding a child along other axes is dear, only those on the path. Up to the first node that nothing
+// changes in: those above depend on it alone.
 void Placement::refresh_path(NodeId n) {
+    const auto bounds = [&](NodeId node) { return bounds_of(nodes_[node], structure_.axes_of(nodes_[node])); };
+    const bool turned = structure_.axes_.size() > 1;
+    Aabb before = bounds(n);  // as the node above knows them: a child that has just come is still empty
     structure_.refresh_node(n);
+    bool changed = !same(before, bounds(n));
     for (NodeId child = n; (n = nodes_[child].parent) != kNone; child = n) {
         const unsigned lane = nodes_[child].lane_in_parent;
-        if (structure_.axes_.size() > 1 &&
-            write_lane(nodes_[n], lane, structure_.bounds_below(child, nodes_[n].axes), structure_.axes_of(nodes_[n])))
-            structure_.refresh_contents(n, lane);
-        else
-            structure_.refresh_node(n);
+        const Node node_before = nodes_[n];
+        const NodeRadii radii_before = structure_.node_radii_[n];
+        if (turned) {
+            if (!write_lane(nodes_[n], lane, structure_.bounds_below(child, nodes_[n].axes),
+                            structure_.axes_of(nodes_[n])))
+                structure_.refresh_bounds(n);
+        } else if (changed) {
+            before = bounds(n);
+            structure_.refresh_bounds(n);
+            changed = !same(before, bounds(n));
+        }
+        structure_.refresh_contents(n, lane);
+        if (std::memcmp(&node_before, &nodes_[n], sizeof(Node)) == 0 &&
+            std::memcmp(&radii_before, &structure_.node_radii_[n], sizeof(NodeRadii)) == 0)
+            return;
     }
 }
 

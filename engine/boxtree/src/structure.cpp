@@ -193,8 +193,15 @@ void Structure::write_item(ItemId item) {
     if (!write_lane(leaves_[slot / kWidth], slot % kWidth, items_.boxes()[item])) rewrite_leaf(slot / kWidth);
 }
 
-// Bounds, layers and radii of all lanes from the children, in a fitting frame.
+// Bounds, layers and radii of all lanes from the children.
 void Structure::refresh_node(NodeId n) {
+    refresh_bounds(n);
+    for (unsigned lane = 0; lane < nodes_[n].count; ++lane) copy_contents(n, lane);
+    join_layers(nodes_[n]);
+}
+
+// In a fitting frame.
+void Structure::refresh_bounds(NodeId n) {
     Node& node = nodes_[n];
     Aabb bounds[kWidth], whole;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
@@ -205,12 +212,16 @@ void Structure::refresh_node(NodeId n) {
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
         [[maybe_unused]] const bool fits = write_lane(node, lane, bounds[lane], axes_of(node));
         CROFTON_ASSERT(fits, "a frame around bounds must take them");
-        refresh_contents(n, lane);
     }
 }
 
 // Layers and radii.
 void Structure::refresh_contents(NodeId n, unsigned lane) {
+    copy_contents(n, lane);
+    join_layers(nodes_[n]);
+}
+
+void Structure::copy_contents(NodeId n, unsigned lane) {
     Node& node = nodes_[n];
     const std::uint32_t child = node.child[lane];
     if (child & kLeafBit) {
@@ -224,6 +235,9 @@ void Structure::refresh_contents(NodeId n, unsigned lane) {
         for (unsigned i = 0; i < below.count; ++i) range = united(range, node_radii_[child].below[i]);
         node_radii_[n].below[lane] = range;
     }
+}
+
+void Structure::join_layers(Node& node) {
     node.layers_every = ~std::uint32_t{0};
     for (unsigned i = 0; i < node.count; ++i) node.layers_every &= node.layers_all[i];
 }

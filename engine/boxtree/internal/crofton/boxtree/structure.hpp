@@ -92,6 +92,9 @@ class Structure {
     void rewrite_leaf(LeafId l);
     void write_item(ItemId item);
     void refresh_node(NodeId n);
+    void refresh_bounds(NodeId n);
+    void copy_contents(NodeId n, unsigned lane);
+    static void join_layers(Node& node);
     void refresh_contents(NodeId n, unsigned lane);
     [[nodiscard]] std::uint32_t items_without_gaps(NodeId n) const;
 
