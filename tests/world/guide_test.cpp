@@ -2,7 +2,9 @@
 // The code of docs/world.md.
 #include <doctest/doctest.h>
 #include <cmath>
+#include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
+#include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <vector>
@@ -99,5 +101,44 @@ TEST_SUITE("world/guide") {
         if (frustum) world.view(crofton::cull::View{.frustum = *frustum, .layer_mask = 1}, visible);
 
         CHECK(visible.size() == 9);  // the trigger is in layer 2 alone
+    }
+
+    TEST_CASE("the guide's bodies rest on a floor, and fall on it") {
+        // clang-format off
+        crofton::World world;
+        crofton::ThreadPool jobs(2);
+        const auto slab = crofton::convex::Body::box({5.0f, 0.2f, 5.0f}).value();
+        const auto floor = world.add({.bound = crofton::Obb{{}, glm::mat3(1.0f), {5.0f, 0.2f, 5.0f}}}).value();
+        world.set_body(floor, &slab);
+        std::size_t pushed = 0;
+        const auto push = [&](const crofton::BodyContact& contact, const glm::dvec3& position, const glm::dvec3& normal,
+                              double depth, float* memory) {
+            ++pushed;
+            CHECK(contact.second.user == 7);
+            CHECK(position.y == doctest::Approx(0.15));
+            CHECK(normal.y == doctest::Approx(1.0));
+            CHECK(depth == doctest::Approx(0.1));
+            CHECK(memory[0] == 0.0f);
+        };
+
+        const auto capsule = crofton::convex::Body::capsule(0.6f, 0.3f).value();  // a character, upright
+        const crofton::Obb around{{0.0, 1.0, 0.0}, glm::mat3(1.0f), {0.4f, 1.0f, 0.4f}};
+        const auto hero = world.add({.bound = around, .user = 7}).value();
+        world.set_body(hero, &capsule);
+        world.update(jobs);
+        for (const crofton::BodyContact& contact : world.body_contacts())
+            for (std::uint32_t i = 0; i < contact.point_count; ++i) {
+                crofton::convex::TrackedPoint& point = contact.points[i];
+                push(contact, point.contact.position, point.normal, point.contact.depth, point.memory);  // and keep the impulses
+            }
+        const crofton::RigidTransform from{glm::dmat3(1.0), {0.0, 9.0, 0.0}};
+        const auto hit = world.cast(capsule, from, {.velocity = {0.0, -9.0, 0.0}}, {});  // where would it land?
+        if (hit && *hit) std::printf("after %g s on object %u\n", (*hit)->time, (*hit)->object.index);
+        // clang-format on
+        CHECK(pushed == 1);
+        REQUIRE(hit.has_value());
+        REQUIRE(hit->has_value());
+        CHECK((*hit)->object == hero);
+        CHECK((*hit)->time == doctest::Approx((9.0 - 1.9 - 0.9) / 9.0).epsilon(1e-5));
     }
 }

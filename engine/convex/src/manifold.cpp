@@ -149,13 +149,24 @@ Manifold manifold_along(const Placed& a, const Placed& b, const glm::dvec3& norm
 
 Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache) {
     if (!a.body.is_convex() || !b.body.is_convex()) return deepest_manifold(a, b, options);
+    return convex_manifold(a, b, options, cache, kKeptDepth);
+}
+
+Manifold triangle_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options) {
+    PairCache guess;
+    guess.reference = 1;
+    return convex_manifold(a, b, options, &guess, kSameDepth);
+}
+
+Manifold convex_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options, PairCache* cache,
+                         double kept) {
     if (is_half_space(a)) return is_half_space(b) ? Manifold{} : on_half_space(a, b, options);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options));
     const Pair pair(a, b);
     Touch touch;
     Clipped clipped;
     if (cache != nullptr && cache->reference != 0) {
-        const Warm warm = touch_at_face(a, b, pair, options.margin, *cache, touch, clipped);
+        const Warm warm = touch_at_face(a, b, pair, options.margin, *cache, kept, touch, clipped);
         if (warm == Warm::apart) return {};
         if (warm == Warm::touching) {
             Gatherer gatherer(a, b, touch, options.margin);

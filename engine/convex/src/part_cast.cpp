@@ -122,6 +122,7 @@ class PartCaster {
         CastOptions options = options_;
         options.duration = best_.time;
         const Placed placed{part.body, start};
+        if (comes_later(placed)) return;
         Impact impact = b_.body.is_convex() ? advance(placed, motion, b_, motion_b_, options, from, nullptr)
                                             : reversed(cast_parts(b_, motion_b_, placed, motion, options, from));
         if (impact.result == CastResult::miss || impact.time > best_.time) return;
@@ -129,6 +130,17 @@ class PartCaster {
         if (part.sides == Sides::front && comes_from_behind(part, start, motion, impact)) return;
         best_ = impact;
         best_.part_a = part.id;
+    }
+
+    // Whether neither turns, and along their way they are too far apart to touch by the time of the best.
+    [[nodiscard]] bool comes_later(const Placed& part) const {
+        const glm::dvec3 velocity = motion_b_.velocity - motion_a_.velocity;
+        const double speed = glm::length(velocity);
+        if (b_turns_ || motion_a_.spin != glm::dvec3(0.0) || !(speed > 0.0) || is_half_space(b_)) return false;
+        if (!b_.body.is_convex()) return false;
+        const Pair pair(part, b_);
+        const double gap = -pair.extent(-velocity / speed) - pair.error - part.body.radius() - b_.body.radius();
+        return gap - 2.0 * options_.tolerance > speed * best_.time * (1.0 + 1e-9);
     }
 
     [[nodiscard]] static RigidTransform inverse_of(const RigidTransform& pose) {

@@ -2,6 +2,7 @@
 #include "part_manifold.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "clip.hpp"
@@ -10,8 +11,8 @@
 namespace crofton::convex {
 namespace {
 
-// Normals this close are one: 0.3 degrees.
-constexpr double kSameNormal = 1.0 - 1.3e-5;
+// Normals this close are one: 5 degrees.
+constexpr double kSameNormal = 0.9962;
 // A direction is across an edge, and a neighbour not above a vertex, up to this sine.
 constexpr double kFlat = 1e-3;
 
@@ -30,6 +31,12 @@ Farthest farthest_along(const PlacedTriangle& t, const glm::dvec3& d) {
         if (k != best && glm::dot(d, way) >= -kFlat * glm::length(way)) result.vertex[result.count++] = k;
     }
     return result;
+}
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+bool has_vertex(const Body& triangle, const glm::dvec3& vertex) {
+    return triangle.vertex(0) == vertex || triangle.vertex(1) == vertex || triangle.vertex(2) == vertex;
 }
 
 bool is_triangle(const Part& part) {
@@ -96,6 +103,7 @@ class ManifoldFinder {
             found_.near_.push_back(part);
             return false;
         });
+        found_.next_.clear();
         for (const Part& part : found_.near_) {
             Manifold m = touch(part, b);
             if (m.count == 0) continue;
@@ -131,8 +139,9 @@ class ManifoldFinder {
 
     [[nodiscard]] Manifold touch(const Part& part, const Placed& b) const {
         const Placed placed{part.body, part.pose};
-        const Manifold m = contact_manifold(placed, b, all_points_);
-        if (m.count == 0 || !is_triangle(part)) return m;
+        if (!is_triangle(part)) return contact_manifold(placed, b, all_points_);
+        const Manifold m = triangle_manifold(placed, b, all_points_);
+        if (m.count == 0) return m;
         const PlacedTriangle t = placed_triangle(part, part.pose.translation);
         const double along = glm::dot(m.normal, t.normal);
         const bool front_only = part.sides == Sides::front;
@@ -145,18 +154,39 @@ class ManifoldFinder {
         return manifold_along(placed, b, front ? t.normal : -t.normal, all_points_);
     }
 
+    // Lists the triangles at each vertex: chains of their corners, by a hash of the vertex' place.
+    void list_corners() const {
+        const std::size_t count = found_.near_.size();
+        found_.first_.assign(std::bit_ceil(4 * count), kNone);
+        found_.next_.assign(3 * count, kNone);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            if (!is_triangle(found_.near_[i])) continue;
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                std::uint32_t& first = found_.first_[slot_of(found_.near_[i].body.vertex(static_cast<int>(k)))];
+                found_.next_[3 * i + k] = first;
+                first = 3 * i + k;
+            }
+        }
+    }
+    [[nodiscard]] std::size_t slot_of(const glm::dvec3& vertex) const {
+        std::uint64_t hash = 0;
+        for (int k = 0; k < 3; ++k)  // -0 is 0
+            hash = (hash ^ std::bit_cast<std::uint64_t>(vertex[k] + 0.0)) * 0x9e3779b97f4a7c15u;
+        return static_cast<std::size_t>(hash >> 32) & (found_.first_.size() - 1);
+    }
+
     // Whether a triangle that shares the vertices on which the normal stands rises above them along it.
     [[nodiscard]] bool points_into_neighbor(const Part& part, const PlacedTriangle& t, const glm::dvec3& normal) const {
         const Farthest on = farthest_along(t, normal);
         if (on.count == 3) return false;
-        for (const Part& other : found_.near_) {
-            if (&other == &part || !is_triangle(other) || other.id.child != part.id.child) continue;
-            int shared = 0;
-            for (int k = 0; k < on.count; ++k)
-                for (int j = 0; j < 3; ++j) shared += other.body.vertex(j) == part.body.vertex(on.vertex[k]) ? 1 : 0;
-            if (shared < on.count) continue;
+        if (found_.next_.empty()) list_corners();
+        const glm::dvec3 vertex = part.body.vertex(on.vertex[0]);
+        for (std::uint32_t c = found_.first_[slot_of(vertex)]; c != kNone; c = found_.next_[c]) {
+            const Part& other = found_.near_[c / 3];
+            if (other.body.vertex(static_cast<int>(c % 3)) != vertex || other.id.child != part.id.child) continue;
+            if (on.count == 2 && !has_vertex(other.body, part.body.vertex(on.vertex[1]))) continue;
             for (int j = 0; j < 3; ++j) {
-                const glm::dvec3 way = part.pose.rotation * (other.body.vertex(j) - part.body.vertex(on.vertex[0]));
+                const glm::dvec3 way = part.pose.rotation * (other.body.vertex(j) - vertex);
                 if (glm::dot(normal, way) > kFlat * glm::length(way)) return true;
             }
         }

@@ -12,6 +12,13 @@ namespace crofton::convex {
 [[nodiscard]] Manifold manifold_along(const Placed& a, const Placed& b, const glm::dvec3& normal,
                                       const ManifoldOptions& options);
 
+// contact_manifold of two convex bodies; the cached face is kept within `kept` of the size.
+[[nodiscard]] Manifold convex_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options,
+                                       PairCache* cache, double kept);
+
+// The same where a is a triangle: its face is tried first.
+[[nodiscard]] Manifold triangle_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options);
+
 // Of contact_manifolds: that with the deepest point.
 [[nodiscard]] Manifold deepest_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options);
 

@@ -30,6 +30,8 @@ struct InnerBall {
 InnerBall inner_ball(const Placed& p) {
     if (p.body.hull() != nullptr)
         return {p.pose.rotation * p.body.hull()->mass().center, p.body.hull()->inner_radius()};
+    if (p.body.kind() == Kind::triangle)
+        return {p.pose.rotation * ((p.body.vertex(0) + p.body.vertex(1) + p.body.vertex(2)) / 3.0), 0.0};
     const glm::dvec3& h = p.body.half_extents();
     return {glm::dvec3(0.0), p.body.kind() == Kind::box ? 0.999 * std::min(h.x, std::min(h.y, h.z)) : 0.0};
 }
@@ -97,21 +99,24 @@ bool find_touch(const Pair& pair, double margin, PairCache* cache, Touch& touch)
 }
 
 Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double margin, const PairCache& cache,
-                   Touch& touch, Clipped& clipped) {
+                   double kept_share, Touch& touch, Clipped& clipped) {
     const bool on_a = cache.reference == 1;
     const Placed &reference = on_a ? a : b, &incident = on_a ? b : a;
     const Body& body = reference.body;
-    const bool valid =
-        body.kind() == Kind::box ? cache.face < 6 : body.kind() == Kind::hull && cache.face < body.hull()->face_count();
+    const bool valid = body.kind() == Kind::box
+                           ? cache.face < 6
+                           : (body.kind() == Kind::hull && cache.face < body.hull()->face_count()) ||
+                                 (body.kind() == Kind::triangle && cache.face == 0);
     if (!valid || (incident.body.kind() != Kind::box && incident.body.kind() != Kind::hull)) return Warm::unknown;
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
     Patch face, other;
     patch_of_face(reference, cache.face, a.pose.translation, face);
+    if (face.normal == glm::dvec3(0.0)) return Warm::unknown;  // a triangle without area
     const glm::dvec3 out = face.normal / glm::length(face.normal);
     touch.normal = on_a ? out : -out;
     double depth = 0.0;
     const Corner deepest = pair.support(touch.normal, depth);
-    const double rounding = pair.a.radius() + pair.b.radius(), kept = kKeptDepth * pair.size;
+    const double rounding = pair.a.radius() + pair.b.radius(), kept = kept_share * pair.size;
     if (-depth - pair.error > rounding + margin) return Warm::apart;
     // Contacts nearer than rounding tells are decided exactly by the other way.
     if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;

@@ -20,10 +20,11 @@ struct Touch {
 
 enum class Warm : std::uint8_t { unknown, apart, touching };
 
-// The touch at the face that the cache names, if that is proven to be the least deep within kKeptDepth of the size, or
-// the bodies to be farther apart than the margin. Then `clipped` holds the patches' common part.
-inline constexpr double kKeptDepth = 1e-4;
+// The touch at the face that the cache names, if that is proven to be the least deep within `kept` of the size, or the
+// bodies to be farther apart than the margin. Then `clipped` holds the patches' common part. kKeptDepth is for a face
+// that stays; kSameDepth for one that is a guess.
+inline constexpr double kKeptDepth = 1e-4, kSameDepth = 1e-12;
 [[nodiscard]] Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double margin,
-                                 const PairCache& cache, Touch& touch, Clipped& clipped);
+                                 const PairCache& cache, double kept, Touch& touch, Clipped& clipped);
 
 }  // namespace crofton::convex

@@ -138,13 +138,16 @@ void ContactFinder::touch_ball(const PosedTree& mesh, const PosedTree& center, d
 }
 
 void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                  Bodies& bodies, Executor& executor) {
+                                  Bodies& bodies, const BodyContacts& bodies_of, Executor& executor) {
+    const auto have_bodies = [&](const ObjectPair& pair) {
+        return bodies_of.has(pair.first.object.index) && bodies_of.has(pair.second.object.index);
+    };
     const auto is_mesh = [&](const ObjectRef& object) {
         return bodies.mesh_tree_of(table.objects[object.object.index]) != nullptr;
     };
     bodies.begin();
     for (const ObjectPair& pair : pairs_) {
-        if (!is_mesh(pair.first) && !is_mesh(pair.second)) continue;
+        if ((!is_mesh(pair.first) && !is_mesh(pair.second)) || have_bodies(pair)) continue;
         for (const ObjectRef& object : {pair.first, pair.second})
             bodies.prepare(table, index, scene, object.object.index);
     }
@@ -164,6 +167,7 @@ void ContactFinder::find_contacts(const ObjectTable& table, const SpatialIndex& 
             touch.worker = w;
             touch.first_point = static_cast<std::uint32_t>(worker.points.size());
             touch.first_triangle = static_cast<std::uint32_t>(worker.triangles.size());
+            if (have_bodies(pair)) continue;
             if (!is_mesh(pair.first) && !is_mesh(pair.second)) {
                 touch_bounds(table, index, pair, worker, touch);
                 continue;
@@ -228,7 +232,7 @@ void ContactFinder::gather() {
 }
 
 Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene,
-                                   Bodies& bodies, bool moved_only, Executor& executor) {
+                                   Bodies& bodies, const BodyContacts& bodies_of, bool moved_only, Executor& executor) {
     Result<void> found;
     if (moved_only) {
         move_colliders(index);
@@ -239,7 +243,7 @@ Result<void> ContactFinder::update(const ObjectTable& table, const SpatialIndex&
     }
     list_pairs(table);
     if (options_.contacts) {
-        find_contacts(table, index, scene, bodies, executor);
+        find_contacts(table, index, scene, bodies, bodies_of, executor);
         gather();
     }
     return found;

@@ -5,6 +5,7 @@
 #include <crofton/world/world.hpp>
 
 #include "bodies.hpp"
+#include "body_contacts.hpp"
 #include "object_table.hpp"
 #include "spatial_index.hpp"
 
@@ -26,9 +27,9 @@ class ContactFinder {
     explicit ContactFinder(const WorldOptions& options);
 
     // After the updates of these. `moved_only`: since the update before no more has changed than the boxes of the
-    // index's moved_items(). Error: as Broadphase::update.
+    // index's moved_items(). Pairs of two bodies are left to `bodies_of`. Error: as Broadphase::update.
     Result<void> update(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                        bool moved_only, Executor& executor);
+                        const BodyContacts& bodies_of, bool moved_only, Executor& executor);
     // Nothing has changed since the update before.
     void stay();
 
@@ -45,7 +46,7 @@ class ContactFinder {
     void move_colliders(const SpatialIndex& index);
     void list_pairs(const ObjectTable& table);
     void find_contacts(const ObjectTable& table, const SpatialIndex& index, const scene::Scene& scene, Bodies& bodies,
-                       Executor& executor);
+                       const BodyContacts& bodies_of, Executor& executor);
     void touch_bounds(const ObjectTable& table, const SpatialIndex& index, const ObjectPair& pair, Worker& worker,
                       Touch& touch) const;
     void touch_triangles(const PosedTree& a, const PosedTree& b, Worker& worker, Touch& touch) const;

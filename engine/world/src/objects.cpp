@@ -194,6 +194,16 @@ Result<void> World::set_mesh(ObjectHandle object, MeshHandle mesh) {
     return s.scene.set_instance_mesh(instance, mesh.index);
 }
 
+Result<void> World::set_body(ObjectHandle object, const convex::Body* body) {
+    if (auto known = state_->check(object, object.index); !known) return known;
+    if (body != nullptr && body->kind() == convex::Kind::half_space)
+        return fail(ErrorCode::unsupported, object.index,
+                    "world: a half-space has no box; give the object a large box instead");
+    state_->body_contacts.set(object.index, body);
+    state_->pairs_changed = true;
+    return {};
+}
+
 Result<void> World::set_hidden(ObjectHandle object, bool hidden) {
     if (auto known = state_->check(object, object.index); !known) return known;
     state_->table.objects[object.index].shown = !hidden;

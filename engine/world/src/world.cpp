@@ -36,6 +36,9 @@ std::span<const ObjectPair> World::pairs() const {
 std::span<const Contact> World::contacts() const {
     return state_->finder.contacts();
 }
+std::span<const BodyContact> World::body_contacts() const {
+    return state_->body_contacts.contacts();
+}
 
 Result<std::uint64_t> World::user_of(ObjectHandle object) const {
     if (auto known = state_->check(object, object.index); !known) return tl::unexpected(known.error());
@@ -62,6 +65,7 @@ void World::State::apply_changes() {
     for (const std::uint32_t object : removed) {
         index.remove(object);
         bodies.forget(object);
+        body_contacts.set(object, nullptr);
         occluders.note(object);
     }
     pairs_changed |= !removed.empty();
@@ -138,8 +142,13 @@ Result<void> World::update(Executor& executor) {
     const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
     s.pairs_changed = false;
     const auto start = std::chrono::steady_clock::now();
-    if (s.options.pairs && changed) found = s.finder.update(s.table, s.index, s.scene, s.bodies, moved_only, executor);
+    if (s.options.pairs && changed)
+        found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, moved_only, executor);
+    if (s.options.pairs && s.options.contacts && changed)
+        s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, moved_only,
+                               executor);
     if (!changed) s.finder.stay();
+    if (!changed) s.body_contacts.stay();
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     if (!found) s.pairs_changed = true;

@@ -4,6 +4,7 @@
 #include <crofton/collide/broadphase.hpp>
 #include <crofton/world/world.hpp>
 
+#include "body_contacts.hpp"
 #include "contact_finder.hpp"
 #include "object_table.hpp"
 #include "occluders.hpp"
@@ -51,6 +52,7 @@ struct World::State {
     world::MoverTable movers;
     world::Bodies bodies;
     world::ContactFinder finder;
+    world::BodyContacts body_contacts;
     world::Occluders occluders;
     Aabb object_bounds;  // about; where there are occluders
     scene::Scene scene;
@@ -82,6 +84,13 @@ struct World::State {
     [[nodiscard]] Result<void> find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
                                             const cull::CullOptions& how, Executor& executor,
                                             world::OccludedView& result) const;
+
+    // An object's body, or what stands for it: a ball or box. No pose: it meets nothing.
+    struct Stand {
+        convex::Body body;
+        std::optional<RigidTransform> pose;
+    };
+    [[nodiscard]] Stand stand_of(std::uint32_t object) const;
 
     // How far along the ray an object's own shape is met, no farther than the ray goes; its box is met at `box_t`.
     [[nodiscard]] std::optional<ObjectHit> shape_hit(const Ray& ray, std::uint32_t object, double box_t) const;

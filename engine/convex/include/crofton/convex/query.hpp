@@ -128,10 +128,12 @@ class Manifolds {
   private:
     friend class ManifoldFinder;
     Vector<Manifold> all_;
-    Vector<Part> near_;  // parts that may touch
+    Vector<Part> near_;                   // parts that may touch
+    Vector<std::uint32_t> first_, next_;  // their corners, by place
 };
 
-// Replaces what `found` has. Manifolds of parts whose normals agree within 0.3 degrees are one. Two convex bodies: one
+// Replaces what `found` has. Manifolds of parts whose normals agree within 5 degrees are one, with the normal of its
+// deepest point; each depth is along its own part's normal. Two convex bodies: one
 // manifold, or none. On the edges and vertices of a surface the internal-edge rule holds: where a triangle's own normal
 // would point into the surface beside it, the triangle pushes along its face's. So what slides over a floor of many
 // triangles meets the floor alone. Neighbours are triangles of the same body that share vertices of equal position.

@@ -12,6 +12,9 @@
 
 namespace crofton {
 
+namespace convex {
+struct TrackedPoint;
+}
 namespace world {
 // By an object's index.
 struct ObjectNames {
@@ -145,6 +148,27 @@ struct Contact {
     double depth = 0.0;
     std::span<const collide::ContactPoint> points;  // in the world's frame; at most four; none of a mesh inside another
     std::span<const mesh::MeshContact> triangles;   // of two meshes, or a mesh and a box
+};
+
+// Two objects with bodies that touch, or come within WorldOptions::contact_margin, or did in the update before. What
+// ended has no points. Points keep their memory, which is the caller's to write, while their ids stay
+// (crofton/convex/query.hpp); valid until the next update.
+struct BodyContact {
+    ObjectRef first, second;  // ordered as in ObjectPair; the first is body a
+    ContactPhase phase = ContactPhase::began;
+    convex::TrackedPoint* points = nullptr;
+    std::uint32_t point_count = 0;
+};
+
+// An object that a moving body meets, at that time.
+struct BodyHit {
+    ObjectHandle object;
+    std::uint64_t user = 0;
+    double time = 0.0;
+    glm::dvec3 normal{0.0};      // unit, from the body to the object; 0 where they overlap from the start
+    glm::dvec3 point{0.0};       // on the object
+    std::uint32_t triangle = 0;  // of a surface
+    bool resolved = true;        // false: up to `time` nothing is met; what comes later is not known
 };
 
 }  // namespace crofton

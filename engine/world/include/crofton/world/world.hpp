@@ -14,13 +14,20 @@
 
 namespace crofton {
 
+namespace convex {
+class Body;
+struct CastOptions;
+struct Motion;
+}  // namespace convex
+
 inline constexpr std::size_t kAutomatic = ~std::size_t{0};
 
 struct WorldOptions {
-    bool pairs = true;        // false: neither pairs nor contacts are looked for
-    bool contacts = true;     // false: pairs alone
-    bool containment = true;  // a closed mesh around another object touches it
-    bool mesh_depth = false;  // a way out of contacts between meshes, which costs more than finding them
+    bool pairs = true;            // false: neither pairs nor contacts are looked for
+    bool contacts = true;         // false: pairs alone
+    bool containment = true;      // a closed mesh around another object touches it
+    double contact_margin = 0.0;  // ≥ 0: gaps up to this between bodies are contacts, as far as the objects' boxes meet
+    bool mesh_depth = false;      // a way out of contacts between meshes, which costs more than finding them
     std::size_t max_pairs = std::size_t{1} << 24;  // more are an error, not an exhausted memory
     // Items' worth of background work on the tree an update (BoxTree::rebuild_step), beside what changes make
     // necessary; kAutomatic: a 128th of the objects and 512. 0: none, and no allocation.
@@ -69,6 +76,13 @@ class World {
     Result<void> set_layers(ObjectHandle object, std::uint32_t layers);
     Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
     Result<void> set_user(ObjectHandle object, std::uint64_t user);
+
+    // Gives an object a body, or with nullptr takes it away, from the next update on: pairs of objects that both have
+    // bodies are in body_contacts() instead of contacts(). What the body is a view of stays the caller's, alive and
+    // unchanged; to change it, set the body again. It stands where the object's transform, or the frame of its box or
+    // ball, puts it; under a transform that is not rigid it touches nothing. The object's box stands for it in pairs
+    // and queries: what reaches beyond is missed. Error: a half-space, which has no box.
+    Result<void> set_body(ObjectHandle object, const convex::Body* body);
 
     // A mesh must have triangles and pass validate(TriangleMesh).
     Result<MeshHandle> add_mesh(const MeshDescription& description);
@@ -143,6 +157,15 @@ class World {
     void overlap(const Obb& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const Sphere& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
     void overlap(const collide::Capsule& shape, Vector<ObjectRef>& found, std::uint32_t layers = ~0u) const;
+    // The same for any body but a half-space, exactly; objects with bodies by these. Balls are rounded to float. A pose
+    // that is not valid meets nothing.
+    void overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
+                 std::uint32_t layers = ~0u) const;
+    // The first object that a moving body meets: as convex::cast against each one's body, ball or box at rest. Errors:
+    // of convex::cast; a half-space; a pose that is not valid.
+    [[nodiscard]] Result<std::optional<BodyHit>> cast(const convex::Body& shape, const RigidTransform& pose,
+                                                      const convex::Motion& motion, const convex::CastOptions& options,
+                                                      std::uint32_t layers = ~0u) const;
     // The box or ball nearest to the shape, no farther than max_distance; of several the lowest index.
     [[nodiscard]] std::optional<ClosestObject> closest(const Sphere& shape, double max_distance,
                                                        std::uint32_t layers = ~0u) const;
@@ -155,6 +178,8 @@ class World {
     // longer do.
     [[nodiscard]] std::span<const ObjectPair> pairs() const;
     [[nodiscard]] std::span<const Contact> contacts() const;
+    // Of objects that both have bodies, in order. Pairs of which neither has moved are not computed again.
+    [[nodiscard]] std::span<const BodyContact> body_contacts() const;
 
   private:
     struct State;

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+// Bodies that rest on surfaces, beside Bullet and ODE: boxes and capsules on the bunny, boxes on a height field of
+// 1025 x 1025 corners. Manifolds are asked for, frame after frame, with poses that tremble.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <crofton/convex/query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <memory>
+#include <random>
+
+#include "collide_inputs.hpp"
+
+#if defined(CROFTON_HAVE_BULLET)
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <btBulletCollisionCommon.h>
+#endif
+#if defined(CROFTON_HAVE_ODE)
+#include <ode/ode.h>
+#endif
+
+namespace crofton::bench {
+namespace {
+
+using namespace crofton::convex;
+
+constexpr int kFrames = 8, kBodies = 1000;
+constexpr std::uint32_t kSide = 1025;
+
+// Where a body stands on a surface, sunk in by 1 % of its size.
+struct SurfaceScene {
+    TriangleMesh mesh;  // empty: the field
+    std::vector<float> heights;
+    Body body = Body::ball(1).value();
+    float size = 0.0f;
+    bool capsule = false;
+    std::vector<RigidTransform> poses[kFrames];
+};
+
+float height(double x, double z) {
+    return static_cast<float>(4.0 * std::sin(0.031 * x) * std::cos(0.027 * z) + 0.4 * std::sin(0.5 * x + 0.3 * z));
+}
+
+SurfaceScene make_scene(bool field, bool capsule) {
+    SurfaceScene scene;
+    std::mt19937_64 random(3);
+    const auto number = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const auto direction = [&] { return glm::normalize(glm::dvec3(number(-1, 1), number(-1, 1), number(-1, 1.1))); };
+    scene.capsule = capsule;
+    if (field) {
+        scene.size = 0.5f;
+        for (std::uint32_t j = 0; j < kSide; ++j)
+            for (std::uint32_t i = 0; i < kSide; ++i) scene.heights.push_back(height(i, j));
+    } else {
+        scene.mesh = shared_mesh("bunny");
+        glm::vec3 low(1e9f), high(-1e9f);
+        for (const glm::vec3& p : scene.mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
+        scene.size = 0.03f * glm::length(high - low);
+    }
+    const float s = scene.size;
+    scene.body = capsule ? Body::capsule(0.6f * s, 0.5f * s).value() : Body::box({s, s, s}).value();
+    for (int i = 0; i < kBodies; ++i) {
+        glm::dvec3 on, n;
+        if (field) {
+            on = {number(20, 1000), 0, number(20, 1000)};
+            on.y = height(on.x, on.z);
+            n = glm::normalize(glm::dvec3(on.y - height(on.x + 1, on.z), 1.0, on.y - height(on.x, on.z + 1)));
+        } else {
+            const std::size_t t = 3 * (random() % (scene.mesh.indices.size() / 3));
+            const auto corner = [&](std::size_t k) {
+                return glm::dvec3(scene.mesh.positions[scene.mesh.indices[t + k]]);
+            };
+            n = glm::normalize(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+            on = (corner(0) + corner(1) + corner(2)) / 3.0;
+        }
+        const glm::dvec3 side = glm::normalize(glm::cross(n, direction()));
+        const glm::dmat3 frame(side, n, glm::cross(side, n));
+        const double lift = (capsule ? 1.1 : 1.0) * s - 0.01 * s;
+        for (int f = 0; f < kFrames; ++f)
+            scene.poses[f].push_back({frame, on + lift * n + 1e-4 * double(s) * direction()});
+    }
+    return scene;
+}
+
+template <class Run>
+void frames(benchmark::State& state, Run run) {
+    int f = 0;
+    std::uint64_t points = 0, touching = 0;
+    for (auto _ : state) {
+        for (int i = 0; i < kBodies; ++i) {
+            const int count = run(f, i);
+            points += static_cast<std::uint64_t>(count);
+            touching += count > 0 ? 1 : 0;
+        }
+        f = (f + 1) % kFrames;
+    }
+    const double all = static_cast<double>(state.iterations()) * kBodies;
+    state.counters["points"] = static_cast<double>(points) / all;
+    state.counters["touching"] = static_cast<double>(touching) / all;
+    state.counters["ns"] = benchmark::Counter(all * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void crofton_rest(benchmark::State& state, bool field, bool capsule) {
+    const SurfaceScene scene = make_scene(field, capsule);
+    if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
+    HeightField heights;
+    mesh::MeshTree tree;
+    if (field)
+        heights = HeightField::build({kSide, kSide, scene.heights}).value();
+    else
+        tree = mesh::MeshTree::build(scene.mesh).value();
+    const Body surface = field ? Body::height_field(heights) : Body::mesh(tree, Sides::front).value();
+    const RigidTransform still;
+    Manifolds found;
+    frames(state, [&](int f, int i) {
+        contact_manifolds({surface, still}, {scene.body, scene.poses[f][i]}, {.margin = 0.02 * scene.size}, found);
+        int points = 0;
+        for (const Manifold& m : found.all()) points += m.count;
+        return points;
+    });
+}
+BENCHMARK_CAPTURE(crofton_rest, a, false, false)->Name("box on bunny/crofton");
+BENCHMARK_CAPTURE(crofton_rest, b, false, true)->Name("capsule on bunny/crofton");
+BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
+
+// Down onto the surface from twice the size above it.
+void crofton_drop(benchmark::State& state, bool field) {
+    const SurfaceScene scene = make_scene(field, false);
+    if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
+    HeightField heights;
+    mesh::MeshTree tree;
+    if (field)
+        heights = HeightField::build({kSide, kSide, scene.heights}).value();
+    else
+        tree = mesh::MeshTree::build(scene.mesh).value();
+    const Body surface = field ? Body::height_field(heights) : Body::mesh(tree).value();
+    const RigidTransform still;
+    frames(state, [&](int f, int i) {
+        RigidTransform from = scene.poses[f][i];
+        const glm::dvec3 n = from.rotation[1];
+        from.translation += 2.0 * scene.size * n;
+        return cast({scene.body, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4})
+                           ->result == CastResult::hit
+                   ? 1
+                   : 0;
+    });
+}
+BENCHMARK_CAPTURE(crofton_drop, a, false)->Name("cast of a box, bunny/crofton");
+BENCHMARK_CAPTURE(crofton_drop, b, true)->Name("cast of a box, heights 1025^2/crofton");
+
+#if defined(CROFTON_HAVE_BULLET)
+struct BulletSurface {
+    BulletSurface(const SurfaceScene& scene, bool field) : dispatcher(&configuration) {
+        const btScalar s = scene.size;
+        if (field) {
+            const auto [low, high] = std::minmax_element(scene.heights.begin(), scene.heights.end());
+            surface = std::make_unique<btHeightfieldTerrainShape>(int(kSide), int(kSide), scene.heights.data(), 1.0f,
+                                                                  *low, *high, 1, PHY_FLOAT, false);
+            place.setOrigin(btVector3(0.5f * (kSide - 1), 0.5f * (*low + *high), 0.5f * (kSide - 1)));
+        } else {
+            btIndexedMesh mesh;
+            mesh.m_numTriangles = int(scene.mesh.indices.size() / 3);
+            mesh.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(scene.mesh.indices.data());
+            mesh.m_triangleIndexStride = 12;
+            mesh.m_numVertices = int(scene.mesh.positions.size());
+            mesh.m_vertexBase = reinterpret_cast<const unsigned char*>(scene.mesh.positions.data());
+            mesh.m_vertexStride = 12;
+            triangles.addIndexedMesh(mesh, PHY_INTEGER);
+            surface = std::make_unique<btBvhTriangleMeshShape>(&triangles, true);
+            surface->setMargin(0);
+        }
+        object.setCollisionShape(surface.get());
+        object.setWorldTransform(place);
+        if (scene.capsule)
+            shape = std::make_unique<btCapsuleShape>(0.5f * s, 1.2f * s);
+        else
+            shape = std::make_unique<btBoxShape>(btVector3(s, s, s));
+        for (int i = 0; i < kBodies; ++i) {
+            objects.push_back(std::make_unique<btCollisionObject>());
+            objects.back()->setCollisionShape(shape.get());
+        }
+        algorithms.resize(kBodies);
+    }
+    static btTransform transform_of(const RigidTransform& pose) {
+        btTransform t = btTransform::getIdentity();
+        for (int r = 0; r < 3; ++r) {
+            t.getOrigin()[r] = btScalar(pose.translation[r]);
+            for (int c = 0; c < 3; ++c) t.getBasis()[r][c] = btScalar(pose.rotation[c][r]);
+        }
+        return t;
+    }
+    int manifold(const SurfaceScene& scene, int f, int i) {
+        const btTransform t = transform_of(scene.poses[f][i]);
+        objects[i]->setWorldTransform(t);
+        btCollisionObjectWrapper a(nullptr, shape.get(), objects[i].get(), t, -1, -1);
+        btCollisionObjectWrapper b(nullptr, surface.get(), &object, place, -1, -1);
+        if (!algorithms[i]) algorithms[i] = dispatcher.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+        btManifoldResult result(&a, &b);
+        algorithms[i]->processCollision(&a, &b, info, &result);
+        btManifoldArray manifolds;
+        algorithms[i]->getAllContactManifolds(manifolds);
+        return manifolds.size() > 0 ? manifolds[0]->getNumContacts() : 0;
+    }
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher;
+    btDispatcherInfo info;
+    btTriangleIndexVertexArray triangles;
+    btTransform place = btTransform::getIdentity();
+    std::unique_ptr<btCollisionShape> surface;
+    std::unique_ptr<btConvexShape> shape;
+    btCollisionObject object;
+    std::vector<std::unique_ptr<btCollisionObject>> objects;
+    std::vector<btCollisionAlgorithm*> algorithms;
+};
+void bullet_rest(benchmark::State& state, bool field, bool capsule) {
+    const SurfaceScene scene = make_scene(field, capsule);
+    if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
+    const auto peer = std::make_unique<BulletSurface>(scene, field);
+    frames(state, [&](int f, int i) { return peer->manifold(scene, f, i); });
+}
+BENCHMARK_CAPTURE(bullet_rest, a, false, false)->Name("box on bunny/bullet");
+BENCHMARK_CAPTURE(bullet_rest, b, false, true)->Name("capsule on bunny/bullet");
+BENCHMARK_CAPTURE(bullet_rest, c, true, false)->Name("box on heights 1025^2/bullet");
+BENCHMARK_CAPTURE(bullet_rest, d, true, true)->Name("capsule on heights 1025^2/bullet");
+#endif
+
+#if defined(CROFTON_HAVE_ODE)
+float ode_height(void* user, int i, int j) {
+    return static_cast<const float*>(user)[static_cast<std::size_t>(j) * kSide + static_cast<std::size_t>(i)];
+}
+void ode_rest(benchmark::State& state, bool field, bool capsule) {
+    SurfaceScene scene = make_scene(field, capsule);
+    if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
+    dInitODE();
+    dTriMeshDataID data = nullptr;
+    dHeightfieldDataID heights = nullptr;
+    dGeomID surface;
+    if (field) {
+        heights = dGeomHeightfieldDataCreate();
+        dGeomHeightfieldDataBuildSingle(heights, scene.heights.data(), 0, kSide - 1, kSide - 1, kSide, kSide, 1, 0, 0,
+                                        0);
+        dGeomHeightfieldDataSetBounds(heights, -5, 5);
+        surface = dCreateHeightfield(nullptr, heights, 1);
+        dGeomSetPosition(surface, 0.5f * (kSide - 1), 0, 0.5f * (kSide - 1));
+    } else {
+        data = dGeomTriMeshDataCreate();
+        dGeomTriMeshDataBuildSingle(data, scene.mesh.positions.data(), 12, int(scene.mesh.positions.size()),
+                                    scene.mesh.indices.data(), int(scene.mesh.indices.size()), 12);
+        surface = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
+    }
+    const dReal s = scene.size;
+    const dGeomID geom =
+        capsule ? dCreateCapsule(nullptr, dReal(0.5) * s, dReal(1.2) * s) : dCreateBox(nullptr, 2 * s, 2 * s, 2 * s);
+    frames(state, [&](int f, int i) {
+        const RigidTransform& pose = scene.poses[f][i];
+        dMatrix3 r{};
+        for (int row = 0; row < 3; ++row)
+            for (int c = 0; c < 3; ++c)
+                // ODE's capsules lie along z.
+                r[4 * row + c] = dReal(capsule ? pose.rotation[c == 2   ? 1
+                                                               : c == 1 ? 2
+                                                                        : 0][row] *
+                                                     (c == 2 ? -1 : 1)
+                                               : pose.rotation[c][row]);
+        dGeomSetRotation(geom, r);
+        dGeomSetPosition(geom, dReal(pose.translation.x), dReal(pose.translation.y), dReal(pose.translation.z));
+        dContactGeom contact[64];
+        return dCollide(geom, surface, 64, contact, sizeof(dContactGeom));
+    });
+    dGeomDestroy(geom);
+    dGeomDestroy(surface);
+    if (data != nullptr) dGeomTriMeshDataDestroy(data);
+    if (heights != nullptr) dGeomHeightfieldDataDestroy(heights);
+    dCloseODE();
+}
+BENCHMARK_CAPTURE(ode_rest, a, false, false)->Name("box on bunny/ode");
+BENCHMARK_CAPTURE(ode_rest, b, false, true)->Name("capsule on bunny/ode");
+BENCHMARK_CAPTURE(ode_rest, c, true, false)->Name("box on heights 1025^2/ode");
+BENCHMARK_CAPTURE(ode_rest, d, true, true)->Name("capsule on heights 1025^2/ode");
+#endif
+
+}  // namespace
+}  // namespace crofton::bench

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "body_contacts.hpp"
+
+#include <algorithm>
+
+namespace crofton::world {
+namespace {
+
+constexpr std::size_t kPairsATask = 16;
+
+bool is_before(const ObjectPair& a, const ObjectPair& b) {
+    if (a.first.object.index != b.first.object.index) return a.first.object.index < b.first.object.index;
+    return a.second.object.index < b.second.object.index;
+}
+
+bool are_same(const ObjectPair& a, const ObjectPair& b) {
+    return a.first.object == b.first.object && a.second.object == b.second.object;
+}
+
+}  // namespace
+
+std::optional<RigidTransform> pose_of(const Object& object, const Obb& box, const scene::Scene& scene) {
+    RigidTransform pose{glm::dmat3(1.0), box.center};
+    if (object.kind == BoundKind::none) {
+        const scene::Transform& world = scene.world(scene.node_of(object.instance));
+        pose = {glm::dmat3(world.linear), world.translation};
+    } else if (object.kind != BoundKind::ball) {
+        pose.rotation = glm::dmat3(box.axes);
+    }
+    if (!convex::validate_pose(pose)) return std::nullopt;
+    return pose;
+}
+
+void BodyContacts::set(std::uint32_t object, const convex::Body* body) {
+    if (has(object)) --count_;
+    if (body == nullptr) {
+        if (object < bodies_.size()) bodies_[object].reset();
+        return;
+    }
+    if (object >= bodies_.size()) bodies_.resize(object + std::size_t{1});
+    bodies_[object] = *body;
+    ++count_;
+}
+
+// The pairs of two bodies, each with its state in the update before. Both lists are in order.
+void BodyContacts::list(std::span<const ObjectPair> pairs) {
+    touches_.clear();
+    std::size_t old = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!has(pairs[i].first.object.index) || !has(pairs[i].second.object.index)) continue;
+        while (old < states_.size() && is_before(states_[old].pair, pairs[i])) ++old;
+        Touch& touch = touches_.emplace_back();
+        touch.pair = static_cast<std::uint32_t>(i);
+        if (old < states_.size() && are_same(states_[old].pair, pairs[i]))
+            touch.before = static_cast<std::uint32_t>(old);
+    }
+}
+
+void BodyContacts::note_moved(const SpatialIndex& index, bool moved_only) {
+    all_moved_ = !moved_only;
+    if (all_moved_) return;
+    moved_.assign(bodies_.size(), 0);
+    for (const ItemId item : index.moved_items())
+        if (item < moved_.size()) moved_[item] = 1;
+}
+
+void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
+                          const scene::Scene& scene, double margin, bool moved_only, Executor& executor) {
+    note_moved(index, moved_only);
+    list(pairs);
+    workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
+    for (Worker& worker : workers_) worker.points.clear();
+    executor.parallel_for(touches_.size(), kPairsATask, [&](std::size_t begin, std::size_t end, unsigned w) {
+        Worker& worker = workers_[w];
+        for (std::size_t i = begin; i < end; ++i) {
+            Touch& touch = touches_[i];
+            const std::uint32_t a = pairs[touch.pair].first.object.index, b = pairs[touch.pair].second.object.index;
+            const PairState* const before = touch.before != kNoIndex ? &states_[touch.before] : nullptr;
+            touch.worker = w;
+            touch.first_point = static_cast<std::uint32_t>(worker.points.size());
+            worker.pair_points.clear();
+            if (before != nullptr) {
+                touch.cache = before->cache;
+                const auto first = points_.begin() + before->first_point;
+                worker.pair_points.assign(first, first + before->point_count);
+            }
+            if (!all_moved_ && before != nullptr && moved_[a] == 0 && moved_[b] == 0) {
+                for (convex::TrackedPoint& point : worker.pair_points) point.began = false;
+            } else {
+                const auto pose_a = pose_of(table.objects[a], index.box(a), scene),
+                           pose_b = pose_of(table.objects[b], index.box(b), scene);
+                if (!pose_a || !pose_b) continue;
+                convex::contact_manifolds({*bodies_[a], *pose_a}, {*bodies_[b], *pose_b}, {.margin = margin},
+                                          worker.found, &touch.cache);
+                convex::track(worker.found.all(), worker.pair_points);
+            }
+            touch.point_count = static_cast<std::uint32_t>(worker.pair_points.size());
+            worker.points.insert(worker.points.end(), worker.pair_points.begin(), worker.pair_points.end());
+        }
+    });
+    gather(pairs);
+}
+
+void BodyContacts::add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count) {
+    contacts_.push_back({pair.first, pair.second, phase, next_points_.data() + first_point, count});
+}
+
+// In the order of the pairs, whoever computed them. A state is kept while the pair's boxes meet, for its cache.
+void BodyContacts::gather(std::span<const ObjectPair> pairs) {
+    contacts_.clear();
+    next_states_.clear();
+    next_points_.clear();
+    std::size_t count = 0;
+    for (const Touch& touch : touches_) count += touch.point_count;
+    if (count > next_points_.capacity()) next_points_.reserve(count + count / 2);
+    std::size_t old = 0;
+    const auto end_until = [&](std::size_t state) {
+        for (; old < state; ++old)
+            if (states_[old].point_count > 0) add(states_[old].pair, ContactPhase::ended, 0, 0);
+    };
+    for (const Touch& touch : touches_) {
+        const ObjectPair& pair = pairs[touch.pair];
+        while (old < states_.size() && (is_before(states_[old].pair, pair) ||
+                                        (touch.before == kNoIndex && !is_before(pair, states_[old].pair))))
+            end_until(old + 1);
+        const auto first = static_cast<std::uint32_t>(next_points_.size());
+        const auto from = workers_[touch.worker].points.begin() + touch.first_point;
+        next_points_.insert(next_points_.end(), from, from + touch.point_count);
+        next_states_.push_back({pair, touch.cache, first, touch.point_count});
+        const bool touched = touch.before != kNoIndex && states_[touch.before].point_count > 0;
+        if (touch.point_count > 0)
+            add(pair, touched ? ContactPhase::stayed : ContactPhase::began, first, touch.point_count);
+        else if (touched)
+            add(pair, ContactPhase::ended, 0, 0);
+        if (touch.before != kNoIndex) old = touch.before + std::size_t{1};
+    }
+    end_until(states_.size());
+    std::swap(states_, next_states_);
+    std::swap(points_, next_points_);
+}
+
+void BodyContacts::stay() {
+    std::size_t kept = 0;
+    for (BodyContact& contact : contacts_) {
+        if (contact.phase == ContactPhase::ended) continue;
+        contact.phase = ContactPhase::stayed;
+        for (std::uint32_t i = 0; i < contact.point_count; ++i) contact.points[i].began = false;
+        contacts_[kept++] = contact;
+    }
+    contacts_.resize(kept);
+}
+
+}  // namespace crofton::world

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Bodies of objects, and where they touch from update to update.
+#pragma once
+#include <crofton/convex/query.hpp>
+#include <crofton/scene/scene.hpp>
+#include <optional>
+
+#include "object_table.hpp"
+#include "spatial_index.hpp"
+
+namespace crofton::world {
+
+class BodyContacts {
+  public:
+    void set(std::uint32_t object, const convex::Body* body);  // nullptr: none
+    [[nodiscard]] bool has(std::uint32_t object) const { return object < bodies_.size() && bodies_[object]; }
+    [[nodiscard]] const convex::Body& body(std::uint32_t object) const { return *bodies_[object]; }
+    [[nodiscard]] bool is_empty() const { return count_ == 0; }
+
+    // `moved_only`: since the update before no more has changed than the boxes of the index's moved_items().
+    void update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
+                const scene::Scene& scene, double margin, bool moved_only, Executor& executor);
+    void stay();  // nothing has changed
+    [[nodiscard]] std::span<const BodyContact> contacts() const { return contacts_; }
+
+  private:
+    // A pair that touches, with what it remembers.
+    struct PairState {
+        ObjectPair pair;
+        convex::PairCache cache;
+        std::uint32_t first_point = 0, point_count = 0;
+    };
+    // What one pair has come to: a range of the worker's points.
+    struct Touch {
+        std::uint32_t pair = 0;           // of the pairs given
+        std::uint32_t before = kNoIndex;  // its state in the update before
+        std::uint32_t worker = 0, first_point = 0, point_count = 0;
+        convex::PairCache cache;
+    };
+    struct Worker {
+        convex::Manifolds found;
+        Vector<convex::TrackedPoint> points, pair_points;
+    };
+    void list(std::span<const ObjectPair> pairs);
+    void note_moved(const SpatialIndex& index, bool moved_only);
+    void gather(std::span<const ObjectPair> pairs);
+    void add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count);
+
+    Vector<std::optional<convex::Body>> bodies_;  // by object
+    std::size_t count_ = 0;
+    Vector<std::uint8_t> moved_;  // by object, in this update
+    bool all_moved_ = true;
+    Vector<Touch> touches_;
+    Vector<Worker> workers_;
+    Vector<PairState> states_, next_states_;
+    Vector<convex::TrackedPoint> points_, next_points_;
+    Vector<BodyContact> contacts_;
+};
+
+// Where an object's body stands; nothing where its transform is not rigid.
+[[nodiscard]] std::optional<RigidTransform> pose_of(const Object& object, const Obb& box, const scene::Scene& scene);
+
+}  // namespace crofton::world

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Any body against all objects.
+#include <algorithm>
+#include <cmath>
+#include <crofton/convex/query.hpp>
+#include <glm/geometric.hpp>
+
+#include "world_state.hpp"
+
+namespace crofton {
+namespace {
+
+// Around a body, and some more.
+Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
+    const glm::dvec3 half = body.bounds().half_extents();
+    glm::dvec3 reach(0.0);
+    for (int k = 0; k < 3; ++k) reach += half[k] * glm::abs(pose.rotation[k]);
+    const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
+    reach = reach * (1.0 + 1e-9) + 1e-12 * glm::abs(center);
+    return {center - reach, center + reach};
+}
+
+// All that the body passes in the time: a ball around its pivot, or the box at both ends.
+Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const convex::Motion& motion, double time,
+                  double tolerance) {
+    Aabb bounds = bounds_of(body, pose);
+    if (motion.spin != glm::dvec3(0.0)) {
+        const glm::dvec3 pivot = pose.rotation * motion.pivot + pose.translation;
+        const double reach =
+            glm::length(body.bounds().half_extents()) + glm::length(body.bounds().center() - motion.pivot);
+        bounds = {pivot - reach * (1.0 + 1e-5), pivot + reach * (1.0 + 1e-5)};
+    }
+    const glm::dvec3 way = time * motion.velocity;
+    bounds.include(Aabb{bounds.min + way, bounds.max + way});
+    const glm::dvec3 slack = tolerance + 1e-9 * (glm::abs(bounds.min) + glm::abs(bounds.max));
+    return {bounds.min - slack, bounds.max + slack};
+}
+
+Result<void> check(const convex::Body& shape, const RigidTransform& pose) {
+    if (shape.kind() == convex::Kind::half_space)
+        return fail(ErrorCode::unsupported, kNoItem, "world: a half-space meets nearly all; ask with a bounded body");
+    return convex::validate_pose(pose);
+}
+
+}  // namespace
+
+World::State::Stand World::State::stand_of(std::uint32_t id) const {
+    const world::Object& object = table.objects[id];
+    const Obb& box = index.box(id);
+    if (body_contacts.has(id)) return {body_contacts.body(id), world::pose_of(object, box, scene)};
+    if (object.kind == BoundKind::ball)
+        return {*convex::Body::ball(static_cast<float>(object.radius)), RigidTransform{glm::dmat3(1.0), box.center}};
+    Stand stand{convex::Body::box(box.half_extents).value_or(*convex::Body::ball(0.0f)), std::nullopt};
+    // A box whose axes are no rotation, which a flattened mesh may have, is the box around it.
+    stand.pose = RigidTransform{glm::dmat3(box.axes), box.center};
+    if (!convex::validate_pose(*stand.pose)) {
+        const Aabb around = aabb_of(box);
+        const Obb aligned = obb_of(around);
+        stand = {*convex::Body::box(aligned.half_extents), RigidTransform{glm::dmat3(1.0), aligned.center}};
+    }
+    return stand;
+}
+
+void World::overlap(const convex::Body& shape, const RigidTransform& pose, Vector<ObjectRef>& found,
+                    std::uint32_t layers) const {
+    found.clear();
+    if (!check(shape, pose)) return;
+    const State& s = *state_;
+    s.visit_near(bounds_of(shape, pose), 0.0, layers, [&](std::uint32_t id) {
+        const State::Stand stand = s.stand_of(id);
+        if (stand.pose && convex::intersects({shape, pose}, {stand.body, *stand.pose}))
+            found.push_back(s.table.ref(id));
+        return 0.0;
+    });
+    std::sort(found.begin(), found.end(),
+              [](const ObjectRef& a, const ObjectRef& b) { return a.object.index < b.object.index; });
+}
+
+Result<std::optional<BodyHit>> World::cast(const convex::Body& shape, const RigidTransform& pose,
+                                           const convex::Motion& motion, const convex::CastOptions& options,
+                                           std::uint32_t layers) const {
+    if (auto good = check(shape, pose); !good) return tl::unexpected(good.error());
+    // Bad motions and options are told also where nothing is near.
+    static const convex::Body kPoint = *convex::Body::ball(0.0f);
+    const RigidTransform far{glm::dmat3(1.0), glm::dvec3(1e15)};
+    if (auto good = convex::cast({shape, pose}, motion, {kPoint, far}, {}, options); !good)
+        return tl::unexpected(good.error());
+    const State& s = *state_;
+    std::optional<BodyHit> first;
+    convex::CastOptions rest = options;
+    const Aabb swept = swept_bounds(shape, pose, motion, options.duration, options.tolerance);
+    s.visit_near(swept, 0.0, layers, [&](std::uint32_t id) {
+        const State::Stand stand = s.stand_of(id);
+        if (!stand.pose) return 0.0;
+        const auto impact = convex::cast({shape, pose}, motion, {stand.body, *stand.pose}, {}, rest);
+        if (!impact || impact->result == convex::CastResult::miss) return 0.0;
+        if (first && (impact->time > first->time || (impact->time == first->time && id > first->object.index)))
+            return 0.0;
+        first = BodyHit{s.table.handle(id),
+                        s.table.names.users[id],
+                        impact->time,
+                        impact->normal,
+                        impact->on_b,
+                        impact->part_b.triangle,
+                        impact->result == convex::CastResult::hit};
+        rest.duration = impact->time;
+        return 0.0;
+    });
+    return first;
+}
+
+}  // namespace crofton

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Objects with bodies: contacts that last, overlaps and casts of bodies.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/convex/query.hpp>
+#include <crofton/crofton.hpp>
+#include <map>
+#include <oracle/code_of.hpp>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "../convex/surfaces.hpp"
+
+using namespace crofton;
+using namespace crofton::testing;
+
+namespace {
+
+// Around the body's origin, where the body stands.
+Obb box_around(const convex::Body& body, const RigidTransform& pose) {
+    const glm::dvec3 half = glm::max(glm::abs(body.bounds().min), glm::abs(body.bounds().max)) * 1.000001;
+    return {pose.translation, glm::mat3(pose.rotation), glm::vec3(half)};
+}
+
+RigidTransform pose_of(const Obb& box) {
+    return {glm::dmat3(box.axes), box.center};
+}
+
+struct Thing {
+    convex::Body body;
+    Obb box;
+    ObjectHandle object;
+    bool has_body;
+};
+
+}  // namespace
+
+TEST_SUITE("world/bodies") {
+    TEST_CASE("stale handles and half-spaces are refused, and a world without bodies has no contacts of bodies") {
+        World world;
+        const convex::Body box = convex::Body::box({1, 1, 1}).value();
+        const convex::Body half = convex::Body::half_space({{0, 1, 0}, 0}).value();
+        CHECK(world.set_body({}, &box).error().code == ErrorCode::stale_handle);
+        const ObjectHandle object = world.add({.bound = Sphere{{}, 1.0}}).value();
+        CHECK(oracle::code_of(world.set_body(object, &half)) == ErrorCode::unsupported);
+        REQUIRE(world.set_body(object, nullptr).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.body_contacts().empty());
+        CHECK(oracle::code_of(world.cast(half, {}, {}, {})) == ErrorCode::unsupported);
+        CHECK(oracle::code_of(world.cast(box, {}, {{NAN, 0, 0}, {}, {}}, {})) == ErrorCode::non_finite);
+        RigidTransform bad;
+        bad.translation.x = NAN;
+        CHECK(oracle::code_of(world.cast(box, bad, {}, {})) == ErrorCode::non_finite);
+        Vector<ObjectRef> found(1);
+        world.overlap(box, bad, found);
+        CHECK(found.empty());
+    }
+
+    TEST_CASE("a crate on a floor: began, stayed with the caller's numbers, kept while asleep, ended") {
+        World world({.contact_margin = 0.02});
+        const convex::Body crate = convex::Body::box({0.5f, 0.5f, 0.5f}).value();
+        const convex::Body slab = convex::Body::box({9, 1, 9}).value();
+        const auto at_height = [](double y) { return Obb{{0, y, 0}, glm::mat3(1.0f), glm::vec3(0.55f)}; };
+        const ObjectHandle floor = world.add({.bound = Obb{{}, glm::mat3(1.0f), {9, 1, 9}}}).value();
+        const ObjectHandle box = world.add({.bound = at_height(1.49)}).value();
+        REQUIRE(world.set_body(floor, &slab).has_value());
+        REQUIRE(world.set_body(box, &crate).has_value());
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.body_contacts().size() == 1);
+        CHECK(world.contacts().empty());
+        const BodyContact first = world.body_contacts()[0];
+        CHECK(first.phase == ContactPhase::began);
+        REQUIRE(first.point_count == 4);
+        CHECK(first.points[0].normal.y == doctest::Approx(1.0));
+        CHECK(first.points[0].contact.depth == doctest::Approx(0.01));
+        for (std::uint32_t i = 0; i < 4; ++i) first.points[i].memory[1] = 7.0f + static_cast<float>(i);
+        for (int frame = 0; frame < 30; ++frame) {
+            if (frame < 5) REQUIRE(world.set_bound(box, at_height(1.49 + 1e-4 * frame)).has_value());
+            REQUIRE(world.update().has_value());
+            REQUIRE(world.body_contacts().size() == 1);
+            const BodyContact now = world.body_contacts()[0];
+            CHECK(now.phase == ContactPhase::stayed);
+            REQUIRE(now.point_count == 4);
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                CHECK(now.points[i].memory[1] == 7.0f + static_cast<float>(i));
+                CHECK_FALSE(now.points[i].began);
+            }
+        }
+        // Another object moves: the pair that rests is kept as it is.
+        const ObjectHandle other = world.add({.bound = Sphere{{50, 0, 0}, 1.0}}).value();
+        for (int frame = 0; frame < 4; ++frame) {
+            REQUIRE(world.set_bound(other, Sphere{{50.0 + frame, 0, 0}, 1.0}).has_value());
+            REQUIRE(world.update().has_value());
+            REQUIRE(world.body_contacts().size() == 1);
+            CHECK(world.body_contacts()[0].points[3].memory[1] == 10.0f);
+        }
+        REQUIRE(world.set_bound(box, at_height(9.0)).has_value());
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.body_contacts().size() == 1);
+        CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
+        CHECK(world.body_contacts()[0].point_count == 0);
+        REQUIRE(world.update().has_value());
+        CHECK(world.body_contacts().empty());
+        REQUIRE(world.set_bound(box, at_height(1.49)).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.body_contacts()[0].phase == ContactPhase::began);
+        REQUIRE(world.remove(box).has_value());
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.body_contacts().size() == 1);
+        CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
+    }
+
+    TEST_CASE("contacts, overlaps and casts are those of all objects one by one, while they move, come and go") {
+        RandomBodies random(1);
+        World world;
+        std::vector<Thing> things;
+        std::set<std::pair<std::uint32_t, std::uint32_t>> before;
+        int contacts = 0, overlaps = 0, hits = 0, kept = 0;
+        const auto make = [&] {
+            Thing thing{any_body(random, 0.7), {}, {}, random.index(5) != 0};
+            thing.box = box_around(thing.body, {random.rotation(), 3.0 * random.direction()});
+            thing.object = world.add({.bound = thing.box}).value();
+            if (thing.has_body) REQUIRE(world.set_body(thing.object, &thing.body).has_value());
+            things.push_back(thing);
+        };
+        for (int i = 0; i < 60; ++i) make();
+        for (int frame = 0; frame < 40; ++frame) {
+            for (int k = 0; k < 10 && frame % 4 != 3; ++k) {
+                Thing& thing = things[static_cast<std::size_t>(random.index(static_cast<int>(things.size())))];
+                thing.box.center += 0.2 * random.direction();
+                REQUIRE(world.set_bound(thing.object, thing.box).has_value());
+            }
+            if (frame % 5 == 4) {
+                REQUIRE(world.remove(things[0].object).has_value());
+                things.erase(things.begin());
+                make();
+            }
+            REQUIRE(world.update().has_value());
+            std::map<std::pair<std::uint32_t, std::uint32_t>, double> touching;
+            for (std::size_t i = 0; i < things.size(); ++i)
+                for (std::size_t j = 0; j < things.size(); ++j) {
+                    const Thing &a = things[i], &b = things[j];
+                    if (a.object.index >= b.object.index || !a.has_body || !b.has_body) continue;
+                    const convex::Manifold m =
+                        convex::contact_manifold({a.body, pose_of(a.box)}, {b.body, pose_of(b.box)});
+                    if (m.count > 0) touching[{a.object.index, b.object.index}] = m.depth;
+                }
+            std::set<std::pair<std::uint32_t, std::uint32_t>> now;
+            for (const BodyContact& contact : world.body_contacts()) {
+                const auto pair = std::pair(contact.first.object.index, contact.second.object.index);
+                if (contact.phase == ContactPhase::ended) {
+                    CHECK(before.count(pair) == 1);
+                    continue;
+                }
+                now.insert(pair);
+                kept += contact.phase == ContactPhase::stayed;
+                CHECK((contact.phase == ContactPhase::stayed || frame % 5 == 4 || before.count(pair) == 0));
+                REQUIRE(touching.count(pair) == 1);
+                double deepest = -1.0;
+                for (std::uint32_t i = 0; i < contact.point_count; ++i)
+                    deepest = std::max(deepest, contact.points[i].contact.depth);
+                CHECK(deepest == doctest::Approx(touching[pair]).epsilon(1e-3));
+            }
+            CHECK(now.size() == touching.size());
+            before = now;
+            contacts += static_cast<int>(now.size());
+
+            const convex::Body probe = any_body(random);
+            const RigidTransform pose{random.rotation(), random.number(2, 5) * random.direction()};
+            const convex::Motion motion{-2.0 * pose.translation, random.index(2) * 4.0 * random.direction(), {}};
+            std::vector<std::uint32_t> expected;
+            double first = 1.0;
+            for (const Thing& thing : things) {
+                const convex::Body bound = convex::Body::box(thing.box.half_extents).value();
+                const convex::Body& body = thing.has_body ? thing.body : bound;
+                const RigidTransform place = pose_of(thing.box);
+                if (convex::intersects({probe, pose}, {body, place})) expected.push_back(thing.object.index);
+                first = std::min(
+                    first, convex::cast({probe, pose}, motion, {body, place}, {}, {.max_steps = 5000}).value().time);
+            }
+            std::sort(expected.begin(), expected.end());
+            Vector<ObjectRef> found;
+            world.overlap(probe, pose, found);
+            std::vector<std::uint32_t> told;
+            for (const ObjectRef& ref : found) told.push_back(ref.object.index);
+            CHECK(told == expected);
+            overlaps += static_cast<int>(told.size());
+            const auto hit = world.cast(probe, pose, motion, {.max_steps = 5000}).value();
+            CHECK(hit.has_value() == (first < 1.0));
+            if (hit) CHECK(hit->time == doctest::Approx(first).epsilon(1e-5));
+            hits += hit.has_value();
+        }
+        CHECK(contacts > 100);
+        CHECK(kept > 100);
+        CHECK(overlaps > 20);
+        CHECK(hits > 20);
+    }
+}
