@@ -33,7 +33,7 @@ Farthest farthest_along(const PlacedTriangle& t, const glm::dvec3& d) {
     return result;
 }
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
 
 bool has_vertex(const Body& triangle, const glm::dvec3& vertex) {
     return triangle.vertex(0) == vertex || triangle.vertex(1) == vertex || triangle.vertex(2) == vertex;
@@ -157,8 +157,8 @@ class ManifoldFinder {
     // Lists the triangles at each vertex: chains of their corners, by a hash of the vertex' place.
     void list_corners() const {
         const std::size_t count = found_.near_.size();
-        found_.first_.assign(std::bit_ceil(4 * count), kNone);
-        found_.next_.assign(3 * count, kNone);
+        found_.first_.assign(std::bit_ceil(4 * count), kNoVertex);
+        found_.next_.assign(3 * count, kNoVertex);
         for (std::uint32_t i = 0; i < count; ++i) {
             if (!is_triangle(found_.near_[i])) continue;
             for (std::uint32_t k = 0; k < 3; ++k) {
@@ -181,7 +181,7 @@ class ManifoldFinder {
         if (on.count == 3) return false;
         if (found_.next_.empty()) list_corners();
         const glm::dvec3 vertex = part.body.vertex(on.vertex[0]);
-        for (std::uint32_t c = found_.first_[slot_of(vertex)]; c != kNone; c = found_.next_[c]) {
+        for (std::uint32_t c = found_.first_[slot_of(vertex)]; c != kNoVertex; c = found_.next_[c]) {
             const Part& other = found_.near_[c / 3];
             if (other.body.vertex(static_cast<int>(c % 3)) != vertex || other.id.child != part.id.child) continue;
             if (on.count == 2 && !has_vertex(other.body, part.body.vertex(on.vertex[1]))) continue;

@@ -3,21 +3,9 @@
 
 #include <algorithm>
 
+#include "pair_order.hpp"
+
 namespace crofton::world {
-namespace {
-
-constexpr std::size_t kPairsATask = 16;
-
-bool is_before(const ObjectPair& a, const ObjectPair& b) {
-    if (a.first.object.index != b.first.object.index) return a.first.object.index < b.first.object.index;
-    return a.second.object.index < b.second.object.index;
-}
-
-bool are_same(const ObjectPair& a, const ObjectPair& b) {
-    return a.first.object == b.first.object && a.second.object == b.second.object;
-}
-
-}  // namespace
 
 std::optional<RigidTransform> pose_of(const Object& object, const Obb& box, const scene::Scene& scene) {
     RigidTransform pose{glm::dmat3(1.0), box.center};

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "pair_order.hpp"
+
 namespace crofton::world {
 namespace {
-
-constexpr std::size_t kPairsATask = 16;
 
 // Of two whose boxes meet.
 bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& box_b) {
@@ -17,15 +17,6 @@ bool bounds_meet(const Object& a, const Obb& box_a, const Object& b, const Obb& 
     if (ball_a) return collide::intersects(box_b, ball_of(a, box_a));
     if (ball_b) return collide::intersects(box_a, ball_of(b, box_b));
     return true;
-}
-
-bool is_before(const ObjectPair& a, const ObjectPair& b) {
-    if (a.first.object.index != b.first.object.index) return a.first.object.index < b.first.object.index;
-    return a.second.object.index < b.second.object.index;
-}
-
-bool are_same(const ObjectPair& a, const ObjectPair& b) {
-    return a.first.object == b.first.object && a.second.object == b.second.object;
 }
 
 // Appends part of a list, for which there is room, and returns where it is.
