@@ -25,6 +25,7 @@ constexpr Pair kPairs[] = {
     {"Bullet / tree, 1 % visible", "bullet_cull/1_percent/1000000", "tree_cull/exact_1_percent/1000000"},
     {"Bullet's moves / moves and query", "bullet_move/1000000", "move_and_cull/scattered/1000000"},
     {"list, one thread / two", "threads/1000000/1/real_time", "threads/1000000/2/real_time"},
+    {"build, one thread / two", "build_threads/1000000/1/real_time", "build_threads/1000000/2/real_time"},
     {"tree, one thread / two", "tree_threads/1000000/1/real_time", "tree_threads/1000000/2/real_time"},
 };
 
@@ -45,6 +46,10 @@ class Ratios : public crofton::bench::LeastTimes {
         for (const auto& [name, time] : seconds)
             if (const std::size_t at = name.find(each); at != std::string::npos)
                 print("one query a view / one pass", name, std::string(name).replace(at, each.size(), together));
+        const std::string merged = "merged";
+        for (const auto& [name, time] : seconds)
+            if (const std::size_t at = name.find(merged); at != std::string::npos)
+                print("the same, and masks / one pass", name, std::string(name).replace(at, merged.size(), together));
     }
 };
 

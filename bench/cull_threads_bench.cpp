@@ -40,6 +40,13 @@ void tree_threads(benchmark::State& state) {
 }
 BENCHMARK(tree_threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime();
 
+void build_threads(benchmark::State& state) {
+    ThreadPool pool(static_cast<unsigned>(state.range(1)));
+    const auto& boxes = boxes_of(state.range(0));
+    for (auto _ : state) benchmark::DoNotOptimize(boxtree::BoxTree::build(boxes, {}, pool)->item_count());
+}
+BENCHMARK(build_threads)->Args({1000000, 1})->Args({1000000, 2})->UseRealTime()->Unit(benchmark::kMillisecond);
+
 // What two cores can give at best: each asks the same query for itself, and waits for nobody.
 void threads_apart(benchmark::State& state) {
     const auto& boxes = boxes_of(state.range(0));

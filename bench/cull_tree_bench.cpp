@@ -95,4 +95,18 @@ void tree_build(benchmark::State& state) {
 BENCHMARK(tree_build)->Name("tree_build/first")->Arg(1000000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(tree_build)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
+// One box after another into a tree of so many; its arrays have grown before.
+void tree_insert(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes);
+    std::size_t next = 0;
+    const auto insert = [&] {
+        next = (next + 7919) % boxes.size();
+        benchmark::DoNotOptimize(tree.insert(boxes[next]).has_value());
+    };
+    for (int i = 0; i < 1000; ++i) insert();
+    for (auto _ : state) insert();
+}
+BENCHMARK(tree_insert)->Arg(1000000)->Iterations(20000)->Unit(benchmark::kMicrosecond);
+
 }  // namespace
