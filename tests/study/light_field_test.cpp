@@ -145,7 +145,11 @@ TEST_SUITE("study/light_field") {
         camera.fov_y = 1.6;
         ThreadPool pool(3);
         const study::LightFieldOptions options{.lines = 300'000, .sky = glm::vec3(0.25f)};
-        const auto drawn = study::LightField::record(tracer, light, options)->draw(camera, 60, 60, {});
+        const auto field = *study::LightField::record(tracer, light, options);
+        // Of the box the eye sees one face alone: no line, however far from the eye, tells of another.
+        for (const auto& arrival : field.arrivals(camera.position, 100.0))
+            if (!arrival.sky) CHECK(arrival.point.z == doctest::Approx(-1.5));
+        const auto drawn = field.draw(camera, 60, 60, {});
         const auto other = study::LightField::record(tracer, light, options, pool)->draw(camera, 60, 60, {});
         REQUIRE(drawn.has_value());
         CHECK(std::equal(drawn->picture.pixels.begin(), drawn->picture.pixels.end(), other->picture.pixels.begin()));

@@ -73,7 +73,8 @@ class BoxSearch {
             double h = 0.0;
             for (int k = 0; k < 3; ++k) {
                 const double along = glm::dot(normals_[i], axes[k]);
-                h += along * glm::dot(axes[k], along >= 0.0 ? s.high[k] : s.low[k]);
+                const std::size_t side = static_cast<std::size_t>(k);
+                h += along * glm::dot(axes[k], along >= 0.0 ? s.high[side] : s.low[side]);
             }
             sum += std::min(limits_[i], h);
         }
@@ -101,7 +102,8 @@ class BoxSearch {
                 const double along = glm::dot(n, axes[k]);
                 // The angle to the face may pass 90 degrees within the cell: the term is at least 0.
                 if (std::abs(along) <= flip) continue;
-                const glm::dvec3& p = along >= 0.0 ? s.high[k] : s.low[k];
+                const std::size_t side = static_cast<std::size_t>(k);
+                const glm::dvec3& p = along >= 0.0 ? s.high[side] : s.low[side];
                 const double out = glm::dot(p, axes[k]);
                 base += along * out;
                 // d dot(v, axis) = 2 dot(turn × axis, v) = 2 dot(turn, axis × v)
