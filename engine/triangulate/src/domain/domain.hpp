@@ -31,6 +31,7 @@ class Domain {
     [[nodiscard]] const HalfEdgeMesh& mesh() const { return mesh_; }
     [[nodiscard]] bool inside(Index triangle) const { return inside_[triangle] != 0; }
     [[nodiscard]] std::size_t ring_count() const { return polygon_->ring_count(); }
+    [[nodiscard]] std::span<const std::uint32_t> ring_ends() const { return polygon_->ring_ends; }
     [[nodiscard]] std::size_t inside_count() const { return inside_count_; }
     // Lengths in the caller's units are those of `mesh().points` times this power of two.
     [[nodiscard]] double scale() const { return scale_; }

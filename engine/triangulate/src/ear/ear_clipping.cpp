@@ -43,9 +43,36 @@ double EarClipping::run(const Domain& domain, Vector<std::array<std::uint32_t, 3
     return weight_;
 }
 
-Index EarClipping::find(Index vertex) {
-    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-    return vertex;
+Index EarClipping::find(Index piece) {
+    while (parent_[piece] != piece) piece = parent_[piece] = parent_[parent_[piece]];
+    return piece;
+}
+
+// Rings that touch nothing are the pieces of the boundary; else edges tell which vertices hang together.
+void EarClipping::find_pieces() {
+    const auto& mesh = *mesh_;
+    piece_.resize(points_.size());
+    if (domain_->has_touching_rings()) {
+        parent_.resize(points_.size());
+        for (Index v = 0; v < parent_.size(); ++v) parent_[v] = v;
+        for (Index e = 0; e < mesh.origin.size(); ++e)
+            if ((e & 3u) != 3u && mesh.mark[e] != 0) join(mesh.origin[e], mesh.destination(e));
+        for (Index v = 0; v < parent_.size(); ++v) piece_[v] = find(v);
+        return;
+    }
+    const auto ends = domain_->ring_ends();
+    parent_.resize(ends.size());
+    Index input = 0;
+    for (Index r = 0; r < parent_.size(); ++r) {
+        parent_[r] = r;
+        for (; input < ends[r]; ++input) piece_[domain_->vertex_of(input)] = r;
+    }
+}
+
+bool EarClipping::join(Index a, Index b) {
+    a = find(a), b = find(b);
+    parent_[a] = b;
+    return a != b;
 }
 
 void EarClipping::join_pieces() {
@@ -54,39 +81,29 @@ void EarClipping::join_pieces() {
         const glm::dvec2 d = mesh.points[mesh.origin[e]] - mesh.points[mesh.destination(e)];
         return d.x * d.x + d.y * d.y;
     };
-    const auto join = [&](Index e) {
-        const Index a = find(mesh.origin[e]), b = find(mesh.destination(e));
-        parent_[a] = b;
-        return a != b;
-    };
-    parent_.resize(mesh.points.size());
-    for (Index v = 0; v < parent_.size(); ++v) parent_[v] = v;
+    find_pieces();
     wall_.assign(mesh.origin.size(), 0);
     walked_.assign(mesh.origin.size(), 0);
     bridges_.clear();
     for (Index e = 0; e < mesh.origin.size(); ++e) {
-        if ((e & 3u) == 3u) continue;
         const Index twin = mesh.twin[e];
-        if (mesh.mark[e] != 0) {
-            wall_[e] = 1;
-            join(e);
-            if (twin != kNone && e < twin && domain_->inside(e / 4) && domain_->inside(twin / 4))
-                weight_ += std::sqrt(square(e));
+        if ((e & 3u) == 3u) continue;
+        wall_[e] = mesh.mark[e] != 0;
+        if (twin == kNone || e > twin || !domain_->inside(e / 4)) continue;
+        if (mesh.mark[e] == 0) {
+            if (piece_[mesh.origin[e]] != piece_[mesh.destination(e)]) bridges_.push_back({square(e), e});
+        } else if (domain_->inside(twin / 4)) {
+            weight_ += std::sqrt(square(e));
         }
     }
-    for (Index e = 0; e < mesh.origin.size(); ++e) {
-        const bool open =
-            (e & 3u) != 3u && mesh.mark[e] == 0 && mesh.twin[e] != kNone && e < mesh.twin[e] && domain_->inside(e / 4);
-        if (open && find(mesh.origin[e]) != find(mesh.destination(e))) bridges_.push_back(e);
-    }
-    std::sort(bridges_.begin(), bridges_.end(), [&](Index e, Index f) {
-        const double a = square(e), b = square(f);
-        return a != b ? a < b : e < f;
+    std::sort(bridges_.begin(), bridges_.end(), [](const Bridge& a, const Bridge& b) {
+        return a.square != b.square ? a.square < b.square : a.half_edge < b.half_edge;
     });
-    for (const Index e : bridges_) {
-        if (!join(e)) continue;
+    for (const Bridge& bridge : bridges_) {
+        const Index e = bridge.half_edge;
+        if (!join(piece_[mesh.origin[e]], piece_[mesh.destination(e)])) continue;
         wall_[e] = wall_[mesh.twin[e]] = 1;
-        weight_ += std::sqrt(square(e));
+        weight_ += std::sqrt(bridge.square);
     }
 }
 

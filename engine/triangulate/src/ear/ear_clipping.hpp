@@ -33,11 +33,19 @@ class EarClipping {
         Index corner, next;
     };
 
+    // An edge that may join two pieces.
+    struct Bridge {
+        double square;  // of its length
+        Index half_edge;
+    };
+
     void join_pieces();
     [[nodiscard]] bool is_wall(Index half_edge) const {
         return simple_ ? mesh_->mark[half_edge] != 0 : wall_[half_edge] != 0;
     }
-    [[nodiscard]] Index find(Index vertex);
+    void find_pieces();
+    [[nodiscard]] Index find(Index piece);
+    bool join(Index a, Index b);  // pieces; false where they are one already
     void begin(std::span<const glm::dvec2> points);
     [[nodiscard]] bool is_ascending(Index half_edge) const;
     template <class VertexOf>
@@ -57,7 +65,10 @@ class EarClipping {
     // One ring that touches nothing: every vertex has one corner.
     bool simple_ = false;
     Vector<std::uint8_t> wall_, walked_;
-    Vector<Index> parent_, bridges_, reflex_count_, reflex_;
+    Vector<Index> piece_;   // of each vertex
+    Vector<Index> parent_;  // of each piece, until it leads to itself
+    Vector<Bridge> bridges_;
+    Vector<Index> reflex_count_, reflex_;
     ReflexTree tree_;
     Vector<Corner> corners_;
     CornerSet awake_;

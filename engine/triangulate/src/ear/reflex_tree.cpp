@@ -7,10 +7,13 @@
 namespace crofton::triangulate {
 namespace {
 constexpr Index kLeafSize = 8;
+// So few are looked through one by one.
+constexpr std::size_t kFewVertices = 24;
 }  // namespace
 
 void ReflexTree::build(std::span<const glm::dvec2> points, std::span<const Index> vertices) {
     points_ = points;
+    leaf_size_ = vertices.size() <= kFewVertices ? kFewVertices : kLeafSize;
     nodes_.clear();
     vertices_.assign(vertices.begin(), vertices.end());
     positions_.resize(vertices_.size());
@@ -28,7 +31,7 @@ void ReflexTree::split(Index begin, Index end, Index parent) {
     for (Index i = begin; i < end; ++i) positions_[i] = points_[vertices_[i]];
     const Box box = box_of(std::span(positions_).subspan(begin, end - begin));
     nodes_[node].box = box;
-    if (end - begin <= kLeafSize) {
+    if (end - begin <= leaf_size_) {
         for (Index i = begin; i < end; ++i) {
             place_[vertices_[i]] = i;
             leaf_[vertices_[i]] = node;

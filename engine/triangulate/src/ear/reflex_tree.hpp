@@ -69,7 +69,8 @@ class ReflexTree {
     Vector<Node> nodes_;
     Vector<Index> vertices_;        // by leaf; kNone where one has gone
     Vector<glm::dvec2> positions_;  // of vertices_
-    Vector<Index> place_, leaf_;    // vertex → its place in vertices_, and its leaf
+    std::size_t leaf_size_ = 0;
+    Vector<Index> place_, leaf_;  // vertex → its place in vertices_, and its leaf
 };
 
 }  // namespace crofton::triangulate
