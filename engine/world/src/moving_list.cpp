@@ -46,7 +46,7 @@ void MovingList::keep(std::span<const std::uint32_t> entries, const Obb* first, 
         const Obb& box = *reinterpret_cast<const Obb*>(from);
         from += stride;
         staged[entry] = box;
-        const bool is_other = !same(boxes[entry], box);
+        const bool is_other = !have_same_bits(boxes[entry], box);
         differs[entry] = is_other;
         differing += is_other;
         fresh += staged_for[entry] != now;
