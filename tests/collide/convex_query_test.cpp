@@ -14,10 +14,6 @@ using namespace crofton::testing;
 
 namespace {
 
-Obb cube(const glm::dvec3& center, float half = 1.0f) {
-    return {center, glm::mat3(1.0f), glm::vec3(half)};
-}
-
 // How far a point is outside a box, along its face normals: ≤ 0 inside.
 double outside(const Obb& box, const glm::dvec3& p) {
     double worst = -1e300;
@@ -42,20 +38,20 @@ TEST_SUITE("collide/convex_query") {
         const ConvexShape ball = to_convex_shape(Sphere{{1.0, 2.0, 3.0}, 0.5});
         CHECK(penetration(ball, ball).depth == doctest::Approx(1.0));
         CHECK(contact_manifold(ball, ball).count == 1);
-        const Obb box = cube({});
+        const Obb box = cube_box({});
         CHECK(penetration(box, box).depth == doctest::Approx(2.0));
         CHECK(distance(box, box).distance == 0.0);
         CHECK(contact_manifold(box, box).count >= 1);
-        Obb flat = cube({}, 0.0f);
+        Obb flat = cube_box({}, 0.0f);
         CHECK(contact_manifold(flat, flat).count == 1);
-        CHECK_FALSE(time_of_impact(point, {}, to_convex_shape(cube({9.0, 0.0, 0.0})), {}, 1.0, 1e-6).has_value());
+        CHECK_FALSE(time_of_impact(point, {}, to_convex_shape(cube_box({9.0, 0.0, 0.0})), {}, 1.0, 1e-6).has_value());
     }
 
     TEST_CASE("distances known by hand: faces, edges and corners") {
-        CHECK(distance(cube({}), cube({5.0, 0.5, 0.0})).distance == doctest::Approx(3.0));
-        CHECK(distance(cube({}), cube({5.0, 6.0, 0.0})).distance == doctest::Approx(5.0));
-        CHECK(distance(cube({}), cube({4.0, 4.0, 4.0})).distance == doctest::Approx(2.0 * std::sqrt(3.0)));
-        const Distance d = distance(to_convex_shape(cube({})), to_convex_shape(Sphere{{4.0, 0.0, 0.0}, 1.0}));
+        CHECK(distance(cube_box({}), cube_box({5.0, 0.5, 0.0})).distance == doctest::Approx(3.0));
+        CHECK(distance(cube_box({}), cube_box({5.0, 6.0, 0.0})).distance == doctest::Approx(5.0));
+        CHECK(distance(cube_box({}), cube_box({4.0, 4.0, 4.0})).distance == doctest::Approx(2.0 * std::sqrt(3.0)));
+        const Distance d = distance(to_convex_shape(cube_box({})), to_convex_shape(Sphere{{4.0, 0.0, 0.0}, 1.0}));
         CHECK(d.distance == doctest::Approx(2.0));
         CHECK(d.on_a.x == doctest::Approx(1.0));
         CHECK(d.on_b.x == doctest::Approx(3.0));
@@ -103,7 +99,7 @@ TEST_SUITE("collide/convex_query") {
     }
 
     TEST_CASE("manifolds known by hand: a face on a face, a corner on a face, an edge across an edge") {
-        const Manifold stacked = contact_manifold(cube({}), cube({0.5, 0.0, 1.9}));
+        const Manifold stacked = contact_manifold(cube_box({}), cube_box({0.5, 0.0, 1.9}));
         CHECK(stacked.count == 4);
         CHECK(stacked.normal.z == doctest::Approx(1.0));
         CHECK(stacked.depth == doctest::Approx(0.1));
@@ -112,14 +108,14 @@ TEST_SUITE("collide/convex_query") {
             CHECK(stacked.points[i].position.z == doctest::Approx(0.95));
             CHECK(stacked.points[i].position.x >= -0.5 - 1e-12);
         }
-        Obb turned = cube({0.0, 0.0, 1.9});
+        Obb turned = cube_box({0.0, 0.0, 1.9});
         const float s = float(std::sqrt(0.5));
         turned.axes = glm::mat3(glm::vec3(s, s, 0), glm::vec3(-s, s, 0), glm::vec3(0, 0, 1));
-        CHECK(contact_manifold(cube({}), turned, ManifoldPoints::all).count == 8);
-        CHECK(contact_manifold(cube({}), turned).count == 4);
-        Obb roof = cube({0.0, 0.0, 1.0 + std::sqrt(2.0) - 0.1});
+        CHECK(contact_manifold(cube_box({}), turned, ManifoldPoints::all).count == 8);
+        CHECK(contact_manifold(cube_box({}), turned).count == 4);
+        Obb roof = cube_box({0.0, 0.0, 1.0 + std::sqrt(2.0) - 0.1});
         roof.axes = glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, s, s), glm::vec3(0, -s, s));
-        CHECK(contact_manifold(cube({}), roof).count == 2);
+        CHECK(contact_manifold(cube_box({}), roof).count == 2);
         Obb beam_a = roof, beam_b = roof;
         beam_a.center = {};
         beam_b.center = {0.0, 0.0, 2.0 * std::sqrt(2.0) - 0.1};
@@ -313,7 +309,7 @@ TEST_SUITE("collide/convex_query") {
             const glm::dquat frame = random_rotation(random);
             std::vector<Obb> crates;
             for (int i = 0; i < 100; ++i) {
-                Obb crate = cube({}, 0.5f);
+                Obb crate = cube_box({}, 0.5f);
                 crate.axes = glm::mat3(glm::mat3_cast(frame * glm::angleAxis(angle(random), glm::dvec3(0, 0, 1))));
                 crate.center =
                     glm::mat3_cast(frame) * glm::dvec3(0.0, 0.0, i * (1.0 - 1e-5));  // 1e-5 deep in each other
@@ -332,16 +328,16 @@ TEST_SUITE("collide/convex_query") {
 
     TEST_CASE("half-spaces: a box's corners below the ground, and how far to lift it") {
         const Plane ground{{0.0, 0.0, -2.0}, 0.0};  // z ≤ 0 is solid
-        const Manifold m = contact_manifold(ground, cube({0.0, 0.0, 0.75}));
+        const Manifold m = contact_manifold(ground, cube_box({0.0, 0.0, 0.75}));
         CHECK(m.count == 4);
         CHECK(m.depth == doctest::Approx(0.25));
         CHECK(m.normal.z == doctest::Approx(1.0));
-        CHECK(contact_manifold(ground, cube({0.0, 0.0, 1.5})).count == 0);
+        CHECK(contact_manifold(ground, cube_box({0.0, 0.0, 1.5})).count == 0);
         CHECK(penetration(ground, to_convex_shape(Sphere{{0.0, 0.0, 0.5}, 2.0})).depth == doctest::Approx(1.5));
     }
 
     TEST_CASE("swept bodies hit when and where they should") {
-        const ConvexShape a = to_convex_shape(cube({})), b = to_convex_shape(cube({10.0, 0.0, 0.0}));
+        const ConvexShape a = to_convex_shape(cube_box({})), b = to_convex_shape(cube_box({10.0, 0.0, 0.0}));
         const ConstantMotion toward{{-2.0, 0.0, 0.0}, {}, {}};
         const auto impact = time_of_impact(a, {}, b, toward, 10.0, 1e-6);
         REQUIRE(impact.has_value());

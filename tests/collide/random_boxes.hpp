@@ -11,6 +11,10 @@
 
 namespace crofton::testing {
 
+[[nodiscard]] inline Obb cube_box(const glm::dvec3& center, float half = 1.0f) {
+    return {center, glm::mat3(1.0f), glm::vec3(half)};
+}
+
 inline glm::dquat random_rotation(std::mt19937_64& random) {
     std::normal_distribution<double> normal;
     return glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));

@@ -46,15 +46,11 @@ bool oracle_triangle(const Obb& box, const Triangle& t) {
     return true;
 }
 
-Obb cube(const glm::dvec3& center, float half = 1.0f) {
-    return {center, glm::mat3(1.0f), glm::vec3(half)};
-}
-
 }  // namespace
 
 TEST_SUITE("collide/shapes") {
     TEST_CASE("shapes that are not finite meet nothing") {
-        const Obb box = cube({});
+        const Obb box = cube_box({});
         CHECK_FALSE(intersects(box, Sphere{{0.0, kNan, 0.0}, 1.0}));
         CHECK_FALSE(intersects(box, Sphere{{}, kNan}));
         CHECK_FALSE(intersects(box, Capsule{{}, {kNan, 0.0, 0.0}, 1.0}));
@@ -63,7 +59,7 @@ TEST_SUITE("collide/shapes") {
     }
 
     TEST_CASE("a half-space is met to the last bit") {
-        const Obb box = cube({5.0, 0.0, 0.0});
+        const Obb box = cube_box({5.0, 0.0, 0.0});
         CHECK(intersects(box, Plane{{1.0, 0.0, 0.0}, -6.0}));
         CHECK_FALSE(intersects(box, Plane{{1.0, 0.0, 0.0}, std::nextafter(-6.0, -7.0)}));
         CHECK(intersects(box, Plane{{-0.5, 0.0, 0.0}, 2.0}));
@@ -124,7 +120,7 @@ TEST_SUITE("collide/shapes") {
     }
 
     TEST_CASE("spheres and capsules against a cube, by hand") {
-        const Obb box = cube({});
+        const Obb box = cube_box({});
         CHECK(intersects(box, Sphere{{2.0, 0.0, 0.0}, 1.0}));
         CHECK_FALSE(intersects(box, Sphere{{2.0, 0.0, 0.0}, 1.0 - 1e-9}));
         CHECK_FALSE(intersects(box, Sphere{{2.0, 2.0, 2.0}, std::sqrt(3.0) - 1e-9}));

@@ -13,10 +13,6 @@ using namespace crofton::testing;
 
 namespace {
 
-RigidTransform at(const glm::dvec3& p) {
-    return {glm::dmat3(1.0), p};
-}
-
 Motion flying(const glm::dvec3& velocity, const glm::dvec3& spin = glm::dvec3(0.0)) {
     return {velocity, spin, glm::dvec3(0.0)};
 }

@@ -14,10 +14,6 @@ using namespace crofton::testing;
 
 namespace {
 
-RigidTransform at(const glm::dvec3& p) {
-    return {glm::dmat3(1.0), p};
-}
-
 std::set<std::pair<Feature, Feature>> ids(const Manifold& m) {
     std::set<std::pair<Feature, Feature>> result;
     for (int i = 0; i < m.count; ++i) result.insert({m.points[i].on_a, m.points[i].on_b});

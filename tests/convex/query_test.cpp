@@ -14,10 +14,6 @@ using namespace crofton::testing;
 
 namespace {
 
-RigidTransform at(const glm::dvec3& p) {
-    return {glm::dmat3(1.0), p};
-}
-
 struct Wrong {
     int verdicts = 0, cached = 0, brute = 0, meeting = 0;
 };

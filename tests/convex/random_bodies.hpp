@@ -9,6 +9,10 @@
 
 namespace crofton::testing {
 
+[[nodiscard]] inline RigidTransform at(const glm::dvec3& p) {
+    return {glm::dmat3(1.0), p};
+}
+
 class RandomBodies {
   public:
     explicit RandomBodies(std::uint64_t seed) : random_(seed) {}

@@ -16,6 +16,7 @@ std::uint32_t MovingList::add(ItemId item, const Obb& box, std::uint32_t last_mo
     differs_.push_back(0);
     earliest_ = std::min(earliest_, last_moved);
     changed_ = true;
+    moving_boxes_.unstage(entry);
     return entry;
 }
 
@@ -30,33 +31,46 @@ void MovingList::remove(std::size_t entry) {
     fill(staged_for_);
     fill(differs_);
     changed_ = true;
+    moving_boxes_.unstage(entry);
 }
 
-void MovingList::stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride,
-                       std::uint32_t now) {
+void MovingList::keep(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now) {
     // In registers: what is written below might be them.
     const Obb* const boxes = boxes_.data();
     Obb* const staged = staged_boxes_.data();
     std::uint32_t* const staged_for = staged_for_.data();
     std::uint8_t* const differs = differs_.data();
     const auto* from = reinterpret_cast<const std::byte*>(first);
-    std::size_t fresh = 0;
+    std::size_t fresh = 0, differing = 0;
     for (const std::uint32_t entry : entries) {
         const Obb& box = *reinterpret_cast<const Obb*>(from);
         from += stride;
         staged[entry] = box;
-        differs[entry] = !have_same_bits(boxes[entry], box);
+        const bool is_other = !have_same_bits(boxes[entry], box);
+        differs[entry] = is_other;
+        differing += is_other;
         fresh += staged_for[entry] != now;
         staged_for[entry] = now;
     }
     staged_count_ += fresh;
+    differing_count_ += differing;
+    staged_twice_ |= fresh != entries.size();
 }
 
 // Where most boxes are staged, the arrays change places and the others are copied.
 void MovingList::commit(std::uint32_t now, Vector<ItemId>& moved) {
     if (staged_count_ == 0) return;
-    const bool most = staged_count_ * 2 > items_.size();
     const std::size_t moved_before = moved.size();
+    const std::size_t differing = std::exchange(differing_count_, 0);
+    if (!std::exchange(staged_twice_, false) && differing == items_.size()) {
+        moved.insert(moved.end(), items_.begin(), items_.end());
+        std::fill(last_moved_.begin(), last_moved_.end(), now);
+        std::swap(boxes_, staged_boxes_);
+        staged_count_ = 0;
+        changed_ = true;
+        return;
+    }
+    const bool most = staged_count_ * 2 > items_.size();
     moved.resize(moved_before + staged_count_);
     ItemId* end = moved.data() + moved_before;
     for (std::size_t entry = 0; entry < items_.size(); ++entry) {
@@ -85,12 +99,12 @@ void MovingList::list_rested(std::uint32_t now, std::uint32_t updates, Vector<It
     }
 }
 
-Result<void> MovingList::update(const boxtree::BoxTree& tree, Executor& executor) {
-    if (!changed_) return {};
+void MovingList::update(Executor& executor) {
+    if (!changed_) return moving_boxes_.unstage_all();
     changed_ = false;
     if (staged_boxes_.capacity() < items_.size()) staged_boxes_.reserve(boxes_.capacity());
     staged_boxes_.resize(items_.size());
-    return moving_boxes_.update(tree, items_, boxes_, executor);
+    moving_boxes_.finish(items_, boxes_, executor);
 }
 
 }  // namespace crofton::world

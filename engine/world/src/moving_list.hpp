@@ -29,6 +29,7 @@ class MovingList {
     bool set_box(std::size_t entry, const Obb& box, std::uint32_t now) {
         if (have_same_bits(boxes_[entry], box)) return false;
         boxes_[entry] = box;
+        moving_boxes_.unstage(entry);
         last_moved_[entry] = now;
         changed_ = true;
         return true;
@@ -36,24 +37,33 @@ class MovingList {
     // In the commit() of the same `now`. Of several the last counts.
     void stage(std::size_t entry, const Obb& box, std::uint32_t now) {
         const auto only = static_cast<std::uint32_t>(entry);
-        stage({&only, 1}, &box, sizeof box, now);
+        moving_boxes_.unstage(entry);
+        keep({&only, 1}, &box, sizeof box, now);
     }
-    // Likewise many, whose boxes are `stride` bytes apart.
-    void stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now);
+    // Likewise many, whose boxes are `stride` bytes apart, up to the first that is not certainly valid. Returns how
+    // many.
+    std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now) {
+        const std::size_t count = moving_boxes_.stage(entries, first, stride);
+        keep(entries.first(count), first, stride, now);
+        return count;
+    }
     // Takes over what has been staged. Appends the items whose boxes have changed.
     void commit(std::uint32_t now, Vector<ItemId>& moved);
     // Appends the items that have not moved for so many updates.
     void list_rested(std::uint32_t now, std::uint32_t updates, Vector<ItemId>& rested);
 
     // Makes the list's boxes what views see, and room for the next frame's.
-    Result<void> update(const boxtree::BoxTree& tree, Executor& executor);
+    void update(Executor& executor);
 
   private:
+    void keep(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride, std::uint32_t now);
+
     Vector<ItemId> items_;
     Vector<Obb> boxes_, staged_boxes_;
     Vector<std::uint32_t> last_moved_, staged_for_;  // the second: the update that the staged box is for
     Vector<std::uint8_t> differs_;                   // the staged box from the box
-    std::size_t staged_count_ = 0;
+    std::size_t staged_count_ = 0, differing_count_ = 0;
+    bool staged_twice_ = false;
     std::uint32_t earliest_ = 0;  // no last_moved_ is below
     bool changed_ = false;        // since the last update()
     cull::MovingBoxes moving_boxes_;

@@ -2,7 +2,6 @@
 // Objects: adding, changing, removing.
 #include <algorithm>
 #include <cmath>
-#include <crofton/boxtree/valid_boxes.hpp>
 #include <string>
 
 #include "for_each_pair.hpp"
@@ -167,15 +166,14 @@ Result<void> World::set_bound(ObjectHandle object, const Bound& bound) {
 Result<void> World::set_bounds(Strided<ObjectHandle> objects, Strided<Obb> boxes) {
     if (objects.size() != boxes.size()) return fail_sizes();
     State& s = *state_;
-    constexpr std::size_t kAtOnce = 64;  // are checked, and then found in the cache
+    constexpr std::size_t kAtOnce = 128;  // are checked, and then found in the cache
     Result<void> first;
     for (std::size_t begin = 0; begin < boxes.size(); begin += kAtOnce) {
         const std::size_t end = std::min(begin + kAtOnce, boxes.size());
-        const std::size_t certain = begin + boxtree::count_certainly_valid(&boxes[begin], end - begin, boxes.stride());
         std::uint32_t entries[kAtOnce];
-        const std::size_t movers = s.movers.list_entries(objects, begin, certain, entries);
-        if (movers > 0) s.index.stage_movers({entries, movers}, &boxes[begin], boxes.stride());
-        for (std::size_t i = begin + movers; i < end; ++i) {
+        const std::size_t movers = s.movers.list_entries(objects, begin, end, entries);
+        const std::size_t staged = s.index.stage_movers({entries, movers}, &boxes[begin], boxes.stride());
+        for (std::size_t i = begin + staged; i < end; ++i) {
             auto set = s.set_bound(objects[i], boxes[i], i);
             if (!set && first) first = std::move(set);
         }

@@ -168,7 +168,7 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     if (wants_refit_) tree_.refit();
     wants_refit_ = false;
     rebuild_step(settings.rebuild_budget);
-    must(moving_.update(tree_, executor));
+    moving_.update(executor);
     members_changed_ = 0;
     ++now_;
     return changes;

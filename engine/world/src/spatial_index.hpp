@@ -43,9 +43,10 @@ class SpatialIndex {
         moving_.stage(items_[item].entry, box, now_);
         return true;
     }
-    // Likewise many, by their entries in the list; boxes are `stride` bytes apart.
-    void stage_movers(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride) {
-        moving_.stage(entries, first, stride, now_);
+    // Likewise many, by their entries in the list, up to the first box that is not certainly valid; boxes are `stride`
+    // bytes apart. Returns how many.
+    std::size_t stage_movers(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride) {
+        return moving_.stage(entries, first, stride, now_);
     }
     // kNoIndex: the item is not in the list.
     [[nodiscard]] std::uint32_t mover_entry(ItemId item) const {

@@ -47,6 +47,11 @@ struct Boxes {
         }
         per_quantum[lane] = static_cast<float>(1.0 / chunk.quantum);  // exact, a power of two
     }
+    HWY_INLINE void put_frame(const ListChunk& chunk) {  // of all lanes
+        put_frame(0, chunk);
+        for (std::size_t j = 0; j < 3; ++j) std::fill_n(origin[j] + 1, kSixteen - 1, origin[j][0]);
+        std::fill_n(per_quantum + 1, kSixteen - 1, per_quantum[0]);
+    }
 };
 
 // What becomes of them. Coordinates and radius are in quanta, and those of a row that says nothing are 0 and
@@ -64,6 +69,11 @@ struct Written {
     HWY_INLINE void copy_record(std::size_t lane, BoxRecord& to) const {
         for (std::size_t q = 0; q < 2; ++q)
             std::memcpy(reinterpret_cast<unsigned char*>(&to) + 16 * q, record[q][lane], 16);
+    }
+    HWY_INLINE void grow(std::size_t lane, ListChunk& chunk) const {
+        for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], std::abs(at[j][lane]));
+        chunk.largest_radius = std::max(chunk.largest_radius, radius[lane]);
+        chunk.reach = std::max(chunk.reach, reach[lane]);
     }
 };
 
@@ -160,6 +170,15 @@ HWY_INLINE void write(const Boxes& boxes, Written& to) {
     }
 }
 
+// Of sixteen numbers.
+template <class D>
+HWY_INLINE hn::TFromD<D> largest(D d, const hn::TFromD<D>* numbers) {
+    auto result = hn::Load(d, numbers);
+    for (std::size_t l = hn::Lanes(d); l < kSixteen; l += hn::Lanes(d))
+        result = hn::Max(result, hn::Load(d, numbers + l));
+    return hn::GetLane(hn::MaxOfLanes(d, result));
+}
+
 // The largest of a chunk's rows and records, lane by lane.
 struct Extremes {
     alignas(64) std::int32_t at[3][kSixteen] = {};
@@ -175,6 +194,11 @@ struct Extremes {
             hn::Store(hn::Max(hn::Load(DF(), reach + l), hn::Load(DF(), written.reach + l)), DF(), reach + l);
         }
     }
+    HWY_INLINE void grow(ListChunk& chunk) const {
+        for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], largest(DI(), at[j]));
+        chunk.largest_radius = std::max(chunk.largest_radius, largest(DU(), radius));
+        chunk.reach = std::max(chunk.reach, largest(DF(), reach));
+    }
 };
 
 std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListChunk& chunk, RowBlock* rows,
@@ -184,8 +208,7 @@ std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListC
         for (std::size_t lane = 0; lane < kSixteen; ++lane)
             to.put(lane, all_boxes + kBoxBytes * std::min(first + lane, count - 1));
     };
-    for (Boxes& to : boxes)
-        for (std::size_t lane = 0; lane < kSixteen; ++lane) to.put_frame(lane, chunk);
+    for (Boxes& to : boxes) to.put_frame(chunk);
     Extremes extremes;
     Written written;
     std::size_t rejected_count = 0, bounded = 0;
@@ -204,9 +227,10 @@ std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListC
         for (std::uint32_t rest = ~written.usable & valid; rest; rest &= rest - 1)
             rejected[rejected_count++] = static_cast<std::uint32_t>(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
     }
-    for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = *std::max_element(extremes.at[j], extremes.at[j] + kSixteen);
-    chunk.largest_radius = *std::max_element(extremes.radius, extremes.radius + kSixteen);
-    chunk.reach = *std::max_element(extremes.reach, extremes.reach + kSixteen);
+    for (std::int32_t& extent : chunk.extent) extent = 0;
+    chunk.largest_radius = 0;
+    chunk.reach = 0.0f;
+    extremes.grow(chunk);
     chunk.strays = static_cast<std::uint32_t>(count - bounded);
     return rejected_count;
 }
@@ -252,13 +276,93 @@ std::size_t write_items(const unsigned char* all_boxes, const std::uint32_t* ite
             block.xy[item % kSixteen] = written.xy[lane];
             block.zr[item % kSixteen] = written.zr[lane];
             written.copy_record(lane, records[item]);
-            for (std::size_t j = 0; j < 3; ++j)
-                chunk.extent[j] = std::max(chunk.extent[j], std::abs(written.at[j][lane]));
-            chunk.largest_radius = std::max(chunk.largest_radius, written.radius[lane]);
-            chunk.reach = std::max(chunk.reach, written.reach[lane]);
+            written.grow(lane, chunk);
         }
     }
     return rejected_count;
+}
+
+// The items that a group of sixteen lanes stands for: those beyond the last are the last again.
+struct Group {
+    const std::uint32_t* items;
+    std::size_t count;
+
+    [[nodiscard]] std::uint32_t item(std::size_t lane) const { return items[std::min(lane, count - 1)]; }
+    [[nodiscard]] bool in_one_chunk() const {
+        std::uint32_t differing = 0;
+        for (std::size_t lane = 1; lane < count; ++lane) differing |= items[lane] ^ items[0];
+        return differing < kChunk;
+    }
+    // A block of rows, lane by lane.
+    [[nodiscard]] bool is_block() const {
+        if (count < kSixteen || items[0] % kSixteen != 0) return false;
+        std::uint32_t differing = 0;
+        for (std::uint32_t lane = 0; lane < kSixteen; ++lane) differing |= items[lane] ^ (items[0] + lane);
+        return differing == 0;
+    }
+};
+
+std::size_t write_strided(const unsigned char* all_boxes, std::size_t stride, const std::uint32_t* items,
+                          std::size_t count, ListChunk* chunks, RowBlock* rows, BoxRecord* records) {
+    constexpr std::size_t kMixed = ~std::size_t{0};
+    Boxes boxes[2];
+    std::size_t framed[2] = {kMixed, kMixed};  // the chunk whose frame all lanes have
+    const auto group_at = [&](std::size_t first) { return Group{items + first, std::min(kSixteen, count - first)}; };
+    const auto put = [&](std::size_t turn, std::size_t first) HWY_ATTR {
+        const Group group = group_at(first);
+        const std::size_t frame = group.in_one_chunk() ? group.items[0] / kChunk : kMixed;
+        for (std::size_t lane = 0; lane < kSixteen; ++lane)
+            boxes[turn].put(lane, all_boxes + stride * (first + std::min(lane, group.count - 1)));
+        if (frame == kMixed)
+            for (std::size_t lane = 0; lane < kSixteen; ++lane)
+                boxes[turn].put_frame(lane, chunks[group.item(lane) / kChunk]);
+        else if (frame != framed[turn])
+            boxes[turn].put_frame(chunks[frame]);
+        framed[turn] = frame;
+    };
+    Written written;
+    Extremes extremes;                 // of whole blocks
+    std::size_t extremes_of = kMixed;  // the chunk
+    const auto flush = [&] {
+        if (extremes_of != kMixed) extremes.grow(chunks[extremes_of]);
+        extremes = {};
+    };
+    std::size_t done = 0;
+    if (count > 0) put(0, 0);
+    for (std::size_t first = 0, turn = 0; first < count; first += kSixteen, turn ^= 1) {
+        if (first + kSixteen < count) put(turn ^ 1, first + kSixteen);
+        write(boxes[turn], written);
+        const Group group = group_at(first);
+        const std::uint32_t unusable = ~written.usable & ((1u << group.count) - 1);
+        if (unusable == 0 && group.is_block()) {
+            const std::uint32_t item = group.items[0];
+            if (item / kChunk != extremes_of) {
+                flush();
+                extremes_of = item / kChunk;
+            }
+            extremes.include(written);
+            RowBlock& block = rows[item / kSixteen];
+            std::memcpy(block.xy, written.xy, sizeof block.xy);
+            std::memcpy(block.zr, written.zr, sizeof block.zr);
+            for (std::size_t lane = 0; lane < kSixteen; ++lane) written.copy_record(lane, records[item + lane]);
+            done += kSixteen;
+            continue;
+        }
+        const std::size_t usable = unusable ? hwy::Num0BitsBelowLS1Bit_Nonzero32(unusable) : group.count;
+        for (std::size_t lane = 0; lane < usable; ++lane) {
+            const std::uint32_t item = group.items[lane];
+            ListChunk& chunk = chunks[item / kChunk];
+            RowBlock& block = rows[item / kSixteen];
+            block.xy[item % kSixteen] = written.xy[lane];
+            block.zr[item % kSixteen] = written.zr[lane];
+            written.copy_record(lane, records[item]);
+            written.grow(lane, chunk);
+        }
+        done += usable;
+        if (unusable) break;
+    }
+    flush();
+    return done;
 }
 
 }  // namespace
@@ -270,6 +374,7 @@ namespace crofton::cull {
 
 HWY_EXPORT(write_chunk);
 HWY_EXPORT(write_items);
+HWY_EXPORT(write_strided);
 
 std::size_t write_boxes(const Obb* boxes, std::size_t count, ListChunk& chunk, RowBlock* rows, BoxRecord* records,
                         std::uint32_t* rejected) {
@@ -281,6 +386,12 @@ std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_
                         RowBlock* rows, BoxRecord* records, std::uint32_t* rejected) {
     return HWY_DYNAMIC_DISPATCH(write_items)(reinterpret_cast<const unsigned char*>(boxes), items, count, chunks, rows,
                                              records, rejected);
+}
+
+std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
+                                ListChunk* chunks, RowBlock* rows, BoxRecord* records) {
+    return HWY_DYNAMIC_DISPATCH(write_strided)(reinterpret_cast<const unsigned char*>(first), stride, items, count,
+                                               chunks, rows, records);
 }
 
 }  // namespace crofton::cull

@@ -20,4 +20,9 @@ inline constexpr std::size_t kWriteBatch = 256;
 std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_t count, ListChunk* chunks,
                         RowBlock* rows, BoxRecord* records, std::uint32_t* rejected);
 
+// Boxes `stride` bytes apart: the k-th is item items[k]'s, in any chunk. Stops before the first that write_boxes()
+// would reject, and returns how many it has written. Extents and reach only grow; strays are not counted.
+std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
+                                ListChunk* chunks, RowBlock* rows, BoxRecord* records);
+
 }  // namespace crofton::cull

@@ -68,6 +68,7 @@ class BoundSet {
     [[nodiscard]] std::span<const ListChunk> chunks() const;
 
   private:
+    friend class MovingBoxes;
     void assign_chunk(std::size_t c, std::span<const Bound> bounds);
     void resize(std::size_t size);
     void choose_frame(std::size_t c, std::span<const Bound> bounds);
@@ -118,15 +119,34 @@ class MovingBoxes {
     [[nodiscard]] Result<void> update(const boxtree::BoxTree& tree, std::span<const ItemId> items,
                                       std::span<const Obb> boxes, Executor& executor = serial_executor());
 
+    // An update in pieces, for boxes that come from many places: each is read and checked once, and queries see none
+    // before finish(). The k-th box, `stride` bytes after the one before, is that of items()[entries[k]]; of several
+    // for one entry the last counts. Takes them up to the first that is not certainly valid, and returns how many.
+    // Requires entries below size().
+    std::size_t stage(std::span<const std::uint32_t> entries, const Obb* first, std::size_t stride);
+    // What has been staged for the entry does not count: finish() reads its box. Any entry.
+    void unstage(std::size_t entry) {
+        if (entry / 64 < staged_.size()) staged_[entry / 64] &= ~(std::uint64_t{1} << entry % 64);
+    }
+    // Nothing counts of what has been staged.
+    void unstage_all() { staged_.clear(); }
+    // As update(), but without its checks: boxes[k] must be what has been staged for entry k, and is read where nothing
+    // has. Requires valid boxes, and detached items; there may be more of them or fewer than before.
+    void finish(std::span<const ItemId> items, std::span<const Obb> boxes, Executor& executor = serial_executor());
+
     [[nodiscard]] std::span<const ItemId> items() const { return items_; }
     [[nodiscard]] std::span<const Obb> boxes() const { return boxes_; }
     [[nodiscard]] std::size_t size() const { return items_.size(); }
     [[nodiscard]] const BoxSet& set() const { return sets_[now_]; }  // over boxes()
 
   private:
+    void begin_staging();
+    void finish_chunk(std::size_t c, std::span<const Obb> boxes);
+
     std::span<const ItemId> items_;
     std::span<const Obb> boxes_;
-    BoxSet sets_[2];  // an update is written into the one, and counts once all of it is known to be good
+    BoxSet sets_[2];                // an update is written into the one, and counts once all of it is known to be good
+    Vector<std::uint64_t> staged_;  // one bit an entry: written into that set; empty: nothing is staged
     unsigned now_ = 0;
 };
 
