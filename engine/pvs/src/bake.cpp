@@ -6,6 +6,7 @@
 #include <cmath>
 #include <crofton/bake/checksum.hpp>
 #include <crofton/core/recovery.hpp>
+#include <utility>
 
 #include "bake_data.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 34;
-constexpr std::uint64_t kWave = 64;  // blocks between two looks at the limits
 constexpr std::uint32_t kNothing = ~std::uint32_t{0};
 
 // Bits are only ever set, so the order of threads does not matter.
@@ -34,29 +34,79 @@ struct Gap {
 
 // One thread's memory.
 struct Scratch {
-    Vector<Line> lines;
+    Vector<Line> drawn, lines;
+    Vector<std::uint32_t> keys, numbers, firsts;
     radiosity::LineHits hits;
     Vector<CellSpan> spans;
     Vector<Gap> gaps;
 };
 
+// The five low bits of x, each followed by two zeros.
+std::uint32_t spread(std::uint32_t x) {
+    return (x & 1) | (x & 2) << 2 | (x & 4) << 4 | (x & 8) << 6 | (x & 16) << 8;
+}
+
+// Blocks are traced together, lines near each other in turn: the tree's nodes and the cells' bits are then in the
+// cache.
 class BlockTracing {
   public:
+    static constexpr std::size_t kTogether = 16;
+
     BlockTracing(Bake::State& state, Scratch& scratch) : state_(state), scratch_(scratch) {}
 
-    void trace(std::uint64_t block) {
-        state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
-        state_.tracer->all_hits(scratch_.lines, scratch_.hits);
-        for (std::size_t i = 0, first = 0; i < scratch_.lines.size(); ++i) {
-            const std::size_t end = scratch_.hits.ends[i];
-            find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), i % kEscapeClasses);
-            state_.walk->find(scratch_.lines[i], scratch_.spans);
-            witness();
-            first = end;
+    void trace(std::uint64_t first_block, std::uint64_t end_block) {
+        scratch_.drawn.clear();
+        for (std::uint64_t block = first_block; block < end_block; ++block) {
+            state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
+            scratch_.drawn.insert(scratch_.drawn.end(), scratch_.lines.begin(), scratch_.lines.end());
+        }
+        put_in_order();
+        constexpr std::size_t kAtOnce = 1024;
+        for (std::size_t begin = 0; begin < scratch_.lines.size(); begin += kAtOnce) {
+            const auto lines = std::span(std::as_const(scratch_.lines)).subspan(begin).first(kAtOnce);
+            state_.tracer->all_hits(lines, scratch_.hits);
+            for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
+                const std::size_t end = scratch_.hits.ends[i];
+                find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first),
+                          scratch_.numbers[begin + i] % LinePlan::kBlock % kEscapeClasses);
+                state_.walk->find(lines[i], scratch_.spans);
+                witness();
+                first = end;
+            }
         }
     }
 
   private:
+    // Along a curve through the middles of the lines' ways in the box around all cells (Morton's).
+    void put_in_order() {
+        const Aabb box{state_.cells.bounds().min - state_.origin, state_.cells.bounds().max - state_.origin};
+        constexpr std::uint32_t kKeys = 1u << 15;
+        const std::size_t count = scratch_.drawn.size();
+        scratch_.keys.resize(count);
+        scratch_.numbers.resize(count);
+        scratch_.lines.resize(count);
+        scratch_.firsts.assign(kKeys + 1, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Line& line = scratch_.drawn[i];
+            double begin = 0.0, end = 0.0;
+            (void)clip(line, box, begin, end);
+            const glm::dvec3 middle = line.point + 0.5 * (begin + end) * line.direction - box.min;
+            std::uint32_t key = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double share = middle[k] / (box.max[k] - box.min[k]);
+                key |= spread(static_cast<std::uint32_t>(share > 0.0 ? (std::min)(32.0 * share, 31.0) : 0.0)) << k;
+            }
+            scratch_.keys[i] = key;
+            ++scratch_.firsts[key + 1];
+        }
+        for (std::size_t key = 0; key < kKeys; ++key) scratch_.firsts[key + 1] += scratch_.firsts[key];
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t to = scratch_.firsts[scratch_.keys[i]]++;
+            scratch_.lines[to] = scratch_.drawn[i];
+            scratch_.numbers[to] = static_cast<std::uint32_t>(i);
+        }
+    }
+
     [[nodiscard]] std::uint32_t object(const radiosity::Hit& hit) const { return state_.object_of[hit.triangle]; }
 
     void find_gaps(std::span<const radiosity::Hit> hits, std::size_t line_class) {
@@ -221,18 +271,20 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
         const auto start = Clock::now();
         Vector<Scratch> scratch(executor.concurrency());
         std::uint64_t lines = 0;
+        // Blocks between two looks at the limits.
+        const std::uint64_t wave = BlockTracing::kTogether * (std::max)(8u, 2 * executor.concurrency());
         for (;;) {
-            const BlockRange todo = found.done.first_gap(shard, kWave);
+            const BlockRange todo = found.done.first_gap(shard, wave);
             const auto done = static_cast<double>(found.done.count_within(shard));
             if (todo.begin >= todo.end || lines >= limits.lines ||
                 std::chrono::duration<double>(Clock::now() - start).count() >= limits.seconds ||
                 (limits.go_on && !limits.go_on(limits.user, done / static_cast<double>(shard.end - shard.begin))))
                 return {};
-            crofton::detail::recoverable_for(executor, todo.end - todo.begin, 1,
-                                             [&](std::size_t begin, std::size_t end, unsigned worker) {
-                                                 for (std::size_t i = begin; i < end; ++i)
-                                                     BlockTracing(*state_, scratch[worker]).trace(todo.begin + i);
-                                             });
+            crofton::detail::recoverable_for(
+                executor, todo.end - todo.begin, BlockTracing::kTogether,
+                [&](std::size_t begin, std::size_t end, unsigned worker) {
+                    BlockTracing(*state_, scratch[worker]).trace(todo.begin + begin, todo.begin + end);
+                });
             found.done.add(todo);
             lines += (todo.end - todo.begin) * LinePlan::kBlock;
         }

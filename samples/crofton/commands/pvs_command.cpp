@@ -252,7 +252,9 @@ void add_pvs_command(CommandLine& line) {
     command.option("--cells", options->cells, "NXxNYxNZ, or a file of boxes").show_default();
     command.option("--eyes", options->eyes,
                    "x,y,z,x,y,z: the box that the grid fills; without, where the scene is dense");
-    command.option("--height", options->height, "Of the grid over the lowest point there, without --eyes")
+    command
+        .option("--height", options->height,
+                "Of the grid over the lowest point there, without --eyes; it begins at a twentieth of it")
         .positive()
         .show_default();
     command.option("--epsilon", options->epsilon, "Of the lines through a cell: pairs above it are not missed")

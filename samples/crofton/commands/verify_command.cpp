@@ -11,6 +11,7 @@
 #include "verify/cull.hpp"
 #include "verify/occlude.hpp"
 #include "verify/occlude_scene.hpp"
+#include "verify/pvs.hpp"
 #include "verify/rows.hpp"
 #include "verify/topics.hpp"
 
@@ -23,7 +24,7 @@ struct Topic {
 };
 constexpr Topic kTopics[] = {
     {"paper", verify_paper},     {"lines", verify_lines},     {"cull", verify_cull},
-    {"occlude", verify_occlude}, {"collide", verify_collide},
+    {"occlude", verify_occlude}, {"collide", verify_collide}, {"pvs", verify_pvs},
 };
 
 struct VerifyRequest {

@@ -7,6 +7,12 @@
 #include "camera_path.hpp"
 
 namespace crofton::pipeline {
+namespace {
+
+// Houses without a floor hide nothing from eyes below their walls, so a cell must not reach down to the ground.
+constexpr double kLowestEye = 0.05;
+
+}  // namespace
 
 Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders, Executor& executor) {
     const scene::Scene& scene = source.scene;
@@ -29,7 +35,9 @@ Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occ
 
 Aabb eyes_of(const scene::Scene& scene, double height) {
     Aabb eyes = focus_of(scene);
-    if (!eyes.is_empty()) eyes.max.y = eyes.min.y + height;
+    if (eyes.is_empty()) return eyes;
+    eyes.max.y = eyes.min.y + height;
+    eyes.min.y += kLowestEye * height;
     return eyes;
 }
 

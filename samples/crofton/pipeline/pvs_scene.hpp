@@ -20,7 +20,7 @@ struct PvsScene {
 [[nodiscard]] Result<PvsScene> make_pvs_scene(const assets::SceneSource& source, bool with_occluders,
                                               Executor& executor = serial_executor());
 
-// A grid of cells for eyes up to `height` above the lowest point of where the scene is dense (focus_of). y is up.
+// Where the scene is dense (focus_of), from a twentieth of `height` to `height` above its lowest point. y is up.
 [[nodiscard]] Aabb eyes_of(const scene::Scene& scene, double height);
 
 }  // namespace crofton::pipeline

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "pvs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <crofton/mesh/mesh_query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <crofton/radiosity/lines.hpp>
+#include <crofton/sampling/sampling.hpp>
+#include <cstdio>
+
+#include "pipeline/pvs_scene.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using sampling::Random;
+
+constexpr double kConfidence = 0.999;
+constexpr std::uint64_t kCells = 24 * 2 * 24, kCellsAsked = 96;
+
+struct Baked {
+    pipeline::PvsScene scene;
+    pvs::Cells cells;
+    pvs::Bake bake;
+    pvs::Pvs sets;
+    double epsilon = 0.0, lines_a_cell = 0.0;
+};
+
+Result<Baked> bake_town(const VerifyOptions& options) {
+    auto source = assets::load_scene("town");
+    if (!source) return tl::unexpected(source.error());
+    source->scene.update();
+    auto scene = pipeline::make_pvs_scene(*source, true);
+    if (!scene) return tl::unexpected(scene.error());
+    auto cells = pvs::Cells::grid(pipeline::eyes_of(source->scene, 10.0), {24, 2, 24});
+    if (!cells) return tl::unexpected(cells.error());
+    // Lines through the cell among all, by surfaces; ε from (7).
+    const auto surface = [](const Aabb& box) {
+        const glm::dvec3 e = box.max - box.min;
+        return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+    };
+    const double lines = static_cast<double>(options.trials) * surface(cells->box(0)) / surface(cells->bounds());
+    const auto pairs = static_cast<double>(kCells * scene->subject.boxes.size());
+    const double epsilon = std::min(0.5, std::log(pairs / (1.0 - kConfidence)) / lines);
+    auto bake = pvs::Bake::create(scene->subject, *cells,
+                                  {.epsilon = epsilon, .confidence = kConfidence, .seed = options.seed});
+    if (!bake) return tl::unexpected(bake.error());
+    if (auto ran = bake->run(); !ran) return tl::unexpected(ran.error());
+    auto sets = pvs::Pvs::finish(*bake, scene->occluders, {.near_reach = 0.0, .halvings = 2});
+    if (!sets) return tl::unexpected(sets.error());
+    return Baked{std::move(*scene), std::move(*cells), std::move(*bake), std::move(*sets), epsilon, lines};
+}
+
+// The objects at the ends of the gaps that the line has within the box, each once.
+void add_ends(std::span<const radiosity::Hit> hits, const pvs::Subject& subject, const Line& line, const Aabb& box,
+              std::vector<std::uint32_t>& ends) {
+    double begin = -HUGE_VAL, end = HUGE_VAL;
+    for (int k = 0; k < 3; ++k) {
+        const double a = (box.min[k] - line.point[k]) / line.direction[k];
+        const double b = (box.max[k] - line.point[k]) / line.direction[k];
+        begin = std::max(begin, std::min(a, b));
+        end = std::min(end, std::max(a, b));
+    }
+    const double some = 0.01 * (box.max.y - box.min.y);
+    ends.clear();
+    for (std::size_t gap = 0; gap <= hits.size(); ++gap) {
+        const double from = std::max(begin, gap == 0 ? -HUGE_VAL : static_cast<double>(hits[gap - 1].t));
+        const double to = std::min(end, gap == hits.size() ? HUGE_VAL : static_cast<double>(hits[gap].t));
+        if (to - from < some) continue;
+        if (gap > 0) ends.push_back(subject.object_of[hits[gap - 1].triangle]);
+        if (gap < hits.size()) ends.push_back(subject.object_of[hits[gap].triangle]);
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+}
+
+// Pairs above ε, by lines through each of some cells alone, that the bake has not seen.
+VerifyRow missed_pairs(const Baked& baked, const radiosity::LineTracer& tracer, const VerifyOptions& options) {
+    std::uint64_t missed = 0, above = 0;
+    const auto lines = static_cast<std::uint64_t>(20.0 * baked.lines_a_cell);
+    for (std::uint64_t i = 0; i < kCellsAsked; ++i) {
+        Random random(options.seed + 500, i);
+        const std::size_t cell = random.bits() % kCells;
+        const Aabb world = baked.cells.box(cell);
+        const Aabb box{world.min - baked.scene.subject.origin, world.max - baked.scene.subject.origin};
+        Vector<Line> all;
+        for (std::uint64_t n = 0; n < lines; ++n) all.push_back(sampling::line_from_box(box, random.point<5>()));
+        radiosity::LineHits hits;
+        tracer.all_hits(all, hits);
+        std::vector<std::uint64_t> counts(baked.scene.subject.boxes.size(), 0);
+        std::vector<std::uint32_t> ends;
+        for (std::size_t n = 0, first = 0; n < all.size(); first = hits.ends[n], ++n) {
+            add_ends(std::span(hits.hits).subspan(first, hits.ends[n] - first), baked.scene.subject, all[n], box, ends);
+            for (const std::uint32_t object : ends) ++counts[object];
+        }
+        for (std::uint32_t o = 0; o < counts.size(); ++o) {
+            if (static_cast<double>(counts[o]) < baked.epsilon * static_cast<double>(lines)) continue;
+            ++above;
+            missed += !baked.bake.is_seen(cell, o);
+        }
+    }
+    char claim[200];
+    std::snprintf(claim, sizeof claim,
+                  "town, epsilon %.2g: of %llu pairs above it in %llu cells, found by 20 times the lines, missed per "
+                  "1,000 cells",
+                  baked.epsilon, static_cast<unsigned long long>(above), static_cast<unsigned long long>(kCellsAsked));
+    VerifyRow row = at_most_row(claim, "theory.md (7)", 1.0,
+                                1000.0 * static_cast<double>(missed) / static_cast<double>(kCellsAsked), 0.0);
+    row.cases = above;
+    return row;
+}
+
+void wrong_rays(const Baked& baked, const VerifyOptions& options, std::vector<VerifyRow>& rows) {
+    const auto tree =
+        mesh::MeshTree::build(baked.scene.subject.mesh, {.boxes = mesh::MeshBoxes::principal_axes, .rays = true});
+    std::uint64_t rays = 0, hits = 0, drawn_less = 0, hidden = 0;
+    Random random(options.seed + 501);
+    while (tree && rays < options.trials) {
+        const std::size_t cell = random.bits() % kCells;
+        const glm::dvec3 eye = sampling::box_point(baked.cells.box(cell), random.point<3>());
+        for (int n = 0; n < 64; ++n, ++rays) {
+            const Ray ray{eye - baked.scene.subject.origin, sampling::direction(random.point<2>())};
+            const std::uint32_t from = baked.sets.find_cell(eye);
+            const auto hit = mesh::raycast(ray, *tree);
+            if (!hit || from == pvs::kNoCell) continue;
+            ++hits;
+            const pvs::PairState state = baked.sets.state(from, baked.scene.subject.object_of[hit->triangle]);
+            drawn_less += state != pvs::PairState::seen;
+            hidden += state == pvs::PairState::hidden;
+        }
+    }
+    const pvs::PairCounts counts = baked.sets.counts();
+    char claim[200];
+    std::snprintf(claim, sizeof claim,
+                  "town: rays from eyes in cells that first meet an object proved hidden (%.1f %% of pairs are)",
+                  100.0 * static_cast<double>(counts.hidden) / static_cast<double>(counts.all()));
+    rows.push_back(computed_row(claim, "docs/notes/pvs.md", 0.0, static_cast<double>(hidden), 0.0));
+    rows.back().cases = hits;
+    const Share share = share_of(drawn_less, std::max<std::uint64_t>(1, hits));
+    rows.push_back(at_most_row("town: share of rays that first meet an object no line has seen, at most epsilon",
+                               "docs/notes/pvs.md", baked.epsilon, share.value, share.standard_error));
+    rows.back().cases = hits;
+}
+
+}  // namespace
+
+std::vector<VerifyRow> verify_pvs(const VerifyOptions& options) {
+    std::vector<VerifyRow> rows;
+    const auto baked = bake_town(options);
+    if (!baked) {
+        rows.push_back(computed_row("the town is baked: " + baked.error().message, "docs/pvs.md", 1.0, 0.0, 0.0));
+        return rows;
+    }
+    const auto tracer = radiosity::LineTracer::build(baked->scene.subject.mesh);
+    if (tracer) rows.push_back(missed_pairs(*baked, *tracer, options));
+    wrong_rays(*baked, options, rows);
+    return rows;
+}
+
+}  // namespace crofton::cli

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <cstdlib>
+
+#include "run_cli.hpp"
+
+using namespace crofton::test;
+
+namespace {
+
+// Two rooms with a wall between them that has a door, and a thing in each.
+std::string level() {
+    const auto box = [](int number, double x0, double y0, double z0, double x1, double y1, double z1, bool inward) {
+        std::string text = "o box" + std::to_string(number) + "\n";
+        for (int i = 0; i < 8; ++i)
+            text += "v " + std::to_string(i & 1 ? x1 : x0) + " " + std::to_string(i & 2 ? y1 : y0) + " " +
+                    std::to_string(i & 4 ? z1 : z0) + "\n";
+        const int first = 8 * number + 1;
+        const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+        for (const auto& face : faces) {
+            text += "f";
+            for (int k = 0; k < 4; ++k) text += " " + std::to_string(first + face[inward ? 3 - k : k]);
+            text += "\n";
+        }
+        return text;
+    };
+    const std::string path = scratch().file("level.obj");
+    write_contents(path, box(0, -6, 0, -3, 6, 3, 3, true) + box(1, -0.2, 0, -3, 0.2, 3, 1, false) +
+                             box(2, -5, 0.5, -2.5, -4.5, 1, -2, false) + box(3, 4.5, 0.5, -2.5, 5, 1, -2, false));
+    return "'" + path + "'";
+}
+
+std::string quoted(const std::string& name) {
+    return "'" + scratch().file(name) + "'";
+}
+
+const char* const kSmall = " --eyes=-6,0,-3,6,3,3 --cells 6x1x3 --epsilon 2e-3 ";
+
+}  // namespace
+
+TEST_SUITE("cli/pvs") {
+    TEST_CASE("bad cells, shards, eyes and parts are refused by name") {
+        const auto refused = [&](const std::string& arguments, const char* reason) {
+            const CliRun run = run_cli(arguments);
+            CHECK(run.status == 2);
+            CHECK_MESSAGE(run.err.find(reason) != std::string::npos, run.err);
+        };
+        refused("pvs " + level() + " --cells 0x1x1", "at least one cell");
+        refused("pvs " + level() + " --cells 4x4", "4x4");
+        refused("pvs " + level() + " --shard 3/3 --state " + quoted("p"), "3/3");
+        refused("pvs " + level() + " --shard 0/3", "--state");
+        refused("pvs " + level() + " --eyes 1,2,3", "--eyes");
+        refused("pvs " + level() + " --epsilon 2", "epsilon");
+        refused("pvs " + level() + kSmall + "--svg " + quoted("m.svg") + " --eye 90,0,0", "--eye");
+        refused("pvs no_such.obj", "no_such.obj");
+        write_contents(scratch().file("cells.txt"), "# boxes\n0 0 0 1 1 1\n0 0 zero 1 1 1\n");
+        refused("pvs " + level() + " --cells " + quoted("cells.txt"), "line 3");
+        write_contents(scratch().file("bad_part"), "nothing of the kind");
+        refused("merge " + quoted("bad_part") + " --out " + quoted("sum"), "bad_part");
+    }
+
+    TEST_CASE("parts merge to the state of one run, a lost one is named, and one given twice counts once") {
+        const std::string base = "pvs " + level() + kSmall;
+        for (int i = 0; i < 3; ++i)
+            REQUIRE(run_cli(base + "--shard " + std::to_string(i) + "/3 --state " + quoted("part" + std::to_string(i)))
+                        .status == 0);
+        REQUIRE(run_cli(base + "--threads 2 --state " + quoted("whole")).status == 0);
+        const CliRun lost =
+            run_cli("merge " + quoted("part0") + " " + quoted("part2") + " --shards 3 --out " + quoted("sum"));
+        CHECK(lost.status == 1);
+        CHECK_MESSAGE(lost.err.find("--shard 1/3") != std::string::npos, lost.err);
+        CHECK(run_cli("merge " + quoted("part2") + " " + quoted("part0") + " " + quoted("part1") + " " +
+                      quoted("part0") + " --shards 3 --out " + quoted("sum"))
+                  .status == 0);
+        CHECK(contents_of(scratch().file("sum")) == contents_of(scratch().file("whole")));
+        // Of another bake.
+        REQUIRE(run_cli(base + "--seed 2 --state " + quoted("other")).status == 0);
+        const CliRun other = run_cli("merge " + quoted("part0") + " " + quoted("other") + " --out " + quoted("sum"));
+        CHECK(other.status == 2);
+        CHECK_MESSAGE(other.err.find("other") != std::string::npos, other.err);
+        CHECK(run_cli(base + "--state " + quoted("other")).status == 2);
+    }
+
+    TEST_CASE("a bake ends in a file, a map and figures, and stopped by time it goes on to the same bytes") {
+        const std::string base = "pvs " + level() + kSmall;
+        const CliRun run = run_cli(base + "--out " + quoted("sets.crofton") + " --svg " + quoted("map.svg") +
+                                   " --eye=-5,1,0 --json -");
+        REQUIRE_MESSAGE(run.status == 0, run.err);
+        const auto figures = run.json();
+        CHECK(figures["cells"] == 18);
+        CHECK(figures["objects"].get<int>() >= 1);
+        CHECK(figures["lines"] == figures["lines_planned"]);
+        CHECK(figures["epsilon"].get<double>() <= 2e-3);
+        CHECK(contents_of(scratch().file("map.svg")).find("<svg") == 0);
+        CHECK(run_cli(base + "--seconds 1e-9 --state " + quoted("stopped")).status == 0);
+        REQUIRE(run_cli(base + "--state " + quoted("stopped") + " --out " + quoted("again.crofton")).status == 0);
+        CHECK(contents_of(scratch().file("again.crofton")) == contents_of(scratch().file("sets.crofton")));
+        REQUIRE(run_cli(base + "--with-scene --out " + quoted("both.crofton")).status == 0);
+        CHECK(run_cli("bake " + quoted("both.crofton")).status == 0);
+    }
+
+    TEST_CASE("a full disk leaves the state that was there") {
+        const std::string base = "pvs " + level() + kSmall;
+        REQUIRE(run_cli(base + "--shard 0/2 --state " + quoted("kept")).status == 0);
+        const std::string before = contents_of(scratch().file("kept"));
+        const std::string command =
+            "trap '' XFSZ; ulimit -f 0; '" CROFTON_CLI "' " + base + "--state " + quoted("kept") + " >/dev/null 2>&1";
+        const int status = std::system(command.c_str());
+        CHECK(WIFEXITED(status));
+        CHECK(WEXITSTATUS(status) == 2);
+        CHECK(contents_of(scratch().file("kept")) == before);
+    }
+}
