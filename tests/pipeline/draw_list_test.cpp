@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-
+#include <crofton/scene/transform.hpp>
 #include <utility>
 #include <vector>
-
-#include <crofton/scene/transform.hpp>
 
 #include "assets/scene_source.hpp"
 #include "pipeline/draw_list.hpp"
