@@ -122,15 +122,17 @@ void run_tree(int repeats) {
 int main(int argc, char** argv) {
     if (!take_target_option(argc, argv)) return 1;
     int repeats = 15;
-    double height = 60.0;
+    double height = 60.0, house_size = 1.0;
     for (int i = 1; i < argc; ++i)
         if (std::string_view(argv[i]).starts_with("--repeats=")) repeats = std::atoi(argv[i] + 10);
     for (int i = 1; i < argc; ++i)
         if (std::string_view(argv[i]).starts_with("--height=")) height = std::atof(argv[i] + 9);
+    for (int i = 1; i < argc; ++i)
+        if (std::string_view(argv[i]).starts_with("--house-size=")) house_size = std::atof(argv[i] + 13);
     std::printf("Instruction set: %s\n", target_in_use());
     const occlude::BufferSize sizes[] = {{320, 180}, {480, 270}, {640, 360}, {1280, 720}, {1920, 1080}};
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
-        const OcclusionTown town = occlusion_town(seed, 250, 20'000, height);
+        const OcclusionTown town = occlusion_town(seed, 250, 20'000, height, house_size);
         const Camera& camera = town.cameras[0];
         const OcclusionReference reference(town, camera, 1920, 1080);
         const std::size_t hidden = reference.in_view_count - reference.seen_count;

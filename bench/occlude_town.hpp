@@ -25,17 +25,19 @@ inline Obb upright_box(const glm::dvec3& center, double angle, double x, double 
 }
 
 // Houses of 8 to 24 m by 6 to 30 m on plots of 24 m, in no order; objects of 0.3 to 3 m among them and upon them; eyes
-// at the height of the lower roofs, so that about a third of what they face is seen.
-inline OcclusionTown occlusion_town(std::uint64_t seed, std::size_t houses, std::size_t objects, double eye_height) {
+// at the height of the lower roofs. `house_size` scales the houses alone: of small ones much more is seen.
+inline OcclusionTown occlusion_town(std::uint64_t seed, std::size_t houses, std::size_t objects, double eye_height,
+                                    double house_size = 1.0) {
     sampling::Random random(seed);
     OcclusionTown town;
     const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(houses))));
     const double extent = 12.0 * static_cast<double>(side);
     for (std::size_t i = 0; i < houses; ++i) {
-        const double height = 3.0 + 12.0 * random.uniform() * random.uniform();
+        const double height = house_size * (3.0 + 12.0 * random.uniform() * random.uniform());
         const double x = 24.0 * (static_cast<double>(i % side) + 0.5) - extent + random.uniform(-3.0, 3.0);
         const double z = 24.0 * (static_cast<double>(i / side) + 0.5) - extent + random.uniform(-3.0, 3.0);
-        const double a = random.uniform(4.0, 12.0), b = random.uniform(4.0, 12.0), turn = random.uniform(-0.3, 0.3);
+        const double a = house_size * random.uniform(4.0, 12.0), b = house_size * random.uniform(4.0, 12.0);
+        const double turn = random.uniform(-0.3, 0.3);
         town.houses.push_back(upright_box({x, height, z}, turn, a, height, b));
     }
     for (std::size_t i = 0; i < objects; ++i) {

@@ -213,9 +213,31 @@ TEST_SUITE("occlude/hard cases") {
         buffer.hidden_by(box_of({2.5, 0.0, -14.0}, {0.5f, 0.5f, 0.5f}), ids);
         CHECK(ids == Vector<occlude::OccluderId>{1});
         buffer.hidden_by(box_of({0.0, 0.0, -14.0}, {2.0f, 2.0f, 0.5f}), ids);
-        CHECK(ids == Vector<occlude::OccluderId>{0, 1});
+        CHECK(ids == Vector<occlude::OccluderId>{1});
         buffer.hidden_by(box_of({2.5, 0.0, -8.0}, {0.5f, 0.5f, 0.5f}), ids);
         CHECK(ids.empty());
+        const std::vector<Obb> overlapping = {box_of({-1.5, 0.0, -10.0}, {2.0f, 4.0f, 0.5f}),
+                                              box_of({1.5, 0.0, -11.0}, {2.0f, 4.0f, 0.5f})};
+        const auto both = picture(overlapping, *occlude::occlusion_view_of(Camera{}), {640, 360});
+        both.hidden_by(box_of({0.0, 0.0, -14.0}, {2.0f, 2.0f, 0.5f}), ids);
+        CHECK(ids == Vector<occlude::OccluderId>{0, 1});
+    }
+
+    TEST_CASE("a box just within the silhouette of one body is hidden, whatever the buffer's size") {
+        // The wall ends at 0.3 of the distance, and the boxes begin at 18.9: there at 5.67.
+        const std::vector<Obb> walls = {box_of({0.0, 0.0, -10.5}, {3.0f, 3.0f, 0.5f})};
+        for (const occlude::BufferSize size : {occlude::BufferSize{64, 36}, {640, 360}}) {
+            const auto buffer = picture(walls, *occlude::occlusion_view_of(Camera{}), size);
+            for (const double side : {-1.0, 1.0}) {
+                CHECK(buffer.hides(box_of({side * 5.569, 0.0, -19.0}, {0.1f, 0.1f, 0.1f})));
+                CHECK(!buffer.hides(box_of({side * 5.572, 0.0, -19.0}, {0.1f, 0.1f, 0.1f})));
+            }
+            // Close behind a wall that slants away, one pixel of which reaches far back.
+            const std::vector<Obb> floor = {box_of({0.0, -2.0, -60.0}, {50.0f, 0.5f, 50.0f})};
+            const auto slanting = picture(floor, *occlude::occlusion_view_of(Camera{}), size);
+            CHECK(slanting.hides(box_of({0.0, -1.61, -40.0}, {0.1f, 0.1f, 0.1f})));
+            CHECK(!slanting.hides(box_of({0.0, -1.59, -40.0}, {0.1f, 0.1f, 0.1f})));
+        }
     }
 
     TEST_CASE("every instruction set and number of threads gives the same bits") {

@@ -37,7 +37,10 @@ class BodyDrawer {
         const PreparedBody& b = *body.body;
         plane_count_ = b.plane_count;
         for (std::size_t p = 0; p < plane_count_; ++p) {
-            const VF across = hn::Set(d, body.planes[p].across), up = hn::Set(d, body.planes[p].up);
+            const DepthPlane& plane = body.planes[p];
+            rises_[p] = 8.0f * (std::max(plane.across, 0.0f) + std::max(plane.up, 0.0f)) -
+                        (std::min(plane.across, 0.0f) + std::min(plane.up, 0.0f));
+            const VF across = hn::Set(d, plane.across), up = hn::Set(d, plane.up);
             for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) {
                 const VF column = hn::Iota(d, static_cast<float>(i % kTile));
                 const VF row = hn::Set(d, static_cast<float>(i / kTile));
@@ -69,8 +72,10 @@ class BodyDrawer {
             if (target_.least[at + column] >= body_.body->most_nearness) continue;
             const std::uint64_t mask = mask_of(spans, static_cast<std::int32_t>(column * kTile));
             if (mask == 0) continue;
+            target_.covers[at + column].add(mask, body_.place);
             float* const pixels = target_.pixels + (at + column) * kTilePixels;
             set_bases(static_cast<float>(column * kTile), static_cast<float>(row * kTile));
+            target_.front[at + column] = std::max(target_.front[at + column], nearest());
             target_.least[at + column] = ~mask == 0 ? draw_whole(pixels) : draw_part(pixels, mask);
         }
     }
@@ -124,6 +129,13 @@ class BodyDrawer {
         }
     }
 
+    // Over the tile, of a convex body.
+    HWY_INLINE float nearest() const {
+        float nearest = bases_[0] + rises_[0];
+        for (std::size_t p = 1; p < plane_count_; ++p) nearest = std::min(nearest, bases_[p] + rises_[p]);
+        return nearest;
+    }
+
     HWY_INLINE VF depth_at(std::size_t i) const {
         const DF d;
         VF depth = hn::Add(hn::Set(d, bases_[0]), hn::Load(d, steps_[0] + i));
@@ -159,7 +171,7 @@ class BodyDrawer {
     const DrawBody& body_;
     const DrawTarget& target_;
     std::size_t plane_count_ = 0;
-    float bases_[kMaxPlanes];
+    float bases_[kMaxPlanes], rises_[kMaxPlanes];  // in a tile's first pixel; from there to the nearest point
     alignas(64) float steps_[kMaxPlanes][kTilePixels];
 };
 

@@ -3,13 +3,16 @@
 #pragma once
 #include <cstdint>
 
+#include "buffer_data.hpp"
 #include "prepared.hpp"
 
 namespace crofton::occlude {
 
 struct DrawTarget {
-    float* pixels;  // of the tile rows from first_tile_row on
-    float* least;   // of each tile
+    float* pixels;       // of the tile rows from first_tile_row on
+    float* least;        // of each tile
+    TileCovers* covers;  // of each tile
+    float* front;        // of each tile
     std::uint32_t width, tile_columns;
     std::uint32_t first_tile_row, end_tile_row;
 };
@@ -18,6 +21,7 @@ struct DrawBody {
     const PreparedBody* body;
     const Side* sides;  // the body's
     const DepthPlane* planes;
+    std::uint32_t place;  // in the order of drawing
 };
 
 // Where the body is nearer than what is there, it takes its place.

@@ -18,9 +18,12 @@ namespace {
 constexpr std::size_t kPrepareGrain = 64;  // occluders
 constexpr std::size_t kQueryGrain = 1024;  // boxes; a multiple of 64
 
-DrawBody draw_body_of(const PreparedBodies& bodies, std::uint32_t index) {
-    const PreparedBody& body = bodies.bodies[index];
-    return {&body, bodies.sides.data() + body.first_side, bodies.planes.data() + body.first_plane};
+DrawBody draw_body_of(const OcclusionBuffer::Data& data, std::size_t place) {
+    const OcclusionBuffer::Data::Order& entry = data.order[place];
+    const PreparedBodies& bodies = data.chunks[entry.chunk];
+    const PreparedBody& body = bodies.bodies[entry.body];
+    return {&body, bodies.sides.data() + body.first_side, bodies.planes.data() + body.first_plane,
+            static_cast<std::uint32_t>(place)};
 }
 
 // Of the chosen ones; none: of all.
@@ -51,6 +54,13 @@ void sort_front_to_back(OcclusionBuffer::Data& data, std::size_t chunks) {
         if (a.most_nearness != b.most_nearness) return a.most_nearness > b.most_nearness;
         return a.chunk != b.chunk ? a.chunk < b.chunk : a.body < b.body;
     });
+    data.shadows.clear();
+    for (const OcclusionBuffer::Data::Order& entry : data.order) {
+        const PreparedBodies& bodies = data.chunks[entry.chunk];
+        const PreparedBody& body = bodies.bodies[entry.body];
+        data.shadows.push_back(
+            {bodies.shadows.data() + 4 * kShadowLanes * body.first_shadow, body.plane_count, body.shadow_count});
+    }
 }
 
 // Each tile of the patch in rows [first, end) takes what is nearer.
@@ -63,12 +73,14 @@ void merge_patch(OcclusionBuffer::Data& data, const PreparedBodies& bodies, cons
             const std::size_t to = std::size_t{row} * data.tile_columns + column;
             const float* const values = bodies.values.data() + patch.first_value + from * kTilePixels;
             float* const pixels = data.pixels.data() + to * kTilePixels;
-            float least = 3e38f;
+            float least = 3e38f, most = kUncovered;
             for (std::size_t i = 0; i < kTilePixels; ++i) {
                 pixels[i] = pixels[i] > values[i] ? pixels[i] : values[i];
                 least = least < pixels[i] ? least : pixels[i];
+                most = most > values[i] ? most : values[i];
             }
             data.least[to] = least;
+            data.front[to] = std::max(data.front[to], most);
         }
 }
 
@@ -80,8 +92,12 @@ void draw_band(OcclusionBuffer::Data& data, std::size_t chunks, std::uint32_t fi
         clear_tile_row(pixels + at * kTilePixels, least + at, data.tile_columns, data.size.width,
                        std::min(kTile, data.size.height - row * kTile));
     }
-    const DrawTarget target{pixels, least, data.size.width, data.tile_columns, first, end};
-    for (const auto& entry : data.order) draw_body_kernel(draw_body_of(data.chunks[entry.chunk], entry.body), target);
+    TileCovers* const covers = data.covers.data() + std::size_t{first} * data.tile_columns;
+    std::fill_n(covers, std::size_t{end - first} * data.tile_columns, TileCovers{});
+    float* const front = data.front.data() + std::size_t{first} * data.tile_columns;
+    std::fill_n(front, std::size_t{end - first} * data.tile_columns, kUncovered);
+    const DrawTarget target{pixels, least, covers, front, data.size.width, data.tile_columns, first, end};
+    for (std::size_t place = 0; place < data.order.size(); ++place) draw_body_kernel(draw_body_of(data, place), target);
     for (std::size_t c = 0; c < chunks; ++c)
         for (const PreparedPatch& patch : data.chunks[c].patches) merge_patch(data, data.chunks[c], patch, first, end);
 }
@@ -134,6 +150,8 @@ Result<OcclusionBuffer> OcclusionBuffer::create(const BufferSize& size) {
     data.tile_rows = (size.height + kTile - 1) / kTile;
     data.padded_rows = std::bit_ceil(std::max(data.tile_rows, data.tile_columns));
     data.pixels.assign(std::size_t{data.tile_columns} * data.tile_rows * kTilePixels, kUncovered);
+    data.front.assign(std::size_t{data.tile_columns} * data.tile_rows, kUncovered);
+    data.covers.assign(std::size_t{data.tile_columns} * data.tile_rows, TileCovers{});
     data.least.assign(std::size_t{2 * data.padded_rows} * data.tile_columns, kUncovered);
     return buffer;
 }

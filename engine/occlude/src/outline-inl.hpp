@@ -2,7 +2,7 @@
 // A projected box against every pixel that its outline touches. Compiled once per instruction set (Highway).
 #include <hwy/highway.h>
 
-#include "projection-inl.hpp"
+#include "pixel_test-inl.hpp"
 
 #if defined(CROFTON_OCCLUDE_OUTLINE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_OCCLUDE_OUTLINE_INL
@@ -21,15 +21,17 @@ struct OutlineEdge {
 
 class Outline {
   public:
-    HWY_INLINE Outline(const Projection& boxes, std::size_t box) : margin_(boxes.margin[box]) {
+    HWY_INLINE Outline(const QueryView& view, const Projection& boxes, std::size_t box) : margin_(boxes.margin[box]) {
+        alignas(32) float x[8], y[8];
+        find_corners(view, boxes, box, x, y);
         std::size_t n = 0;
         float wide = 0.0f;
         for (std::size_t a = 0; a < 8; ++a)
             for (std::size_t k = 1; k < 8; k *= 2) {
                 if (a & k) continue;
                 std::size_t p = a, q = a | k;
-                if (boxes.y[q][box] < boxes.y[p][box]) std::swap(p, q);
-                const float xp = boxes.x[p][box], xq = boxes.x[q][box], yp = boxes.y[p][box], yq = boxes.y[q][box];
+                if (y[q] < y[p]) std::swap(p, q);
+                const float xp = x[p], xq = x[q], yp = y[p], yq = y[q];
                 const float across = xq - xp, up = yq - yp, size = across < 0.0f ? -across : across;
                 wide = std::max(wide, size);
                 const bool level = !(up > kLevel);
@@ -67,22 +69,38 @@ class Outline {
     }
 
   private:
+    static HWY_INLINE void find_corners(const QueryView& view, const Projection& boxes, std::size_t box, float (&x)[8],
+                                        float (&y)[8]) {
+        const DF d;
+        const DI di;
+        for (std::size_t c = 0; c < 8; c += hn::Lanes(d)) {
+            const VI number = hn::Iota(di, static_cast<std::int32_t>(c));
+            const auto form = [&](std::size_t r) HWY_ATTR {
+                VF sum = hn::Set(d, boxes.forms[r][0][box]);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const VF edge = hn::Set(d, boxes.forms[r][k + 1][box]);
+                    const auto plus = hn::RebindMask(d, hn::TestBit(number, hn::Set(di, 1 << k)));
+                    sum = hn::IfThenElse(plus, hn::Add(sum, edge), hn::Sub(sum, edge));
+                }
+                return sum;
+            };
+            VF px = form(0), py = form(1);
+            if (view.perspective) {
+                const VF inverse = hn::Div(hn::Set(d, 1.0f), form(2));
+                px = hn::Mul(px, inverse);
+                py = hn::Mul(py, inverse);
+            }
+            hn::Store(hn::Add(px, hn::Set(d, view.half_width)), d, x + c);
+            hn::Store(hn::Add(py, hn::Set(d, view.half_height)), d, y + c);
+        }
+    }
+
     static constexpr float kLevel = 0x1p-10f;     // rows
     static constexpr float kRowSlack = 0x1p-11f;  // a row's ends are below 4096 and rounded
 
     float margin_, slack_;
     OutlineEdge edges_[12];
 };
-
-// Whether all pixels of the tile whose bits are set are nearer than `nearness`.
-HWY_INLINE bool all_nearer(const float* pixels, std::uint64_t mask, float nearness) {
-    const DF d;
-    const VF limit = hn::Set(d, nearness);
-    std::uint64_t farther = 0;
-    for (std::size_t i = 0; i < 64; i += hn::Lanes(d))
-        farther |= std::uint64_t{mask_bits(d, hn::Le(hn::Load(d, pixels + i), limit))} << i;
-    return (farther & mask) == 0;
-}
 
 // The bits of columns [from, to) in rows [low, high) of a tile.
 HWY_INLINE std::uint64_t rectangle_mask(std::int32_t from, std::int32_t to, std::int32_t low, std::int32_t high) {
@@ -93,43 +111,30 @@ HWY_INLINE std::uint64_t rectangle_mask(std::int32_t from, std::int32_t to, std:
     return row * 0x0101010101010101u & up & ~down;
 }
 
-// The pixels [x0, x1] × [y0, y1] that a box may touch.
-struct PixelRectangle {
-    std::int32_t x0, y0, x1, y1;
-
-    HWY_INLINE PixelRectangle(const Projection& boxes, std::size_t box)
-        : x0(static_cast<std::int32_t>(boxes.low_x[box])),
-          y0(static_cast<std::int32_t>(boxes.low_y[box])),
-          x1(static_cast<std::int32_t>(boxes.high_x[box])),
-          y1(static_cast<std::int32_t>(boxes.high_y[box])) {}
-};
-
-HWY_INLINE bool rectangle_is_hidden(const QueryView& view, const PixelRectangle& r, float nearness) {
+HWY_INLINE bool rectangle_is_hidden(const QueryView& view, const PixelRectangle& r, PixelTest& test) {
     for (std::int32_t row = r.y0 / 8; row <= r.y1 / 8; ++row)
         for (std::int32_t column = r.x0 / 8; column <= r.x1 / 8; ++column) {
             const std::size_t tile =
                 static_cast<std::size_t>(row) * view.tile_columns + static_cast<std::size_t>(column);
-            if (view.least[tile] > nearness) continue;
             const std::uint64_t mask =
                 rectangle_mask(r.x0 - 8 * column, r.x1 + 1 - 8 * column, r.y0 - 8 * row, r.y1 + 1 - 8 * row);
-            if (!all_nearer(view.pixels + 64 * tile, mask, nearness)) return false;
+            if (!test.hides(tile, mask)) return false;
         }
     return true;
 }
 
-inline bool outline_is_hidden(const QueryView& view, const Projection& boxes, std::size_t box) {
-    const PixelRectangle r(boxes, box);
-    const float nearness = boxes.nearness[box];
-    if (rectangle_is_hidden(view, r, nearness)) return true;
+// Whether the pixels that the box may touch hide it, its rectangle or its outline.
+inline bool outline_is_hidden(const QueryView& view, const Projection& boxes, std::size_t box, const PixelRectangle& r,
+                              PixelTest& test) {
+    if (rectangle_is_hidden(view, r, test)) return true;
     if (r.x1 - r.x0 < 2 || r.y1 - r.y0 < 2) return false;  // no pixel of it is beside the outline, or hardly one
-    const Outline outline(boxes, box);
+    const Outline outline(view, boxes, box);
     alignas(32) std::int32_t begin[kLanes], end[kLanes];
     for (std::int32_t row = r.y0 / 8; row <= r.y1 / 8; ++row) {
         outline.spans(8 * row, static_cast<std::int32_t>(view.width), begin, end);
         for (std::int32_t column = r.x0 / 8; column <= r.x1 / 8; ++column) {
             const std::size_t tile =
                 static_cast<std::size_t>(row) * view.tile_columns + static_cast<std::size_t>(column);
-            if (view.least[tile] > nearness) continue;
             std::uint64_t mask =
                 rectangle_mask(r.x0 - 8 * column, r.x1 + 1 - 8 * column, r.y0 - 8 * row, r.y1 + 1 - 8 * row);
             for (std::size_t i = 0; i < 8; ++i) {
@@ -138,7 +143,7 @@ inline bool outline_is_hidden(const QueryView& view, const Projection& boxes, st
                 const std::uint32_t bits = (0xffu << from) & ~(0xffffffffu << to) & 0xffu;
                 mask &= std::uint64_t{bits} << (8 * i) | ~(std::uint64_t{0xff} << (8 * i));
             }
-            if (!all_nearer(view.pixels + 64 * tile, mask, nearness)) return false;
+            if (!test.hides(tile, mask)) return false;
         }
     }
     return true;

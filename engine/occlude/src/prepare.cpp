@@ -80,6 +80,8 @@ class Preparation {
     // Faces that certainly look towards the eye and reach beyond the cuts.
     bool add_faces() {
         out_.seen.assign(body_.faces.size(), 0);
+        out_.fronts.clear();
+        out_.lines.clear();
         out_.left.clear();
         out_.right.clear();
         bool any = false;
@@ -116,6 +118,10 @@ class Preparation {
         if (!(range + error < 1e30)) return false;
         const double base = middle - error - 0x1p-21 * (range + bounds_.nearness);
         out_.planes.push_back({static_cast<float>(base), static_cast<float>(plane.x), static_cast<float>(plane.y)});
+        // Here three coefficients are rounded to float.
+        const double least = plane.w - error - 0x1p-22 * (range + std::fabs(plane.w));
+        out_.fronts.push_back(
+            {static_cast<float>(plane.x), static_cast<float>(plane.y), static_cast<float>(least), 1.0f});
         return true;
     }
 
@@ -124,6 +130,7 @@ class Preparation {
         if (out_.planes.size() - result_.first_plane <= kMaxPlanes) return true;
         if (crossing_) return false;
         out_.planes.resize(result_.first_plane);
+        out_.fronts.clear();
         return add_plane({0.0, 0.0, least_near_}, kMapError * 4.0 * bounds_.nearness + farthest_error());
     }
     [[nodiscard]] double farthest_error() const {
@@ -170,6 +177,10 @@ class Preparation {
         const double most = ax * map_.half_width + ay * map_.half_height;
         if (!(w + most >= 0.0)) return false;  // also where it is not a number
         if (w - most >= 0.0) return true;      // holds in the whole picture
+        // Of size 1; the three coefficients are rounded to float.
+        const double size = 1.0 / (most + std::fabs(w));
+        out_.lines.push_back({static_cast<float>(line.x * size), static_cast<float>(line.y * size),
+                              static_cast<float>(w * size - 0x1p-22), 0.0f});
         if (ax * kSteepest < ay || ax == 0.0) return add_row_limit(line.y, w - ax * map_.half_width);
         const double slope = -line.y / line.x, at_middle = -w / line.x;
         const double at_bottom = at_middle - slope * map_.half_height;
@@ -212,10 +223,24 @@ class Preparation {
         result_.left_count = static_cast<std::uint32_t>(out_.left.size());
         result_.right_count = static_cast<std::uint32_t>(out_.right.size());
         result_.plane_count = static_cast<std::uint32_t>(out_.planes.size()) - result_.first_plane;
+        add_shadow();
         result_.first_row = first_row_;
         result_.end_row = end_row_;
         result_.occluder = occluder_;
         out_.bodies.push_back(result_);
+    }
+
+    void add_shadow() {
+        result_.first_shadow = static_cast<std::uint32_t>(out_.shadows.size() / (4 * kShadowLanes));
+        const std::size_t count = out_.fronts.size() + out_.lines.size();
+        if (count > kMaxShadowPlanes) return;
+        result_.shadow_count = static_cast<std::uint32_t>(count);
+        for (const ShadowPlane& line : out_.lines) out_.fronts.push_back(line);
+        const std::size_t groups = (count + kShadowLanes - 1) / kShadowLanes;
+        for (std::size_t g = 0; g < groups; ++g)
+            for (float ShadowPlane::*part : {&ShadowPlane::x, &ShadowPlane::y, &ShadowPlane::w, &ShadowPlane::z})
+                for (std::size_t i = 0; i < kShadowLanes; ++i)
+                    out_.shadows.push_back(out_.fronts[std::min(kShadowLanes * g + i, count - 1)].*part);
     }
 
     static constexpr double kSteepest = 1024.0;    // columns a row, beyond which a side counts as horizontal

@@ -22,6 +22,15 @@ struct DepthPlane {
     float base, across, up;
 };
 
+// A half-space: x · column + y · row + w ≥ z · nearness, in pixels from the middle. A body's shadow is where all of its
+// planes hold: what is there and in the picture is hidden by the body. z is 1 for the planes of its faces, which hold
+// behind them; and 0 for the sides of its picture.
+struct ShadowPlane {
+    float x, y, w, z;
+};
+inline constexpr std::size_t kShadowLanes = 8;       // planes a group, in four rows
+inline constexpr std::size_t kMaxShadowPlanes = 64;  // of a body
+
 inline constexpr std::size_t kMaxPlanes = 32;  // of a body
 
 // Covers the squares within all sides; the nearness there is at least the least of the planes.
@@ -29,7 +38,9 @@ struct PreparedBody {
     std::uint32_t first_side, left_count, right_count;  // left sides first
     std::uint32_t first_plane, plane_count;
     std::uint32_t first_row, end_row;
-    float most_nearness;  // of any of its points, or more
+    std::uint32_t first_shadow;  // group of its shadow's planes, those of the faces first: a plane_count of them
+    std::uint32_t shadow_count;  // 0: too many
+    float most_nearness;         // of any of its points, or more
     OccluderId occluder;
 };
 
@@ -56,6 +67,7 @@ struct PreparedBodies {
     Vector<PreparedBody> bodies;
     Vector<Side> sides;
     Vector<DepthPlane> planes;
+    Vector<float> shadows;  // groups of planes: eight of each coefficient; the last plane fills its group up
     Vector<PreparedPatch> patches;
     Vector<float> values;
     std::uint64_t triangles = 0;  // that were drawn one by one
@@ -63,6 +75,7 @@ struct PreparedBodies {
     // For prepare()'s own use.
     Vector<std::uint8_t> seen, facing;
     Vector<Side> left, right;
+    Vector<ShadowPlane> fronts, lines;
     Vector<MappedPoint> points;
     Vector<PixelPoint> pixels;
     Vector<std::uint8_t> states;
@@ -71,6 +84,7 @@ struct PreparedBodies {
         bodies.clear();
         sides.clear();
         planes.clear();
+        shadows.clear();
         patches.clear();
         values.clear();
         triangles = 0;

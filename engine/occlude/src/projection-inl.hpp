@@ -5,6 +5,7 @@
 
 #include <crofton/simd/mask_bits-inl.hpp>
 
+#include "buffer_data.hpp"
 #include "query_kernel.hpp"
 
 #if defined(CROFTON_OCCLUDE_PROJECTION_INL) == defined(HWY_TARGET_TOGGLE)
@@ -69,24 +70,22 @@ class Depths {
         return hn::Min(a, b);
     }
 
-    HWY_INLINE VF at_pixel(VI x, VI y) const {
-        const DI di;
-        const VI stride = hn::Set(di, static_cast<std::int32_t>(view_.tile_columns));
-        const VI tile = hn::Add(hn::Mul(hn::ShiftRight<3>(y), stride), hn::ShiftRight<3>(x));
-        const VI seven = hn::Set(di, 7);
-        const VI inside = hn::Add(hn::ShiftLeft<3>(hn::And(y, seven)), hn::And(x, seven));
-        return hn::GatherIndex(DF(), view_.pixels, hn::Add(hn::ShiftLeft<6>(tile), inside));
+    HWY_INLINE VF front_at(VI tile_x, VI tile_y) const {
+        const VI stride = hn::Set(DI(), static_cast<std::int32_t>(view_.tile_columns));
+        return hn::GatherIndex(DF(), view_.front, hn::Add(hn::Mul(tile_y, stride), tile_x));
     }
 
   private:
     const QueryView& view_;
 };
 
-// The corners of eight boxes in pixels, counted from the picture's corner: each within `margin` of the true one.
+// Eight boxes in pixels, counted from the picture's corner.
 struct Projection {
-    alignas(32) float x[8][kLanes], y[8][kLanes];
-    alignas(32) float margin[kLanes], nearness[kLanes];                              // of no point is it more
+    alignas(32) float margin[kLanes];    // each corner is within this of the true one
+    alignas(32) float nearness[kLanes];  // of no point is it more
     alignas(32) float low_x[kLanes], low_y[kLanes], high_x[kLanes], high_y[kLanes];  // margins included, in the picture
+    alignas(32) float forms[3][4][kLanes];  // column, row, and w or z: at the centre, and along the half edges
+    alignas(32) float errors[3][kLanes];    // of a form at a corner
 
     // Fills lanes [at, at + Lanes) and says what is known of them already.
     HWY_INLINE LaneBits project(const QueryView& view, const Depths& depths, const VF (&center)[3],
@@ -99,9 +98,11 @@ struct Projection {
             for (std::size_t k = 0; k < 3; ++k) form[r][k + 1] = along(view.form[r], edge[k]);
             const VF size = hn::Add(hn::Mul(hn::Set(d, view.reach[r]), reach), hn::Set(d, hwy_abs(view.form[r][3])));
             error[r] = hn::Mul(size, hn::Set(d, kFormError));
+            for (std::size_t k = 0; k < 4; ++k) hn::Store(form[r][k], d, forms[r][k] + at);
+            hn::Store(error[r], d, errors[r] + at);
         }
         Bounds bounds(d);
-        for (std::size_t c = 0; c < 8; ++c) add_corner(view, form, c, at, bounds);
+        for (std::size_t c = 0; c < 8; ++c) add_corner(view, form, c, bounds);
         return view.perspective ? finish<true>(view, depths, form, error, bounds, at)
                                 : finish<false>(view, depths, form, error, bounds, at);
     }
@@ -133,8 +134,7 @@ struct Projection {
         return c & 4 ? hn::Add(b, form[3]) : hn::Sub(b, form[3]);
     }
 
-    HWY_INLINE void add_corner(const QueryView& view, const VF (&form)[3][4], std::size_t c, std::size_t at,
-                               Bounds& bounds) {
+    HWY_INLINE void add_corner(const QueryView& view, const VF (&form)[3][4], std::size_t c, Bounds& bounds) {
         const DF d;
         VF px = corner_of(form[0], c), py = corner_of(form[1], c);
         const VF v = corner_of(form[2], c);
@@ -145,8 +145,6 @@ struct Projection {
         }
         px = hn::Add(px, hn::Set(d, view.half_width));
         py = hn::Add(py, hn::Set(d, view.half_height));
-        hn::Store(px, d, x[c] + at);
-        hn::Store(py, d, y[c] + at);
         bounds.low_x = hn::Min(bounds.low_x, px);
         bounds.high_x = hn::Max(bounds.high_x, px);
         bounds.low_y = hn::Min(bounds.low_y, py);
@@ -187,7 +185,7 @@ struct Projection {
         const VF largest = hn::Add(hn::Max(hn::Max(hn::Abs(bounds.low_x), hn::Abs(bounds.high_x)),
                                            hn::Max(hn::Abs(bounds.low_y), hn::Abs(bounds.high_y))),
                                    hn::Max(width, height));
-        VF spread = hn::Max(error[0], error[1]), most, in_front, centre_nearness;
+        VF spread = hn::Max(error[0], error[1]), most, in_front;
         if (kPerspective) {
             // No point has less w than this; all quotients below are by as much at least.
             const VF low_w = hn::Sub(bounds.low_v, error[2]);
@@ -195,11 +193,9 @@ struct Projection {
             const VF inverse = hn::Div(hn::Set(d, 1.0f), low_w);
             spread = hn::Mul(hn::Add(spread, hn::Mul(largest, error[2])), inverse);
             most = hn::Mul(inverse, hn::Set(d, 1.0f + 0x1p-20f));
-            centre_nearness = hn::Div(hn::Set(d, 1.0f), form[2][0]);
         } else {
             in_front = hn::Set(d, 1.0f);
             most = hn::Add(bounds.high_v, hn::Add(error[2], hn::Mul(hn::Abs(bounds.high_v), hn::Set(d, 0x1p-20f))));
-            centre_nearness = form[2][0];
         }
         // The quotient, the product and the sum with half the picture round as well.
         const VF m = hn::Add(hn::Mul(spread, hn::Set(d, 1.0f + 0x1p-10f)), hn::Mul(largest, hn::Set(d, 0x1p-21f)));
@@ -227,15 +223,17 @@ struct Projection {
         const VF least = depths.least_over(hn::ShiftRight<3>(x0), hn::ShiftRight<3>(y0), hn::ShiftRight<3>(x1),
                                            hn::ShiftRight<3>(y1));
         const auto hidden = hn::Gt(least, most);
-        // A pixel in the middle that is farther than the box's centre is a short way to say that the box is visible.
-        const VI mx = hn::ShiftRight<1>(hn::Add(x0, x1)), my = hn::ShiftRight<1>(hn::Add(y0, y1));
-        const auto seen = hn::Le(depths.at_pixel(mx, my), centre_nearness);
         const std::uint32_t usable_bits = mask_bits(d, usable);
         std::uint32_t beside_bits = mask_bits(d, beside) & usable_bits;
         // What reaches behind the eye has no rectangle, but may be beside the view all the same.
         if (kPerspective && usable_bits != (1u << hn::Lanes(d)) - 1)
             beside_bits |= mask_bits(d, outside_of_sides(view, form, error, bounds)) & ~usable_bits;
         const std::uint32_t hidden_bits = mask_bits(d, hidden) & usable_bits & ~beside_bits;
+        // A short way to say that a box is seen: nothing in the tile of its middle is nearer than its centre.
+        const VI middle_x = hn::ShiftRight<4>(hn::Add(x0, x1)), middle_y = hn::ShiftRight<4>(hn::Add(y0, y1));
+        const VF front = depths.front_at(middle_x, middle_y);
+        const auto seen =
+            hn::Le(kPerspective ? hn::Mul(front, form[2][0]) : front, kPerspective ? hn::Set(d, 1.0f) : form[2][0]);
         return {hidden_bits, beside_bits, usable_bits & ~beside_bits & ~hidden_bits & ~mask_bits(d, seen)};
     }
 };

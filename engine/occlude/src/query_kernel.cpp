@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "query_kernel.hpp"
 
+#include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/geometry/box.hpp>
 #include <cstddef>
@@ -68,15 +69,87 @@ struct BoxLanes {
     }
 };
 
+// The pixel in the middle of a box's rectangle.
+struct MiddlePixel {
+    std::size_t tile, place;
+
+    HWY_INLINE MiddlePixel(const QueryView& view, const PixelRectangle& r) {
+        const auto x = static_cast<std::uint32_t>(r.x0 + r.x1) / 2, y = static_cast<std::uint32_t>(r.y0 + r.y1) / 2;
+        tile = std::size_t{y / kTile} * view.tile_columns + x / kTile;
+        place = y % kTile * kTile + x % kTile;
+    }
+};
+
+// First whether one body hides the box, then whether its pixels do.
+inline bool is_hidden(const QueryView& view, const Projection& boxes, std::size_t box) {
+    const PixelRectangle r(boxes, box);
+    PixelTest test(view, boxes, box);
+    const MiddlePixel middle(view, r);
+    const std::uint64_t bit = std::uint64_t{1} << middle.place;
+    if (test.is_in_shadow(middle.tile, bit)) return true;
+    // A pixel in the middle that is farther than the box's centre is a short way to say that the box is seen.
+    const float at = view.pixels[kTilePixels * middle.tile + middle.place], third = boxes.forms[2][0][box];
+    const bool farther = view.perspective ? !(at * third > 1.0f) : !(at > third);
+    if (farther && !test.hides(middle.tile, bit)) return false;
+    return outline_is_hidden(view, boxes, box, r, test);
+}
+
+// Boxes are projected 64 at a time before any is asked, so that what they ask is in the cache by then.
+class Batch {
+  public:
+    explicit HWY_INLINE Batch(const QueryView& view) : view_(view) {}
+
+    HWY_INLINE Projection& projection(std::size_t group) { return boxes_[group]; }
+
+    // Of a group that has been projected, and of whose boxes `present` are wanted.
+    HWY_INLINE void add(std::size_t group, const LaneBits& bits, std::uint32_t present) {
+        hidden_ |= std::uint64_t{bits.hidden & present} << (kLanes * group);
+        beside_ |= std::uint64_t{bits.beside & present} << (kLanes * group);
+        for (std::uint32_t open = bits.open & present; open != 0; open &= open - 1) {
+            const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
+            const MiddlePixel middle(view_, PixelRectangle(boxes_[group], i));
+            hwy::Prefetch(view_.covers + middle.tile);
+            hwy::Prefetch(view_.pixels + kTilePixels * middle.tile + middle.place);
+            open_[open_count_++] = {static_cast<std::uint32_t>(kLanes * group + i),
+                                    static_cast<std::uint32_t>(middle.tile)};
+        }
+    }
+
+    HWY_INLINE QueryBits ask() {
+        for (std::size_t i = 0; i < open_count_; ++i) {
+            const TileCovers& covers = view_.covers[open_[i].tile];
+            if (covers.pixels[0] == 0) continue;
+            const BodyShadow& shadow = view_.shadows[covers.bodies[0]];
+            for (std::size_t byte = 0; byte < 2 * sizeof(float) * 4 * kShadowLanes; byte += 64)
+                hwy::Prefetch(reinterpret_cast<const char*>(shadow.groups) + byte);
+        }
+        for (std::size_t i = 0; i < open_count_; ++i) {
+            const std::uint32_t box = open_[i].box;
+            if (is_hidden(view_, boxes_[box / kLanes], box % kLanes)) hidden_ |= std::uint64_t{1} << box;
+        }
+        return {hidden_, beside_};
+    }
+
+  private:
+    struct Open {
+        std::uint32_t box, tile;
+    };
+
+    const QueryView& view_;
+    Projection boxes_[64 / kLanes];
+    Open open_[64];
+    std::size_t open_count_ = 0;
+    std::uint64_t hidden_ = 0, beside_ = 0;
+};
+
 QueryBits query_boxes(const QueryView& view, const unsigned char* boxes, const std::uint32_t* items,
                       std::size_t count) {
     const DF d;
-    QueryBits result{0, 0};
     BoxBatch batch;
-    Projection projected;
+    Batch asked(view);
     const Depths depths(view);
     for (std::size_t first = 0; first < count; first += kLanes) {
-        const std::size_t size = std::min(kLanes, count - first);
+        const std::size_t size = std::min(kLanes, count - first), group = first / kLanes;
         for (std::size_t i = 0; i < kLanes; ++i) {
             const std::size_t n = first + std::min(i, size - 1);
             batch.copy(i, boxes + sizeof(Obb) * (items != nullptr ? items[n] : n), view.origin);
@@ -84,24 +157,17 @@ QueryBits query_boxes(const QueryView& view, const unsigned char* boxes, const s
         LaneBits bits{0, 0, 0};
         for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
             const BoxLanes lanes(batch, l);
-            bits.add(projected.project(view, depths, lanes.center, lanes.edge, lanes.reach, l), l);
+            bits.add(asked.projection(group).project(view, depths, lanes.center, lanes.edge, lanes.reach, l), l);
         }
-        const std::uint32_t present = 0xffu >> (kLanes - size);
-        for (std::uint32_t open = bits.open & present; open != 0; open &= open - 1) {
-            const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
-            if (outline_is_hidden(view, projected, i)) bits.hidden |= 1u << i;
-        }
-        result.hidden |= std::uint64_t{bits.hidden & present} << first;
-        result.beside |= std::uint64_t{bits.beside & present} << first;
+        asked.add(group, bits, 0xffu >> (kLanes - size));
     }
-    return result;
+    return asked.ask();
 }
 
 ChildBits query_children(const QueryView& view, const boxtree::Node& node, const boxtree::Axes& axes) {
     const DF d;
     const Depths depths(view);
-    Projection projected;
-    ChildBits result{0, 0};
+    Batch asked(view);
     double origin[3];
     for (std::size_t j = 0; j < 3; ++j) origin[j] = node.origin[j] - view.origin[j];
     for (unsigned first = 0; first < node.count; first += kLanes) {
@@ -129,17 +195,12 @@ ChildBits query_children(const QueryView& view, const boxtree::Node& node, const
                     reach = hn::Add(reach, hn::Abs(e[k][j]));
                 }
             }
-            bits.add(projected.project(view, depths, c, e, reach, l), l);
+            bits.add(asked.projection(first / kLanes).project(view, depths, c, e, reach, l), l);
         }
-        const std::uint32_t present = 0xffu >> (kLanes - std::min<std::size_t>(kLanes, node.count - first));
-        for (std::uint32_t open = bits.open & present; open != 0; open &= open - 1) {
-            const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
-            if (outline_is_hidden(view, projected, i)) bits.hidden |= 1u << i;
-        }
-        result.hidden |= (bits.hidden & present) << first;
-        result.beside |= (bits.beside & present) << first;
+        asked.add(first / kLanes, bits, 0xffu >> (kLanes - std::min<std::size_t>(kLanes, node.count - first)));
     }
-    return result;
+    const QueryBits bits = asked.ask();
+    return {static_cast<std::uint32_t>(bits.hidden), static_cast<std::uint32_t>(bits.beside)};
 }
 
 }  // namespace

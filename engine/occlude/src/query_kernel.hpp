@@ -7,6 +7,9 @@
 
 namespace crofton::occlude {
 
+struct TileCovers;
+struct BodyShadow;
+
 // A view's map in float, and the buffer, as the kernel reads them. Forms: column, row, and w (perspective) or z.
 struct QueryView {
     double origin[4];  // the last is 0
@@ -19,6 +22,9 @@ struct QueryView {
     bool perspective;
     const float* pixels;
     const float* least;
+    const float* front;
+    const TileCovers* covers;
+    const BodyShadow* shadows;
 };
 
 // Of 64 boxes or fewer, a bit each: hidden; wholly beside the picture (and then not hidden).

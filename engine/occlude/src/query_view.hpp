@@ -30,6 +30,9 @@ namespace crofton::occlude {
     view.perspective = map.perspective;
     view.pixels = data.pixels.data();
     view.least = data.least.data();
+    view.front = data.front.data();
+    view.covers = data.covers.data();
+    view.shadows = data.shadows.data();
     return view;
 }
 

@@ -2,6 +2,7 @@
 #include "draw_list.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <crofton/geometry/box.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -98,9 +99,7 @@ DrawList::Part DrawList::append(std::span<const render::Vertex> vertices,
 }
 
 void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& camera) {
-    selected_.clear();
-    for (const scene::InstanceId instance : visible) selected_.push_back(ranks_[instance]);
-    std::sort(selected_.begin(), selected_.end());
+    sort_front_to_back(visible, camera.position);
     const render::ModelToClip to_clip(camera);
     ranges_.clear();
     transforms_.clear();
@@ -121,6 +120,25 @@ void DrawList::select(std::span<const scene::InstanceId> visible, const Camera& 
         ranges_.push_back({part.first_index, part.index_count, transform, one_sided,
                            render::inside_clip_planes(part.bounds, transforms_[transform].to_clip)});
     }
+}
+
+// By the farthest point of a ball around the part, so that the ground comes last. Bits of positive floats sort as they
+// do.
+void DrawList::sort_front_to_back(std::span<const scene::InstanceId> visible, const glm::dvec3& eye) {
+    order_.clear();
+    for (const scene::InstanceId instance : visible) {
+        const std::uint32_t rank = ranks_[instance];
+        const Aabb& bounds = parts_[rank].bounds;
+        const scene::Transform& world = scene_.world(scene_.node_of(instance));
+        const glm::dvec3 middle = bounds.center(), half = bounds.half_extents();
+        const glm::dvec3 center = baked_[rank] ? middle + baked_origin_ : world.linear * middle + world.translation;
+        const double radius = baked_[rank] ? glm::length(half) : glm::length(world.linear * half);
+        const auto distance = static_cast<float>(glm::length(center - eye) + radius);
+        order_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | rank);
+    }
+    std::sort(order_.begin(), order_.end());
+    selected_.clear();
+    for (const std::uint64_t entry : order_) selected_.push_back(static_cast<std::uint32_t>(entry));
 }
 
 std::uint64_t DrawList::predict_clipped() {

@@ -27,7 +27,7 @@ class DrawList {
     [[nodiscard]] std::span<const render::Vertex> vertices() const { return vertices_; }
     [[nodiscard]] std::span<const std::uint32_t> indices() const { return indices_; }
 
-    // Ranges and transforms for these instances and camera, in buffer order.
+    // Ranges and transforms for these instances and camera, front to back: what lies behind then stores no pixels.
     void select(std::span<const scene::InstanceId> visible, const Camera& camera);
     [[nodiscard]] std::span<const render::DrawRange> ranges() const { return ranges_; }
     [[nodiscard]] std::span<const render::DrawTransform> transforms() const { return transforms_; }
@@ -45,6 +45,7 @@ class DrawList {
         Aabb bounds;  // of the vertices
     };
 
+    void sort_front_to_back(std::span<const scene::InstanceId> visible, const glm::dvec3& eye);
     Part append(std::span<const render::Vertex> vertices, std::span<const std::uint32_t> local_indices);
 
     const scene::Scene& scene_;
@@ -57,7 +58,8 @@ class DrawList {
     std::vector<std::uint32_t> ranks_;                     // by instance
     std::vector<Part> parts_;                              // by rank
     std::vector<std::uint8_t> baked_, unlit_, one_sided_;  // by rank
-    std::vector<std::uint32_t> selected_;                  // ranks, ascending
+    std::vector<std::uint64_t> order_;                     // scratch
+    std::vector<std::uint32_t> selected_;                  // ranks, front to back
     std::vector<render::DrawRange> ranges_;
     std::vector<render::DrawTransform> transforms_;
     render::ClipPredictor predictor_;

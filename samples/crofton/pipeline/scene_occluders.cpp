@@ -7,19 +7,6 @@
 namespace crofton::pipeline {
 namespace {
 
-// A patch is drawn triangle by triangle, many times as slowly as a box: in the town patches of more triangles take five
-// times as long as all other occluders and hide 1 % of the triangles.
-constexpr std::size_t kMaxPatchTriangles = 4;
-
-occlude::FoundOccluders find_cheap_occluders(const TriangleMesh& mesh) {
-    auto found = occlude::find_occluders(mesh);
-    if (!found) return {};
-    std::erase_if(found->occluders, [](const occlude::FoundOccluder& occluder) {
-        return occluder.kind == occlude::OccluderKind::patch && occluder.surface.triangle_count() > kMaxPatchTriangles;
-    });
-    return std::move(*found);
-}
-
 void append(TriangleMesh& to, const TriangleMesh& part) {
     const auto first = static_cast<std::uint32_t>(to.positions.size());
     to.positions.insert(to.positions.end(), part.positions.begin(), part.positions.end());
@@ -43,7 +30,8 @@ SceneOccluders find_scene_occluders(const scene::Scene& scene, Executor& executo
         for (const scene::MeshId mesh : meshes) append(result.kinds.back().mesh, scene.mesh(mesh));
     }
     executor.parallel_for(result.kinds.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t k = begin; k < end; ++k) result.kinds[k].found = find_cheap_occluders(result.kinds[k].mesh);
+        for (std::size_t k = begin; k < end; ++k)
+            if (auto found = occlude::find_occluders(result.kinds[k].mesh)) result.kinds[k].found = std::move(*found);
     });
     std::erase_if(result.objects, [&](const SceneOccluders::Object& object) {
         return result.kinds[object.kind].found.occluders.empty();

@@ -64,8 +64,9 @@ Result<Stage> stage_of(assets::SceneSource& source) {
             const auto added = stage.world.add_mesh({.positions = all.positions, .indices = all.indices});
             if (!added) return tl::unexpected(added.error());
             mesh = *added;
-            if (auto found = stage.world.find_occluders(mesh, {.sides = occlude::Sides::both}); !found)
-                return tl::unexpected(found.error());
+            // Large patches, too: they are drawn in a way of their own.
+            const occlude::FindOptions how{.sides = occlude::Sides::both, .max_patch_triangles = 1000};
+            if (auto found = stage.world.find_occluders(mesh, how); !found) return tl::unexpected(found.error());
         }
         const auto object = stage.world.add({.mesh = mesh, .node = stage.root, .transform = scene.world(node)});
         if (!object) return tl::unexpected(object.error());

@@ -78,7 +78,8 @@ Vector<Patch> PatchFinder::find() {
     for (const std::uint32_t seed : seeds) {
         if (patch_of_[seed] != kNoNeighbor) continue;
         Patch patch = grow(seed, number++);
-        if (patch.area >= least) patches.push_back(std::move(patch));
+        if (patch.area >= least && patch.triangles.size() <= search_.options.max_patch_triangles)
+            patches.push_back(std::move(patch));
     }
     std::stable_sort(patches.begin(), patches.end(), [](const Patch& a, const Patch& b) { return a.area > b.area; });
     if (patches.size() > kMostPatches) patches.resize(kMostPatches);

@@ -346,6 +346,7 @@ typedef struct crofton_find_options {
     uint32_t is_two_sided; /* 1: back faces are drawn as well */
     uint32_t max_occluders, max_edges, max_boxes_a_piece, grid;
     double least_gain, flatness;
+    uint32_t max_patch_triangles;
 } crofton_find_options;
 
 /* What is not worth drawing: too small or too far; docs/lights.md. */

@@ -177,8 +177,9 @@ class OcclusionBuffer {
     // Bit i % 64 of word i / 64 for boxes[i]: as hides(). Requires one bit for each box.
     void find_hidden(std::span<const Obb> boxes, std::span<std::uint64_t> hidden,
                      Executor& executor = serial_executor()) const;
-    // The occluders that hide a box that is hidden: those whose depth is stored in a pixel of the rectangle around its
-    // picture. Ascending; empty where the box is not hidden. Slow and allocating: draws each occluder again.
+    // The occluders that hide a box that is hidden: one that does so alone, the nearest; or else those whose depth is
+    // stored in a pixel of the rectangle around its picture, and those that cover one and have the box behind all of
+    // their faces. Ascending; empty where the box is not hidden. Slow and allocating: draws each occluder again.
     void hidden_by(const Obb& box, Vector<OccluderId>& ids) const;
 
     [[nodiscard]] BufferSize size() const;
