@@ -15,7 +15,7 @@ using namespace crofton;
 
 namespace {
 
-// The definition in draw_limits.hpp, in rationals.
+// The definition of DrawLimits, in rationals.
 bool oracle_keeps(const cull::DrawLimits& limits, const Obb& box, std::uint32_t item, std::uint32_t layers) {
     mpq_class distance = 0, radius = 0;
     for (int j = 0; j < 3; ++j) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <crofton/cull/cull.hpp>
 #include <crofton/geometry/shapes.hpp>
+#include <span>
 
 #include "call.hpp"
 #include "convert.hpp"
@@ -51,14 +52,20 @@ template <class Result>
     return result.view;
 }
 
+[[nodiscard]] inline crofton_status give_ids(std::span<const std::uint32_t> from, const std::uint32_t** ids,
+                                             std::size_t* count, const char* function) {
+    CROFTON_CHECK(check_pointer(ids, function));
+    CROFTON_CHECK(check_pointer(count, function));
+    *ids = from.data();
+    *count = from.size();
+    return CROFTON_OK;
+}
+
 // The ids and, where there are any, the verdicts of a set that is seen. `verdicts` may be null.
 template <class Visible>
 [[nodiscard]] crofton_status give_seen(const Visible& seen, const std::uint32_t** ids, std::size_t* count,
                                        const std::uint8_t** verdicts, const char* function) {
-    CROFTON_CHECK(check_pointer(ids, function));
-    CROFTON_CHECK(check_pointer(count, function));
-    *ids = seen.ids().data();
-    *count = seen.size();
+    CROFTON_CHECK(give_ids(seen.ids(), ids, count, function));
     if (verdicts)
         *verdicts = seen.verdicts().empty() ? nullptr : reinterpret_cast<const std::uint8_t*>(seen.verdicts().data());
     return CROFTON_OK;

@@ -22,3 +22,14 @@ struct crofton_visible_in_views {
     std::uint64_t serial = 0;
     std::array<crofton::cull::View, crofton::cull::kMaxViews> views{};
 };
+
+namespace crofton::capi {
+
+// `visible` is a result of either type.
+template <class Visible>
+[[nodiscard]] crofton_status check_viewed(const Visible& visible, const crofton_world& world, const char* function) {
+    if (visible.serial == world.serial) return CROFTON_OK;
+    return report(CROFTON_INVALID_ARGUMENT, function, "the result is not of a view of this world");
+}
+
+}  // namespace crofton::capi

@@ -108,9 +108,13 @@ crofton_status write_depth(const occlude::OcclusionBuffer& buffer, uint32_t* wid
     return CROFTON_OK;
 }
 
-crofton_status check_viewed(const crofton_visible_objects& visible, const crofton_world& world, const char* function) {
-    if (visible.serial == world.serial) return CROFTON_OK;
-    return report(CROFTON_INVALID_ARGUMENT, function, "the result is not of a view of this world");
+// `visible` is a result of this world's; there is room for occluders of it.
+crofton_status check_asked_of(const crofton_world& world, const crofton_visible_objects& visible,
+                              const crofton_occluder_ref* occluders, size_t capacity, const size_t* count,
+                              const char* function) {
+    CROFTON_CHECK(check_pointer(count, function));
+    CROFTON_CHECK(check_room(occluders, capacity, function));
+    return check_viewed(visible, world, function);
 }
 
 void write_occluders(const Vector<OccluderRef>& found, crofton_occluder_ref* occluders, size_t capacity,
@@ -173,11 +177,7 @@ crofton_status crofton_visible_objects_occluded_ids(const crofton_visible_object
                                                     size_t* count) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(ids, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *ids = visible->visible.occluded_ids().data();
-    *count = visible->visible.occluded_ids().size();
-    return CROFTON_OK;
+    return give_ids(visible->visible.occluded_ids(), ids, count, __func__);
 }
 
 crofton_status crofton_visible_objects_get_occlusion_statistics(const crofton_visible_objects* visible,
@@ -221,9 +221,7 @@ crofton_status crofton_world_hidden_by(const crofton_world* world, crofton_objec
     if (use_world.failed()) return use_world.status();
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(count, __func__));
-    CROFTON_CHECK(check_room(occluders, capacity, __func__));
-    CROFTON_CHECK(check_viewed(*visible, *world, __func__));
+    CROFTON_CHECK(check_asked_of(*world, *visible, occluders, capacity, count, __func__));
     Vector<OccluderRef> found;
     CROFTON_CHECK(status_of(world->world.hidden_by(to_handle(object), visible->visible, found), __func__));
     write_occluders(found, occluders, capacity, count);
@@ -236,9 +234,7 @@ crofton_status crofton_world_drawn_occluders(const crofton_world* world, const c
     if (use_world.failed()) return use_world.status();
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(count, __func__));
-    CROFTON_CHECK(check_room(occluders, capacity, __func__));
-    CROFTON_CHECK(check_viewed(*visible, *world, __func__));
+    CROFTON_CHECK(check_asked_of(*world, *visible, occluders, capacity, count, __func__));
     Vector<OccluderRef> found;
     world->world.drawn_occluders(visible->visible, found);
     write_occluders(found, occluders, capacity, count);

@@ -17,8 +17,7 @@ crofton_status count_listed(const Visible& visible, const crofton_world& world, 
                             const crofton_object_ref* objects, std::size_t capacity, const char* function,
                             std::size_t& count) {
     CROFTON_CHECK(check_room(objects, capacity, function));
-    if (visible.serial != world.serial)
-        return report(CROFTON_INVALID_ARGUMENT, function, "the result is not of a view of this world");
+    CROFTON_CHECK(check_viewed(visible, world, function));
     if (first > visible.visible.size())
         return report(CROFTON_OUT_OF_RANGE, function, "fewer objects are seen than `first`", first);
     count = std::min(capacity, visible.visible.size() - first);
@@ -125,11 +124,7 @@ crofton_status crofton_visible_in_views_ids(const crofton_visible_in_views* visi
                                             size_t* count) {
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_pointer(ids, __func__));
-    CROFTON_CHECK(check_pointer(count, __func__));
-    *ids = visible->visible.ids().data();
-    *count = visible->visible.size();
-    return CROFTON_OK;
+    return give_ids(visible->visible.ids(), ids, count, __func__);
 }
 
 crofton_status crofton_visible_in_views_list(const crofton_visible_in_views* visible, const crofton_world* world,

@@ -41,7 +41,7 @@ struct BoxPairInDouble {
 
 [[nodiscard]] AxisMeasures measures_of(const Obb& a, const Obb& b);
 
-// The axis of the least overlap, numbered as in obb_obb.hpp; a face comes before an edge product of equal depth.
+// The axis of the least overlap, numbered as in narrow_phase.hpp; a face comes before an edge product of equal depth.
 [[nodiscard]] inline int least_axis(const AxisMeasures& measures) {
     return measures.edge_is_widest ? measures.edge : measures.face;
 }

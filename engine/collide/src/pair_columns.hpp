@@ -16,7 +16,7 @@ struct alignas(16) PairColumns {
     double offset[3];  // center_b − center_a, rounded
 };
 
-// Sets of axes, one bit each, numbered as in obb_obb.hpp; from three bits a group.
+// Sets of axes, one bit each, numbered as in narrow_phase.hpp; from three bits a group.
 inline constexpr auto kEdgeAxes = [] {
     std::array<std::array<std::uint32_t, 8>, 3> axes{};
     for (std::uint32_t k = 0; k < 3; ++k)

@@ -2,6 +2,7 @@
 #include <hwy/cache_control.h>
 #include <algorithm>
 #include <crofton/core/error.hpp>
+#include <crofton/geometry/same_bits.hpp>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -42,18 +43,6 @@ inline Obb take(const BoxBlock& block, std::size_t lane) {
     std::memcpy(to, block.image_center[lane], 24);
     for (std::size_t part = 0; part < 3; ++part) std::memcpy(to + 24 + 16 * part, block.image_shape[part][lane], 16);
     return box;
-}
-
-inline bool same_bits(const Obb& a, const Obb& b) {
-    // Word by word: copies of whole boxes would go through the stack, and their loads wait for the stores.
-    const auto differing = [&](std::size_t word) {
-        std::uint64_t left, right;
-        std::memcpy(&left, reinterpret_cast<const std::byte*>(&a) + 8 * word, 8);
-        std::memcpy(&right, reinterpret_cast<const std::byte*>(&b) + 8 * word, 8);
-        return left ^ right;
-    };
-    if ((differing(0) | differing(1) | differing(2)) != 0) return false;  // the centre: most that move
-    return (differing(3) | differing(4) | differing(5) | differing(6) | differing(7) | differing(8)) == 0;
 }
 
 template <class T>
@@ -245,7 +234,7 @@ void Scene::State::set_careful_box(InstanceId id, UpdateWorker& worker) {
 void Scene::State::set_box(InstanceId id, const Obb& box, bool shown, UpdateWorker& worker) {
     Instance& instance = instances[id];
     const std::uint32_t mask = shown ? nodes[instance.node].mask & instance.own_mask : 0;
-    if (instance.is_new || !same_bits(box, boxes[id])) worker.moved.push_back(id);
+    if (instance.is_new || !have_same_bits(box, boxes[id])) worker.moved.push_back(id);
     if (instance.is_new || mask != masks[id]) {
         worker.relayered.push_back(id);
         masks[id] = mask;

@@ -45,7 +45,7 @@ void MovingList::stage(std::span<const std::uint32_t> entries, const Obb* first,
         const Obb& box = *reinterpret_cast<const Obb*>(from);
         from += stride;
         staged[entry] = box;
-        differs[entry] = !same(boxes[entry], box);
+        differs[entry] = !have_same_bits(boxes[entry], box);
         fresh += staged_for[entry] != now;
         staged_for[entry] = now;
     }

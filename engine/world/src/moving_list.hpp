@@ -4,28 +4,14 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <crofton/geometry/same_bits.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 
 namespace crofton::world {
 
 using boxtree::ItemId;
-
-// Bit for bit.
-[[nodiscard]] inline bool same(const Obb& a, const Obb& b) {
-    static_assert(sizeof(Obb) == 72);
-    // Word by word: copies of whole boxes would go through the stack, and their loads wait for the stores.
-    const auto differing = [&](std::size_t word) {
-        std::uint64_t left, right;
-        std::memcpy(&left, reinterpret_cast<const std::byte*>(&a) + 8 * word, 8);
-        std::memcpy(&right, reinterpret_cast<const std::byte*>(&b) + 8 * word, 8);
-        return left ^ right;
-    };
-    if ((differing(0) | differing(1) | differing(2)) != 0) return false;  // the centre: most that move
-    return (differing(3) | differing(4) | differing(5) | differing(6) | differing(7) | differing(8)) == 0;
-}
 
 // Items have entries 0, 1, … in all arrays. Times are counts of updates. `now` never falls.
 class MovingList {
@@ -41,7 +27,7 @@ class MovingList {
     void remove(std::size_t entry);
     // At once. True if it is another box.
     bool set_box(std::size_t entry, const Obb& box, std::uint32_t now) {
-        if (same(boxes_[entry], box)) return false;
+        if (have_same_bits(boxes_[entry], box)) return false;
         boxes_[entry] = box;
         last_moved_[entry] = now;
         changed_ = true;

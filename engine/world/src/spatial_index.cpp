@@ -123,7 +123,7 @@ void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
         case Place::moving:
             return;
         case Place::resting:
-            if (same(tree_.boxes()[id], box)) return;
+            if (have_same_bits(tree_.boxes()[id], box)) return;
             note_move(id);
             if (item.streak == kUpdatesToMove) {
                 detach(id);

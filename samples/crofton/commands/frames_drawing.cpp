@@ -31,10 +31,10 @@ Result<std::unique_ptr<FramesDrawing>> FramesDrawing::create(pipeline::DrawList&
     return drawing;
 }
 
-Result<FramesDrawing::Drawn> FramesDrawing::draw(std::span<const scene::InstanceId> visible, const Camera& camera,
-                                                 std::uint32_t picture) {
+template <class Columns>
+Result<void> FramesDrawing::draw(Columns& columns, const Camera& camera, std::uint32_t picture) {
     const auto start = Clock::now();
-    list_.select(visible, camera);
+    list_.select(columns.visible_ids, camera);
     render::Frame frame;
     frame.camera = camera;
     frame.transforms = list_.transforms();
@@ -42,36 +42,21 @@ Result<FramesDrawing::Drawn> FramesDrawing::draw(std::span<const scene::Instance
     frame.environment.haze_distance = static_cast<float>(haze_);
     const auto counters = rasterizer_->draw(frame, picture);
     if (!counters) return tl::unexpected(counters.error());
-    Drawn drawn{*counters, 0, std::chrono::duration<double, std::micro>(Clock::now() - start).count()};
-    drawn.clipped = list_.predict_clipped();
-    return drawn;
-}
-
-Result<void> FramesDrawing::draw_all(pipeline::FrameStatistics& frame) {
-    const auto drawn = draw(frame.visible_ids, frame.camera, frame.occlusion ? kAll : kShown);
-    if (!drawn) return tl::unexpected(drawn.error());
-    frame.gpu = drawn->gpu;
-    frame.triangles_clipped = drawn->clipped;
-    frame.draw_us = drawn->microseconds;
+    columns.gpu = *counters;
+    columns.draw_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    columns.triangles_clipped = list_.predict_clipped();
     return {};
 }
 
-Result<void> FramesDrawing::draw_not_hidden(pipeline::FrameStatistics& frame) {
-    pipeline::OccludedFrame& result = *frame.occlusion;
-    const auto drawn = draw(result.visible_ids, frame.camera, kShown);
-    if (!drawn) return tl::unexpected(drawn.error());
-    result.gpu = drawn->gpu;
-    result.triangles_clipped = drawn->clipped;
-    result.draw_us = drawn->microseconds;
-    return {};
-}
-
-// Either comes first in turn: the second finds warm caches.
+// With occlusion either picture comes first in turn: the second finds warm caches.
 Result<void> FramesDrawing::draw(pipeline::FrameStatistics& frame) {
-    if (!frame.occlusion) return draw_all(frame);
+    if (!frame.occlusion) return draw(frame, frame.camera, kShown);
     const bool all_first = frame.index % 2 == 0;
-    if (auto drawn = all_first ? draw_all(frame) : draw_not_hidden(frame); !drawn) return drawn;
-    return all_first ? draw_not_hidden(frame) : draw_all(frame);
+    for (const bool all : {all_first, !all_first}) {
+        auto drawn = all ? draw(frame, frame.camera, kAll) : draw(*frame.occlusion, frame.camera, kShown);
+        if (!drawn) return drawn;
+    }
+    return {};
 }
 
 Result<const render::Image*> FramesDrawing::picture() {

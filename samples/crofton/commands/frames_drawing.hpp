@@ -35,15 +35,9 @@ class FramesDrawing {
   private:
     FramesDrawing(pipeline::DrawList& list, render::Device device, double haze)
         : list_(list), device_(std::move(device)), haze_(haze) {}
-    struct Drawn {
-        render::GpuCounters gpu;
-        std::uint64_t clipped = 0;
-        double microseconds = 0.0;
-    };
-    [[nodiscard]] Result<Drawn> draw(std::span<const scene::InstanceId> visible, const Camera& camera,
-                                     std::uint32_t picture);
-    [[nodiscard]] Result<void> draw_all(pipeline::FrameStatistics& frame);
-    [[nodiscard]] Result<void> draw_not_hidden(pipeline::FrameStatistics& frame);
+    // Draws what is visible in `columns`, the frame's or its `occlusion`'s, and writes the cost there.
+    template <class Columns>
+    [[nodiscard]] Result<void> draw(Columns& columns, const Camera& camera, std::uint32_t picture);
 
     pipeline::DrawList& list_;
     render::Device device_;

@@ -112,26 +112,26 @@ Obb bound_of(const boxtree::Structure& structure, boxtree::NodeId id, unsigned l
 }  // namespace
 
 void Overlay::draw_tree_level(LineList& lines, const boxtree::BoxTree& tree, int level) {
-    if (tree.structure().nodes().empty()) return;
+    const boxtree::Structure& structure = tree.structure();
+    if (structure.nodes().empty()) return;
     legend_.push_back({"bounds of the tree's nodes", kTree});
     Aabb all;
-    for (unsigned lane = 0; lane < tree.structure().nodes()[0].count; ++lane)
-        all.include(tree.structure().child_bounds(0, lane));
+    for (unsigned lane = 0; lane < structure.nodes()[0].count; ++lane) all.include(structure.child_bounds(0, lane));
     if (level == 0 && !all.is_empty()) lines.box(obb_of(all), kTree);
     if (level == 0) return;
     std::vector<boxtree::NodeId> nodes{0}, next;
     for (int depth = 1; depth < level && !nodes.empty(); ++depth) {
         next.clear();
         for (const boxtree::NodeId node : nodes)
-            for (unsigned lane = 0; lane < tree.structure().nodes()[node].count; ++lane)
-                if ((tree.structure().nodes()[node].child[lane] & boxtree::kLeafBit) == 0)
-                    next.push_back(tree.structure().nodes()[node].child[lane]);
+            for (unsigned lane = 0; lane < structure.nodes()[node].count; ++lane)
+                if ((structure.nodes()[node].child[lane] & boxtree::kLeafBit) == 0)
+                    next.push_back(structure.nodes()[node].child[lane]);
         nodes.swap(next);
     }
     for (const boxtree::NodeId node : nodes)
-        for (unsigned lane = 0; lane < tree.structure().nodes()[node].count; ++lane)
-            if (boxtree::half_of(tree.structure().nodes()[node], lane, 0) >= 0)
-                lines.box(bound_of(tree.structure(), node, lane), kTree);
+        for (unsigned lane = 0; lane < structure.nodes()[node].count; ++lane)
+            if (boxtree::half_of(structure.nodes()[node], lane, 0) >= 0)
+                lines.box(bound_of(structure, node, lane), kTree);
 }
 
 void Overlay::draw_pairs(LineList& lines, const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {

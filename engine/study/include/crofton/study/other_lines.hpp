@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Two more right ways to draw uniform lines, from the paper's section 6: for tests and teaching. Those of
-// sampling/global_lines.hpp cover all lines of a region and cost less.
+// sampling/sampling.hpp cover all lines of a region and cost less.
 #pragma once
 #include <array>
 #include <crofton/core/memory.hpp>
