@@ -130,6 +130,23 @@ TEST_SUITE("convex/query") {
         CHECK(d.upper < 1e-9);
     }
 
+    TEST_CASE("round bodies that overlap do so by a depth that is not negative, however little it is") {
+        RandomBodies random(41);
+        int overlapping = 0;
+        for (int i = 0; i < 6000; ++i) {
+            const Body box = random.box();
+            const Body a = i % 2 == 0 ? Body::rounded(box, 0.3f).value() : box;
+            const Body b = i % 3 == 0 ? Body::ball(0.7f).value() : Body::capsule(0.5f, 0.2f).value();
+            const double gap = std::pow(10.0, -random.number(12.0, 17.0)) * (i % 4 < 2 ? 1.0 : -1.0);
+            const CasePair where = nearly_touching(random, a, b, gap, 0.0);
+            const Penetration p = penetration({a, where.pose_a}, {b, where.pose_b});
+            CHECK(p.depth >= 0.0);
+            CHECK(p.lower <= p.upper);
+            overlapping += p.overlapping;
+        }
+        CHECK(overlapping > 1000);
+    }
+
     TEST_CASE("touching exactly counts: kissing boxes, a corner on a face, an edge across an edge") {
         const Body box = Body::box({1, 1, 1}).value();
         for (const double far : {0.0, 1e3, 0x1p23}) {

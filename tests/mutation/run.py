@@ -27,6 +27,7 @@ SEED = 21
 # By rule: how many of each module, and whose tests must catch them.
 RULES = {
     "bake": (4, ["bake"]), "boxtree": (10, ["boxtree", "cull"]), "capi": (8, ["capi"]), "collide": (14, ["collide"]),
+    "convex": (10, ["convex"]), "occlude": (10, ["occlude"]),
     "core": (4, ["core"]), "cull": (14, ["cull"]), "fit": (12, ["fit"]), "geometry": (8, ["geometry"]),
     "measure": (5, ["measure"]), "mesh": (10, ["mesh"]), "radiosity": (8, ["radiosity"]), "render": (5, ["render"]),
     "sampling": (4, ["sampling"]), "scene": (8, ["scene"]), "study": (6, ["study"]), "triangulate": (12, ["triangulate"]),

@@ -2,17 +2,20 @@
 #include <array>
 #include <crofton/render/graphics_pipeline.hpp>
 #include <crofton/render/resources.hpp>
+#include <string>
 
 namespace crofton::render {
 namespace {
 
-Result<VkShaderModule> create_shader(const VulkanContext& context, std::span<const std::uint32_t> code) {
+Result<VkShaderModule> create_shader(const VulkanContext& context, std::span<const std::uint32_t> code,
+                                     const char* stage) {
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     info.codeSize = code.size_bytes();
     info.pCode = code.data();
     VkShaderModule module = VK_NULL_HANDLE;
     const VkResult result = context.vk.vkCreateShaderModule(context.device, &info, nullptr, &module);
-    if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateShaderModule");
+    if (result != VK_SUCCESS)
+        return vulkan_failure(result, (std::string("vkCreateShaderModule of the ") + stage + " shader").c_str());
     return module;
 }
 
@@ -173,14 +176,15 @@ Result<VkFramebuffer> create_framebuffer(const VulkanContext& context, VkRenderP
 
 Result<VkPipeline> create_pipeline(const VulkanContext& context, const PipelineDescription& description,
                                    VkPipelineLayout layout, VkRenderPass pass) {
-    auto vertex = create_shader(context, description.vertex_shader);
+    auto vertex = create_shader(context, description.vertex_shader, "vertex");
     if (!vertex) return tl::unexpected(std::move(vertex.error()));
-    auto fragment = create_shader(context, description.fragment_shader);
+    auto fragment = create_shader(context, description.fragment_shader, "fragment");
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = fragment ? assemble(context, description, *vertex, *fragment, layout, pass, pipeline)
-                                     : VK_ERROR_INITIALIZATION_FAILED;
+    VkResult result = VK_SUCCESS;
+    if (fragment) result = assemble(context, description, *vertex, *fragment, layout, pass, pipeline);
     context.vk.vkDestroyShaderModule(context.device, *vertex, nullptr);
-    if (fragment) context.vk.vkDestroyShaderModule(context.device, *fragment, nullptr);
+    if (!fragment) return tl::unexpected(std::move(fragment.error()));
+    context.vk.vkDestroyShaderModule(context.device, *fragment, nullptr);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkCreateGraphicsPipelines");
     return pipeline;
 }

@@ -154,6 +154,7 @@ VkImageMemoryBarrier color_barrier(VkImage image, VkImageLayout from, VkImageLay
 
 Commands::~Commands() {
     if (context_ == nullptr) return;
+    if (left_ == Left::pending) context_->vk.vkDeviceWaitIdle(context_->device);
     context_->vk.vkDestroyFence(context_->device, fence_, nullptr);
     if (handle != VK_NULL_HANDLE)
         context_->vk.vkFreeCommandBuffers(context_->device, context_->command_pool, 1, &handle);
@@ -174,11 +175,25 @@ Result<Commands> Commands::create(const VulkanContext& context) {
     return commands;
 }
 
+Result<void> Commands::recover() {
+    const auto& vk = context_->vk;
+    if (left_ == Left::recording) {
+        const VkResult result = vk.vkResetCommandBuffer(handle, 0);
+        if (result != VK_SUCCESS) return vulkan_failure(result, "vkResetCommandBuffer");
+    } else if (left_ != Left::nothing) {
+        return wait();
+    }
+    left_ = Left::nothing;
+    return {};
+}
+
 Result<void> Commands::begin() {
+    if (auto recovered = recover(); !recovered) return recovered;
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     const VkResult result = context_->vk.vkBeginCommandBuffer(handle, &info);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkBeginCommandBuffer");
+    left_ = Left::recording;
     return {};
 }
 
@@ -191,6 +206,7 @@ Result<void> Commands::submit(VkSemaphore wait, VkSemaphore signal) {
     const auto& vk = context_->vk;
     VkResult result = vk.vkEndCommandBuffer(handle);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkEndCommandBuffer");
+    left_ = Left::nothing;
     VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
     info.pCommandBuffers = &handle;
@@ -202,6 +218,7 @@ Result<void> Commands::submit(VkSemaphore wait, VkSemaphore signal) {
     info.pSignalSemaphores = &signal;
     result = vk.vkQueueSubmit(context_->queue, 1, &info, fence_);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkQueueSubmit");
+    left_ = Left::pending;
     return {};
 }
 
@@ -209,8 +226,10 @@ Result<void> Commands::wait() {
     const auto& vk = context_->vk;
     VkResult result = vk.vkWaitForFences(context_->device, 1, &fence_, VK_TRUE, ~std::uint64_t{0});
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkWaitForFences");
+    left_ = Left::signalled;
     result = vk.vkResetFences(context_->device, 1, &fence_);
     if (result != VK_SUCCESS) return vulkan_failure(result, "vkResetFences");
+    left_ = Left::nothing;
     return {};
 }
 

@@ -96,6 +96,7 @@ class Commands {
     ~Commands();
 
     [[nodiscard]] static Result<Commands> create(const VulkanContext& context);
+    // Also after a call that failed: what that one left is waited for and taken back first.
     [[nodiscard]] Result<void> begin();
     // Transfers wait for `wait`; `signal` tells that all is done. Either may be null.
     [[nodiscard]] Result<void> submit(VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
@@ -109,9 +110,15 @@ class Commands {
         std::swap(handle, other.handle);
         std::swap(context_, other.context_);
         std::swap(fence_, other.fence_);
+        std::swap(left_, other.left_);
     }
+    // What has been begun, and would have to be ended before the commands can be used again.
+    enum class Left : std::uint8_t { nothing, recording, pending, signalled };
+    [[nodiscard]] Result<void> recover();
+
     const VulkanContext* context_ = nullptr;
     VkFence fence_ = VK_NULL_HANDLE;
+    Left left_ = Left::nothing;
 };
 
 }  // namespace crofton::render
