@@ -54,6 +54,7 @@ void BodyContacts::note_moved(const SpatialIndex& index, bool moved_only) {
 
 void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
                           const scene::Scene& scene, double margin, bool moved_only, Executor& executor) {
+    if (count_ == 0 && states_.empty()) return contacts_.clear();
     note_moved(index, moved_only);
     list(pairs);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));

@@ -15,7 +15,6 @@ class BodyContacts {
     void set(std::uint32_t object, const convex::Body* body);  // nullptr: none
     [[nodiscard]] bool has(std::uint32_t object) const { return object < bodies_.size() && bodies_[object]; }
     [[nodiscard]] const convex::Body& body(std::uint32_t object) const { return *bodies_[object]; }
-    [[nodiscard]] bool is_empty() const { return count_ == 0; }
 
     // `moved_only`: since the update before no more has changed than the boxes of the index's moved_items().
     void update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
@@ -47,8 +46,8 @@ class BodyContacts {
     void add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count);
 
     Vector<std::optional<convex::Body>> bodies_;  // by object
-    std::size_t count_ = 0;
-    Vector<std::uint8_t> moved_;  // by object, in this update
+    std::size_t count_ = 0;                       // bodies
+    Vector<std::uint8_t> moved_;                  // by object, in this update
     bool all_moved_ = true;
     Vector<Touch> touches_;
     Vector<Worker> workers_;
