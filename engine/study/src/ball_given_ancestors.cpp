@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-struct Cell {
+struct BallCell {
     glm::dvec3 center;
     double half;
     double bound;
@@ -65,10 +65,10 @@ class BallSearch {
 
     void run(const Sphere& least, const BallOptions& options, BallGivenAncestors& result) {
         const double largest = options.largest * least.radius;
-        const auto lower = [](const Cell& a, const Cell& b) {
+        const auto lower = [](const BallCell& a, const BallCell& b) {
             return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
         };
-        Vector<Cell> heap;
+        Vector<BallCell> heap;
         const auto consider = [&](const glm::dvec3& center) {
             if (radius_at(center) > largest) return;
             if (const double value = measure_of(center); value < result.value)
@@ -81,7 +81,7 @@ class BallSearch {
         while (!heap.empty() && result.cells < options.max_cells &&
                heap.front().bound < result.value * (1.0 - options.tolerance)) {
             std::pop_heap(heap.begin(), heap.end(), lower);
-            const Cell cell = heap.back();
+            const BallCell cell = heap.back();
             heap.pop_back();
             const double half = 0.5 * cell.half;
             for (unsigned corner = 0; corner < 8; ++corner) {

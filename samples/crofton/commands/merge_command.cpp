@@ -10,13 +10,13 @@
 namespace crofton::cli {
 namespace {
 
-struct Options {
+struct MergeRequest {
     std::vector<std::string> parts;
     std::string out;
     std::uint32_t shards = 0;
 };
 
-Result<int> run(const Options& options) {
+Result<int> run_merge(const MergeRequest& options) {
     std::vector<bake::MappedFile> files;
     std::vector<std::span<const std::byte>> states;
     for (const std::string& path : options.parts) {
@@ -46,7 +46,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 void add_merge_command(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MergeRequest>();
     Command command = line.command("merge", "Add up the parts of a bake that ran as shards");
     command.option("parts", options->parts, "Files that `crofton pvs --shard i/n --state FILE` wrote").required();
     command.option("--out", options->out, "The sum: the bytes that one run would have saved")
@@ -61,7 +61,7 @@ void add_merge_command(CommandLine& line) {
         "Example:\n"
         "  crofton merge part0 part1 part2 part3 --out whole.state");
     command.action([options] {
-        const auto done = run(*options);
+        const auto done = run_merge(*options);
         return done ? *done : report_error("", done.error());
     });
 }

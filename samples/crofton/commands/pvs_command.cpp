@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery = 20.0;  // seconds
 
-struct Options {
+struct PvsRequest {
     ReadOptions read;
     std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
     double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_reach = 0.5;
@@ -37,7 +37,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 struct Job {
-    const Options& options;
+    const PvsRequest& options;
     assets::SceneSource source;
     pipeline::PvsScene scene;
     pvs::Cells cells;
@@ -45,7 +45,7 @@ struct Job {
     double trace_seconds = 0.0, proof_seconds = 0.0;
 };
 
-Result<Job> make_job(const Options& options, Executor& executor) {
+Result<Job> make_job(const PvsRequest& options, Executor& executor) {
     const auto shard = shard_from(options.shard);
     if (!shard) return tl::unexpected(shard.error());
     if (!options.shard.empty() && options.state.empty())
@@ -71,10 +71,10 @@ Result<Job> make_job(const Options& options, Executor& executor) {
     return Job{options, std::move(*source), std::move(*scene), std::move(*cells), *shard};
 }
 
-struct Progress {
+struct BakeProgress {
     ProgressBar bar{"pvs", 1000};
     static bool go_on(void* user, double share) {
-        static_cast<Progress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
+        static_cast<BakeProgress*>(user)->bar.set(static_cast<std::size_t>(1000.0 * share));
         return !interrupted();
     }
 };
@@ -86,7 +86,7 @@ Result<void> save(const std::string& path, const pvs::Bake& bake) {
     return write_file(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
 }
 
-Result<void> load_state(const std::string& path, pvs::Bake& bake, const Options& options) {
+Result<void> load_state(const std::string& path, pvs::Bake& bake, const PvsRequest& options) {
     if (path.empty() || !std::filesystem::exists(path)) return {};
     const auto file =
         bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = options.read.limits.bytes});
@@ -99,14 +99,14 @@ Result<void> load_state(const std::string& path, pvs::Bake& bake, const Options&
 // Traces until the shard, the time or the user's patience ends; what there is has been saved then.
 Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
     if (auto loaded = load_state(job.options.state, bake, job.options); !loaded) return loaded;
-    Progress progress;
+    BakeProgress progress;
     const auto start = Clock::now();
     for (bool done = false; !done;) {
         const std::uint64_t before = bake.lines_done();
         double seconds = kSaveEvery;
         if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
         const auto ran =
-            bake.run({.seconds = seconds, .shard = job.shard, .go_on = Progress::go_on, .user = &progress}, executor);
+            bake.run({.seconds = seconds, .shard = job.shard, .go_on = BakeProgress::go_on, .user = &progress}, executor);
         if (!ran) return ran;
         done = interrupted() || bake.lines_done() == before ||
                (job.options.seconds > 0.0 && seconds_since(start) >= job.options.seconds);
@@ -117,7 +117,7 @@ Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
 }
 
 Result<void> write_outputs(const Job& job, const pvs::Pvs& sets, Executor& executor, std::size_t& file_bytes) {
-    const Options& options = job.options;
+    const PvsRequest& options = job.options;
     if (!options.out.empty()) {
         Vector<std::byte> scene_file;
         if (options.with_scene) {
@@ -201,7 +201,7 @@ void print_figures(const Job& job, const pvs::Bake& bake, const pvs::Pvs& sets, 
                     8.0 * static_cast<double>(file_bytes) / pairs);
 }
 
-Result<int> run(const Options& options) {
+Result<int> run_pvs(const PvsRequest& options) {
     catch_interrupts();
     ThreadPool pool(options.threads);
     auto job = make_job(options, pool);
@@ -237,7 +237,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 void add_pvs_command(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PvsRequest>();
     Command command = line.command("pvs", "Bake what can be seen from each cell of a level, by global lines");
     command.footer(
         "Cells are NXxNYxNZ equal boxes over the places of eyes, or a file with a box a line: six numbers, min and "
@@ -285,7 +285,7 @@ void add_pvs_command(CommandLine& line) {
     command.option("--json", options->json, "Write the figures as JSON; - for stdout").writable_file();
     add_read_options(command, options->read);
     command.action([options] {
-        const auto done = run(*options);
+        const auto done = run_pvs(*options);
         return done ? *done : report_error("", done.error());
     });
 }

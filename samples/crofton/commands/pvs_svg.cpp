@@ -9,7 +9,7 @@
 namespace crofton::cli {
 namespace {
 
-constexpr double kWidth = 1200.0;
+constexpr double kMapWidth = 1200.0;
 
 class Map {
   public:
@@ -17,13 +17,13 @@ class Map {
         : pvs_(pvs), subject_(subject), cell_(cell), bounds_(pvs.cells().bounds()) {
         const glm::dvec3 room = 0.1 * (bounds_.max - bounds_.min);
         bounds_.min -= room, bounds_.max += room;
-        scale_ = kWidth / (bounds_.max.x - bounds_.min.x);
+        scale_ = kMapWidth / (bounds_.max.x - bounds_.min.x);
     }
 
     std::string draw() {
         const double height = scale_ * (bounds_.max.z - bounds_.min.z);
-        print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n", kWidth,
-              height, kWidth, height);
+        print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n", kMapWidth,
+              height, kMapWidth, height);
         svg_ += "<rect width='100%' height='100%' fill='#ffffff'/>\n";
         objects(pvs::PairState::hidden, "#d4d8dd");
         objects(pvs::PairState::unseen, "#f0d48a");

@@ -13,7 +13,7 @@
 namespace crofton::cli {
 namespace {
 
-constexpr std::uint32_t kWidth = 640, kHeight = 360;
+constexpr std::uint32_t kPictureWidth = 640, kPictureHeight = 360;
 
 // Between the triangle's corners, by areas.
 study::Leaving light_at(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& point) {
@@ -63,9 +63,9 @@ Result<LightFieldReport> draw_light_field(const LightFieldRun& run, Executor& ex
     options.sky = run.sky;
     const auto field = study::LightField::record(run.tracer, light, options, executor);
     if (!field) return tl::unexpected(field.error());
-    const auto drawn = field->draw(run.camera, kWidth, kHeight, {});
+    const auto drawn = field->draw(run.camera, kPictureWidth, kPictureHeight, {});
     if (!drawn) return tl::unexpected(drawn.error());
-    const auto direct = study::direct_picture(run.tracer, light, run.sky, run.camera, kWidth, kHeight, executor);
+    const auto direct = study::direct_picture(run.tracer, light, run.sky, run.camera, kPictureWidth, kPictureHeight, executor);
     if (!direct) return tl::unexpected(direct.error());
     const render::Image from_lines = shown(drawn->picture, run.exposure), from_scene = shown(*direct, run.exposure);
     if (auto written = write_file(run.png_path, pipeline::encode_png(from_lines)); !written)

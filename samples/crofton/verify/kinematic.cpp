@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "bodies.hpp"
-#include "frustum_volumes.hpp"
 #include "topics.hpp"
 
 namespace crofton::cli {

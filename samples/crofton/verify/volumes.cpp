@@ -13,7 +13,6 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "frustum_volumes.hpp"
 #include "geometry.hpp"
 #include "topics.hpp"
 
