@@ -99,11 +99,8 @@ std::span<const std::uint64_t> Pvs::visible_from(std::uint32_t cell, Mode mode) 
 std::uint32_t Pvs::keep_visible(const glm::dvec3& eye, Mode mode, std::span<const std::uint32_t> ids,
                                 Vector<std::uint32_t>& kept) const {
     const std::uint32_t cell = find_cell(eye);
-    kept.resize(ids.size());
-    if (cell == kNoCell) {
-        std::copy(ids.begin(), ids.end(), kept.begin());
-        return cell;
-    }
+    kept.assign(ids.begin(), ids.end());
+    if (cell == kNoCell) return cell;
     const std::uint64_t* bits = visible_from(cell, mode).data();
     std::uint32_t* to = kept.data();
     for (const std::uint32_t id : ids) {
