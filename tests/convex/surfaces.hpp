@@ -79,8 +79,4 @@ inline convex::Body any_body(RandomBodies& random, double size = 1.0) {
     }
 }
 
-inline RigidTransform at(const glm::dvec3& p) {
-    return {glm::dmat3(1.0), p};
-}
-
 }  // namespace crofton::testing

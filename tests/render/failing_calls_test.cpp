@@ -57,14 +57,14 @@ void wrap_calls(Device& device) {
          &T::vkWaitForFences>(table);
 }
 
-constexpr Vertex kVertices[] = {
+constexpr Vertex kOneTriangle[] = {
     {{-1, -1, 0}, {0, 0, 1}, {1, 0, 0}}, {{1, -1, 0}, {0, 0, 1}, {1, 0, 0}}, {{1, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
-constexpr std::uint32_t kIndices[] = {0, 1, 2};
+constexpr std::uint32_t kItsIndices[] = {0, 1, 2};
 
 Result<Rasterizer> make_ready(Device& device) {
     auto rasterizer = Rasterizer::create(device, {32, 32});
     if (!rasterizer) return rasterizer;
-    if (auto set = rasterizer->set_geometry(kVertices, kIndices); !set) return tl::unexpected(set.error());
+    if (auto set = rasterizer->set_geometry(kOneTriangle, kItsIndices); !set) return tl::unexpected(set.error());
     return rasterizer;
 }
 
