@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <crofton/convex/query.hpp>
+#include <cstddef>
 #include <cstdlib>
 #include <error_of.hpp>
 #include <limits>
+#include <new>
 
 #include "oracle/exact_convex.hpp"
 #include "random_bodies.hpp"
@@ -145,6 +147,16 @@ TEST_SUITE("convex/query") {
             overlapping += p.overlapping;
         }
         CHECK(overlapping > 1000);
+    }
+
+    TEST_CASE("bodies may lie at any address that suits doubles") {
+        // Found by fuzz_convex, compiled by clang: corners were loaded as if they lay at multiples of 16.
+        alignas(16) std::byte memory[sizeof(Body) + 8];
+        for (const std::size_t offset : {std::size_t{0}, std::size_t{8}}) {
+            const Body* box = new (memory + offset) Body(Body::box({1, 2, 3}).value());
+            CHECK(intersects({*box, at({})}, {*box, at({2, 0, 0})}));
+            CHECK_FALSE(intersects({*box, at({})}, {*box, at({2.5, 0, 0})}));
+        }
     }
 
     TEST_CASE("touching exactly counts: kissing boxes, a corner on a face, an edge across an edge") {
