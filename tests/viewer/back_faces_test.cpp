@@ -76,7 +76,8 @@ TEST_SUITE("viewer/back_faces") {
             REQUIRE(rasterizer->read_pixels(whole));
             CHECK(few->clipping_primitives == all->clipping_primitives);
             CHECK(few->clipping_primitives == list.predict_clipped());
-            CHECK(few->samples_passed < all->samples_passed);
+            // They are really left out. Not always fewer samples pass: what a back face hid may pass now.
+            CHECK(few->samples_passed != all->samples_passed);
             // The church's roof is built of faces and their reverses at the same place, which flicker when both are
             // drawn: up to 3,479 pixels, 1.5 % of the picture. Nothing else may differ but an edge here and there.
             CHECK(different_pixels(fronts, whole) < 4000);
