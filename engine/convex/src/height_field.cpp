@@ -11,7 +11,7 @@
 namespace crofton::convex {
 namespace {
 
-constexpr std::uint32_t kBlock = 4;  // cells, and blocks, along a side of a block
+constexpr std::uint32_t kBlock = 4;        // cells, and blocks, along a side of a block
 constexpr std::uint32_t kMaxLine = 32768;  // corners
 
 std::uint32_t blocks_of(std::uint32_t count) {

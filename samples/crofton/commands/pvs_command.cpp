@@ -105,8 +105,8 @@ Result<void> trace(Job& job, pvs::Bake& bake, Executor& executor) {
         const std::uint64_t before = bake.lines_done();
         double seconds = kSaveEvery;
         if (job.options.seconds > 0.0) seconds = std::min(seconds, job.options.seconds - seconds_since(start));
-        const auto ran =
-            bake.run({.seconds = seconds, .shard = job.shard, .go_on = BakeProgress::go_on, .user = &progress}, executor);
+        const auto ran = bake.run(
+            {.seconds = seconds, .shard = job.shard, .go_on = BakeProgress::go_on, .user = &progress}, executor);
         if (!ran) return ran;
         done = interrupted() || bake.lines_done() == before ||
                (job.options.seconds > 0.0 && seconds_since(start) >= job.options.seconds);

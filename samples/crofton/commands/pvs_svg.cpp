@@ -22,8 +22,8 @@ class Map {
 
     std::string draw() {
         const double height = scale_ * (bounds_.max.z - bounds_.min.z);
-        print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n", kMapWidth,
-              height, kMapWidth, height);
+        print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n",
+              kMapWidth, height, kMapWidth, height);
         svg_ += "<rect width='100%' height='100%' fill='#ffffff'/>\n";
         objects(pvs::PairState::hidden, "#d4d8dd");
         objects(pvs::PairState::unseen, "#f0d48a");

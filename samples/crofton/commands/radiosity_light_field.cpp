@@ -65,7 +65,8 @@ Result<LightFieldReport> draw_light_field(const LightFieldRun& run, Executor& ex
     if (!field) return tl::unexpected(field.error());
     const auto drawn = field->draw(run.camera, kPictureWidth, kPictureHeight, {});
     if (!drawn) return tl::unexpected(drawn.error());
-    const auto direct = study::direct_picture(run.tracer, light, run.sky, run.camera, kPictureWidth, kPictureHeight, executor);
+    const auto direct =
+        study::direct_picture(run.tracer, light, run.sky, run.camera, kPictureWidth, kPictureHeight, executor);
     if (!direct) return tl::unexpected(direct.error());
     const render::Image from_lines = shown(drawn->picture, run.exposure), from_scene = shown(*direct, run.exposure);
     if (auto written = write_file(run.png_path, pipeline::encode_png(from_lines)); !written)

@@ -36,7 +36,7 @@ Answer is_common_corner(const Frustum& frustum, const convex::Hull& hull, std::a
     std::array<Vector3<Number>, 3> normals;
     for (std::size_t k = 0; k < 3; ++k) normals[k] = numbers<Number>(frustum.planes[at[k]].normal);
     const std::array<Vector3<Number>, 3> sides{cross(normals[1], normals[2]), cross(normals[2], normals[0]),
-                                           cross(normals[0], normals[1])};
+                                               cross(normals[0], normals[1])};
     Number scale = dot(normals[0], sides[0]);
     const bool turned = scale.is_negative();
     if (!turned && !scale.is_positive()) return std::is_same_v<Number, Exact> ? Answer::no : Answer::unknown;
