@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stored trees with one fault each, refused for that fault. The layout is written down here a second time.
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/radius_range.hpp>

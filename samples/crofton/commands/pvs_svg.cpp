@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <glm/geometric.hpp>
+#include <utility>
 #include <vector>
 
 namespace crofton::cli {
@@ -25,10 +27,9 @@ class Map {
         print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f %.0f' width='%.0f' height='%.0f'>\n",
               kMapWidth, height, kMapWidth, height);
         svg_ += "<rect width='100%' height='100%' fill='#ffffff'/>\n";
-        objects(pvs::PairState::hidden, "#d4d8dd");
-        objects(pvs::PairState::unseen, "#f0d48a");
-        objects(pvs::PairState::seen, "#4caf78");
+        objects();
         cells();
+        legend();
         svg_ += "</svg>\n";
         return std::move(svg_);
     }
@@ -41,21 +42,46 @@ class Map {
         svg_ += text;
     }
 
-    // Corner 0 and its neighbours' order: around the box seen along its axis that is nearest to the vertical.
-    void objects(pvs::PairState state, const char* color) {
+    static const char* color_of(pvs::PairState state) {
+        if (state == pvs::PairState::hidden) return "#d4d8dd";
+        return state == pvs::PairState::unseen ? "#f0d48a" : "#4caf78";
+    }
+
+    // An object from above: the ring of its box around that axis which is nearest to the vertical.
+    static std::array<glm::dvec3, 4> ring_of(const Obb& box) {
+        int up = 0;
+        for (int k = 1; k < 3; ++k)
+            if (std::abs(box.axes[k].y) > std::abs(box.axes[up].y)) up = k;
+        const glm::dvec3 a = glm::dvec3(box.axes[(up + 1) % 3]) * double(box.half_extents[(up + 1) % 3]);
+        const glm::dvec3 b = glm::dvec3(box.axes[(up + 2) % 3]) * double(box.half_extents[(up + 2) % 3]);
+        return {box.center - a - b, box.center + a - b, box.center + a + b, box.center - a + b};
+    }
+
+    // The largest first: the ground must not cover what stands on it.
+    void objects() {
+        std::vector<std::pair<double, std::uint32_t>> order;
         for (std::uint32_t o = 0; o < subject_.boxes.size(); ++o) {
-            if (!pvs_.is_baked(o) || pvs_.state(cell_, o) != state) continue;
-            const Obb& box = subject_.boxes[o];
-            int up = 0;
-            for (int k = 1; k < 3; ++k)
-                if (std::abs(box.axes[k].y) > std::abs(box.axes[up].y)) up = k;
-            const glm::dvec3 a = glm::dvec3(box.axes[(up + 1) % 3]) * double(box.half_extents[(up + 1) % 3]);
-            const glm::dvec3 b = glm::dvec3(box.axes[(up + 2) % 3]) * double(box.half_extents[(up + 2) % 3]);
+            if (!pvs_.is_baked(o)) continue;
+            const auto ring = ring_of(subject_.boxes[o]);
+            order.emplace_back(-glm::length(glm::cross(ring[1] - ring[0], ring[3] - ring[0])), o);
+        }
+        std::sort(order.begin(), order.end());
+        for (const auto& [size, o] : order) {
+            const auto ring = ring_of(subject_.boxes[o]);
             svg_ += "<path d='";
-            const std::array<glm::dvec3, 4> ring = {box.center - a - b, box.center + a - b, box.center + a + b,
-                                                    box.center - a + b};
             for (std::size_t i = 0; i < 4; ++i) print(i ? "L%.1f %.1f" : "M%.1f %.1f", x(ring[i]), z(ring[i]));
-            print("Z' fill='%s' stroke='#00000055' stroke-width='0.5'/>\n", color);
+            print("Z' fill='%s' stroke='#00000055' stroke-width='0.5'/>\n", color_of(pvs_.state(cell_, o)));
+        }
+    }
+
+    void legend() {
+        constexpr pvs::PairState states[] = {pvs::PairState::seen, pvs::PairState::unseen, pvs::PairState::hidden};
+        constexpr const char* names[] = {"seen from the red cell", "unseen, so far", "proved hidden"};
+        svg_ += "<rect x='8' y='8' width='190' height='74' fill='#ffffffdd' stroke='#888888' stroke-width='0.5'/>\n";
+        for (int i = 0; i < 3; ++i) {
+            print("<rect x='16' y='%d' width='16' height='14' fill='%s' stroke='#00000055'/>", 16 + 22 * i,
+                  color_of(states[i]));
+            print("<text x='40' y='%d' font-family='sans-serif' font-size='14'>%s</text>\n", 28 + 22 * i, names[i]);
         }
     }
 
