@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes the pictures of the README and of theory.md anew, beside this script. Needs a build (tests/run.sh or samples/run.sh), and Chromium for
-# the report's.   docs/pictures/make.sh [CROFTON]
+# Makes the pictures of the README and of the pages anew, beside this script. Needs a build (tests/run.sh or samples/run.sh), and Chromium for
+# pages and maps.   docs/pictures/make.sh [CROFTON]
 set -euo pipefail
 cd "$(dirname "$0")"
 crofton=${1:-../../build/release/bin/crofton}
@@ -23,4 +23,8 @@ if command -v chromium >/dev/null; then
         --blink-settings=preferredColorScheme=1 --window-size=960,1250 --screenshot="$work/report.png" \
         "file://$work/report.html" >/dev/null 2>&1
     cp "$work/report.png" report.png
+    "$crofton" pvs town --cells 16x1x16 --epsilon 2e-3 --out "$work/pvs.crofton" --svg "$work/pvs.svg"
+    chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" --window-size=1200,994 \
+        --screenshot="$work/pvs.png" "file://$work/pvs.svg" >/dev/null 2>&1
+    cp "$work/pvs.png" pvs.png
 fi
