@@ -24,7 +24,7 @@ if command -v chromium >/dev/null; then
         "file://$work/report.html" >/dev/null 2>&1
     cp "$work/report.png" report.png
     "$crofton" pvs town --cells 16x1x16 --epsilon 2e-3 --out "$work/pvs.crofton" --svg "$work/pvs.svg"
-    chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" --window-size=1200,994 \
+    chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/chromium" --window-size=1200,994 --force-device-scale-factor=0.6 \
         --screenshot="$work/pvs.png" "file://$work/pvs.svg" >/dev/null 2>&1
     cp "$work/pvs.png" pvs.png
 fi
