@@ -43,9 +43,9 @@ py::array record_array(const py::dtype& dtype, std::span<const T> values) {
 py::array records(const py::handle& given, const py::dtype& dtype, const char* name, const char* what) {
     py::array array = py::array::ensure(given);
     if (!array) PyErr_Clear();
+    if (array && has_layout(array, dtype)) return array;
     if (!array || array.dtype().kind() != 'V' || !array.dtype().attr("newbyteorder")("=").equal(dtype))
         raise_type(std::string(name) + ": " + what + " is expected");
-    if (has_layout(array, dtype)) return array;
     return array.attr("astype")(dtype, py::arg("order") = "C", py::arg("copy") = true);
 }
 
@@ -100,30 +100,38 @@ py::array_t<T, py::array::c_style> integers(const py::handle& given, const char*
 template py::array_t<std::uint32_t, py::array::c_style> integers(const py::handle&, const char*);
 template py::array_t<std::uint64_t, py::array::c_style> integers(const py::handle&, const char*);
 
-py::dtype box_dtype() {
+const py::dtype& box_dtype() {
     static_assert(sizeof(Obb) == 72);
-    const py::list names(py::make_tuple("center", "axes", "half_extents"));
-    const py::object dtype = py::module_::import("numpy").attr("dtype");
-    return py::dtype(
-        names,
-        py::list(py::make_tuple(dtype(py::make_tuple("f8", 3)), dtype(py::make_tuple("f4", py::make_tuple(3, 3))),
-                                dtype(py::make_tuple("f4", 3)))),
-        py::list(py::make_tuple(0, 24, 60)), 72);
+    static const py::dtype* const dtype = [] {  // never freed: the interpreter may end first
+        const py::object make = py::module_::import("numpy").attr("dtype");
+        return new py::dtype(
+            py::list(py::make_tuple("center", "axes", "half_extents")),
+            py::list(py::make_tuple(make(py::make_tuple("f8", 3)), make(py::make_tuple("f4", py::make_tuple(3, 3))),
+                                    make(py::make_tuple("f4", 3)))),
+            py::list(py::make_tuple(0, 24, 60)), 72);
+    }();
+    return *dtype;
 }
 
-py::dtype handle_dtype() {
+const py::dtype& handle_dtype() {
     static_assert(sizeof(ObjectHandle) == 8);
-    return py::dtype(py::list(py::make_tuple("index", "generation")),
-                     py::list(py::make_tuple(py::dtype::of<std::uint32_t>(), py::dtype::of<std::uint32_t>())),
-                     py::list(py::make_tuple(0, 4)), 8);
+    static const py::dtype* const dtype =
+        new py::dtype(py::list(py::make_tuple("index", "generation")),
+                      py::list(py::make_tuple(py::dtype::of<std::uint32_t>(), py::dtype::of<std::uint32_t>())),
+                      py::list(py::make_tuple(0, 4)), 8);
+    return *dtype;
 }
 
 Boxes::Boxes(const py::handle& given, const char* name) {
     if (py::isinstance<Obb>(given)) {
-        array_ = boxes_of({given.cast<const Obb*>(), 1});
+        owner_ = py::reinterpret_borrow<py::object>(given);
+        span_ = {given.cast<const Obb*>(), 1};
         return;
     }
-    array_ = records(given, box_dtype(), name, "a Box or an array of crofton.box_dtype, as crofton.boxes() makes it,");
+    const py::array array =
+        records(given, box_dtype(), name, "a Box or an array of crofton.box_dtype, as crofton.boxes() makes it,");
+    span_ = {static_cast<const Obb*>(array.data()), static_cast<std::size_t>(array.size())};
+    owner_ = array;
 }
 
 py::array boxes_of(std::span<const Obb> boxes) {

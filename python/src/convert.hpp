@@ -94,22 +94,21 @@ template <class T>
 
 // Arrays of boxes have crofton.box_dtype, an Obb to a record: `center` three doubles, `axes` three floats for each of
 // three axes, `half_extents` three floats.
-[[nodiscard]] py::dtype box_dtype();
+[[nodiscard]] const py::dtype& box_dtype();
 class Boxes {
   public:
     // A Box, or an array of box_dtype with any number of dimensions. Raises TypeError for others.
     Boxes(const py::handle& given, const char* name);
-    [[nodiscard]] std::span<const Obb> span() const {
-        return {static_cast<const Obb*>(array_.data()), static_cast<std::size_t>(array_.size())};
-    }
+    [[nodiscard]] std::span<const Obb> span() const { return span_; }
 
   private:
-    py::array array_;
+    py::object owner_;  // of the memory
+    std::span<const Obb> span_;
 };
 [[nodiscard]] py::array boxes_of(std::span<const Obb> boxes);
 
 // Arrays of handles have crofton.handle_dtype: `index` and `generation`, 32 bits each.
-[[nodiscard]] py::dtype handle_dtype();
+[[nodiscard]] const py::dtype& handle_dtype();
 template <class H>
 class Handles {
   public:

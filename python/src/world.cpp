@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <crofton/crofton.hpp>
+#include <cstdio>
 #include <mutex>
 #include <shared_mutex>
 #include <string>
@@ -12,6 +13,13 @@
 
 namespace crofton::python {
 namespace {
+
+template <class... Values>
+std::string format(const char* text, Values... values) {
+    char line[200];
+    std::snprintf(line, sizeof line, text, values...);
+    return line;
+}
 
 // Points and indices that keep their arrays alive.
 struct MeshArrays {
@@ -304,7 +312,8 @@ void bind_answers(py::module_& module) {
                                    d["occluders_drawn"] = s.occlusion.occluders_drawn;
                                    return d;
                                })
-        .def("__len__", [](const Seen& s) { return s.ids.size(); });
+        .def("__len__", [](const Seen& s) { return s.ids.size(); })
+        .def("__repr__", [](const Seen& s) { return format("Visible(%d objects)", static_cast<int>(s.ids.size())); });
     py::class_<ObjectRef>(module, "ObjectRef", "An object and its user number.")
         .def_readonly("object", &ObjectRef::object)
         .def_readonly("user", &ObjectRef::user);
@@ -313,6 +322,11 @@ void bind_answers(py::module_& module) {
         .def_readonly("user", &ObjectHit::user)
         .def_readonly("t", &ObjectHit::t, "how far along the ray, in lengths of its direction")
         .def_property_readonly("point", [](const ObjectHit& h) { return tuple_of(h.point); })
+        .def("__repr__",
+             [](const ObjectHit& h) {
+                 return format("Hit(user=%llu, t=%g, point=(%g, %g, %g))", static_cast<unsigned long long>(h.user), h.t,
+                               h.point.x, h.point.y, h.point.z);
+             })
         .def_property_readonly("triangle", [](const ObjectHit& h) {
             return h.triangle == kNoTriangle ? py::object(py::none()) : py::object(py::int_(h.triangle));
         });
@@ -320,6 +334,10 @@ void bind_answers(py::module_& module) {
         .def_readonly("object", &ClosestObject::object)
         .def_readonly("user", &ClosestObject::user)
         .def_readonly("distance", &ClosestObject::distance)
+        .def("__repr__",
+             [](const ClosestObject& c) {
+                 return format("Closest(user=%llu, distance=%g)", static_cast<unsigned long long>(c.user), c.distance);
+             })
         .def_property_readonly("on_shape", [](const ClosestObject& c) { return tuple_of(c.on_shape); })
         .def_property_readonly("on_object", [](const ClosestObject& c) { return tuple_of(c.on_object); });
 }
@@ -355,6 +373,13 @@ void bind_contact(py::module_& module) {
         .def_property_readonly(
             "normal", [](const ContactCopy& c) { return tuple_of(c.normal); }, "unit, from the first to the second")
         .def_readonly("depth", &ContactCopy::depth)
+        .def("__repr__",
+             [](const ContactCopy& c) {
+                 return format("Contact(%llu and %llu, %s, depth=%g, %d points)",
+                               static_cast<unsigned long long>(c.first.user),
+                               static_cast<unsigned long long>(c.second.user), phase_name(c.phase), c.depth,
+                               static_cast<int>(c.points.size()));
+             })
         .def_property_readonly("points", [](const ContactCopy& c) {
             py::array_t<double> points({static_cast<py::ssize_t>(c.points.size()), py::ssize_t{3}});
             for (std::size_t i = 0; i < c.points.size(); ++i)
