@@ -105,16 +105,31 @@ void frames(benchmark::State& state, Run run) {
     state.counters["ns"] = benchmark::Counter(all * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+// The surface as this library has it.
+class OwnSurface {
+  public:
+    OwnSurface(const SurfaceScene& scene, bool field) : is_field_(field) {
+        if (field)
+            heights_ = HeightField::build({kSide, kSide, scene.heights}).value();
+        else
+            tree_ = mesh::MeshTree::build(scene.mesh).value();
+    }
+    // Of a mesh these sides; a field is asked for its front.
+    [[nodiscard]] Body body(Sides sides) const {
+        return is_field_ ? Body::height_field(heights_) : Body::mesh(tree_, sides).value();
+    }
+
+  private:
+    bool is_field_;
+    HeightField heights_;
+    mesh::MeshTree tree_;
+};
+
 void crofton_rest(benchmark::State& state, bool field, bool capsule) {
     const SurfaceScene scene = make_scene(field, capsule);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
-    HeightField heights;
-    mesh::MeshTree tree;
-    if (field)
-        heights = HeightField::build({kSide, kSide, scene.heights}).value();
-    else
-        tree = mesh::MeshTree::build(scene.mesh).value();
-    const Body surface = field ? Body::height_field(heights) : Body::mesh(tree, Sides::front).value();
+    const OwnSurface own(scene, field);
+    const Body surface = own.body(Sides::front);
     const RigidTransform still;
     Manifolds found;
     frames(state, [&](int f, int i) {
@@ -133,13 +148,8 @@ BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/
 void crofton_drop(benchmark::State& state, bool field) {
     const SurfaceScene scene = make_scene(field, false);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
-    HeightField heights;
-    mesh::MeshTree tree;
-    if (field)
-        heights = HeightField::build({kSide, kSide, scene.heights}).value();
-    else
-        tree = mesh::MeshTree::build(scene.mesh).value();
-    const Body surface = field ? Body::height_field(heights) : Body::mesh(tree).value();
+    const OwnSurface own(scene, field);
+    const Body surface = own.body(Sides::both);
     const RigidTransform still;
     frames(state, [&](int f, int i) {
         RigidTransform from = scene.poses[f][i];

@@ -214,12 +214,10 @@ py::array matrix_of(const scene::Transform& transform) {
 measure::Criterion criterion_of(const py::handle& given) {
     if (py::isinstance<measure::Criterion>(given)) return given.cast<measure::Criterion>();
     if (!py::isinstance<py::str>(given)) raise_type("criterion: a Criterion or its name is expected");
-    const auto name = given.cast<std::string>();
-    if (name == "perimeter") return measure::minimal_perimeter();
-    if (name == "area") return measure::minimal_area();
-    if (name == "volume") return measure::minimal_volume();
-    raise({ErrorCode::invalid_argument, kNoItem,
-           "criterion: 'perimeter', 'area' or 'volume' is expected, not '" + name + "'"});
+    return choice_of<measure::Criterion>("criterion", given.cast<std::string>(),
+                                         {{"perimeter", measure::minimal_perimeter()},
+                                          {"area", measure::minimal_area()},
+                                          {"volume", measure::minimal_volume()}});
 }
 
 bool Watch::go_on(double first, double second) {

@@ -14,8 +14,11 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <initializer_list>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <variant>
 
 namespace crofton::python {
@@ -135,6 +138,19 @@ extern template class Handles<NodeHandle>;
 
 // A Criterion, or the name of one: "perimeter", "area", "volume".
 [[nodiscard]] measure::Criterion criterion_of(const py::handle& given);
+
+// The value of a name such as "fast". Raises Error with the names there are for any other.
+template <class T>
+[[nodiscard]] T choice_of(const char* argument, const std::string& name,
+                          std::initializer_list<std::pair<const char*, T>> choices) {
+    std::string names;
+    for (const auto& [known, value] : choices) {
+        if (name == known) return value;
+        names += std::string(names.empty() ? "'" : ", '") + known + "'";
+    }
+    raise({ErrorCode::invalid_argument, kNoItem,
+           std::string(argument) + ": one of " + names + " is expected, not '" + name + "'"});
+}
 
 // Runs f without the interpreter's lock.
 template <class F>

@@ -10,11 +10,9 @@ namespace crofton::python {
 namespace {
 
 fit::Quality quality_of(const std::string& name) {
-    if (name == "fast") return fit::Quality::fast;
-    if (name == "tight") return fit::Quality::tight;
-    if (name == "exact") return fit::Quality::exact;
-    raise(
-        {ErrorCode::invalid_argument, kNoItem, "quality: 'fast', 'tight' or 'exact' is expected, not '" + name + "'"});
+    using fit::Quality;
+    return choice_of<Quality>("quality", name,
+                              {{"fast", Quality::fast}, {"tight", Quality::tight}, {"exact", Quality::exact}});
 }
 
 Obb fit_obb(const py::handle& given, const py::handle& criterion, const std::string& quality) {
@@ -69,9 +67,9 @@ py::array fit_many(const py::handle& given, const py::handle& ends, const py::ob
 }
 
 fit::PlanarCriterion planar_criterion(const std::string& name) {
-    if (name == "perimeter") return fit::PlanarCriterion::perimeter;
-    if (name == "area") return fit::PlanarCriterion::area;
-    raise({ErrorCode::invalid_argument, kNoItem, "criterion: 'perimeter' or 'area' is expected, not '" + name + "'"});
+    using fit::PlanarCriterion;
+    return choice_of<PlanarCriterion>("criterion", name,
+                                      {{"perimeter", PlanarCriterion::perimeter}, {"area", PlanarCriterion::area}});
 }
 
 std::vector<glm::dvec2> planar_points(const py::handle& given) {

@@ -55,11 +55,10 @@ Camera make_camera(const py::handle& position, const py::handle& forward, const 
 }
 
 DepthRange depth_range(const std::string& name) {
-    if (name == "reversed_zero_to_one") return DepthRange::reversed_zero_to_one;
-    if (name == "zero_to_one") return DepthRange::zero_to_one;
-    if (name == "minus_one_to_one") return DepthRange::minus_one_to_one;
-    raise({ErrorCode::invalid_argument, kNoItem,
-           "depth: 'reversed_zero_to_one', 'zero_to_one' or 'minus_one_to_one' is expected, not '" + name + "'"});
+    return choice_of<DepthRange>("depth", name,
+                                 {{"reversed_zero_to_one", DepthRange::reversed_zero_to_one},
+                                  {"zero_to_one", DepthRange::zero_to_one},
+                                  {"minus_one_to_one", DepthRange::minus_one_to_one}});
 }
 
 Frustum frustum_from(const py::handle& matrix, const std::string& depth, const py::handle& origin) {

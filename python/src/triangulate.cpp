@@ -12,11 +12,10 @@ namespace {
 using triangulate::Triangulation;
 
 triangulate::Method method_of(const std::string& name) {
-    if (name == "minimum_weight") return triangulate::Method::minimum_weight;
-    if (name == "delaunay") return triangulate::Method::delaunay;
-    if (name == "ear") return triangulate::Method::ear;
-    raise({ErrorCode::invalid_argument, kNoItem,
-           "method: 'minimum_weight', 'delaunay' or 'ear' is expected, not '" + name + "'"});
+    using triangulate::Method;
+    return choice_of<Method>(
+        "method", name,
+        {{"minimum_weight", Method::minimum_weight}, {"delaunay", Method::delaunay}, {"ear", Method::ear}});
 }
 
 void append_ring(const py::handle& given, Polygon& polygon) {

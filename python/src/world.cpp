@@ -436,11 +436,11 @@ void set_boxes(PyWorld& world, const py::handle& given, const py::handle& given_
 }
 
 boxtree::Orientation orientation_of(const std::string& name) {
-    if (name == "aligned") return boxtree::Orientation::aligned;
-    if (name == "oriented") return boxtree::Orientation::oriented;
-    if (name == "automatic") return boxtree::Orientation::automatic;
-    raise({ErrorCode::invalid_argument, kNoItem,
-           "tree: 'aligned', 'oriented' or 'automatic' is expected, not '" + name + "'"});
+    using boxtree::Orientation;
+    return choice_of<Orientation>("tree", name,
+                                  {{"aligned", Orientation::aligned},
+                                   {"oriented", Orientation::oriented},
+                                   {"automatic", Orientation::automatic}});
 }
 
 Ray ray_of(const py::handle& origin, const py::handle& direction, double max_t) {
