@@ -18,10 +18,10 @@ struct BoundGivenAncestors {
     std::uint32_t plain_hits = 0;     // of those, how many hit the box that the criterion alone chooses
 };
 
-// By counting a sample of queries. Searches orientations from several starts (boxes fitted by the criterion, by area
-// and by edge sum, the ancestors' axes, the world's) by turning the best one by ever smaller angles, for planes, rays
-// or frusta as the sample holds; ties go to the criterion. A good local optimum of the count, never worse than the
-// plain fit; no certificate. The box contains all points. Errors: as fit_obb; a criterion that fails validate.
+// By counting a sample of queries: planes, rays or frusta. Several orientations are tried first: boxes fitted by the
+// criterion, by area and by edge sum, the ancestors' axes, the world's. The best one is then turned by ever smaller
+// angles. Ties go to the criterion. A good local optimum of the count, never worse than the plain fit; no certificate.
+// The box contains all points. Errors: as fit_obb; a criterion that fails validate.
 [[nodiscard]] Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> points,
                                                                 std::span<const Obb> ancestors,
                                                                 const study::QuerySample& queries,
@@ -43,8 +43,8 @@ struct BoxGivenAncestors {
 // For planes, with a certificate. All measures are by the same 1,024 directions, a quadrature within about 1e-3 of (4);
 // the certificate is for it. Branch and bound over the orientations that differ as boxes: a cube of Rodrigues vectors
 // of half side tan(π/8), since quarter turns change no box. Per direction the box's support is at least a linear
-// function of the turn minus a remainder of second order, so the mean of min(ancestors' support, that) is concave, and
-// over a cell least in a corner; the notes on measure derive it. Errors: as fit_obb and validate_bodies; an object that
+// function of the turn, minus a remainder of second order. The mean of min(ancestors' support, that) is concave, so
+// over a cell it is least in a corner (docs/notes/measure.md). Errors: as fit_obb and validate_bodies; an object that
 // sticks out of its ancestors; one without extent; options out of range.
 [[nodiscard]] Result<BoxGivenAncestors> box_given_ancestors(std::span<const glm::dvec3> points,
                                                             std::span<const ConvexBody> ancestors,
