@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+//! What objects are made of: meshes, bounds, places.
+use crate::error::wrong;
+#[cfg(doc)]
+use crate::World;
+use crate::{sys, Mesh, Node, Obb, Result, Transform};
+use std::{mem::size_of, os::raw::c_void, ptr};
+
+/// A mesh's positions, in the caller's memory.
+#[derive(Debug, Clone, Copy)]
+pub enum Vertices<'a> {
+    /// x, y, z each.
+    F32(&'a [[f32; 3]]),
+    /// Rounded to `f32`.
+    F64(&'a [[f64; 3]]),
+    /// Numbers of which x, y, z of each vertex are the first three of `stride`.
+    Interleaved {
+        /// All vertices, one after another.
+        floats: &'a [f32],
+        /// Numbers a vertex, at least 3.
+        stride: usize,
+    },
+}
+
+/// A mesh's triangles, three indices each, counter-clockwise seen from outside.
+#[derive(Debug, Clone, Copy)]
+pub enum Indices<'a> {
+    /// Three positions are one triangle.
+    None,
+    /// 32 bits each.
+    U32(&'a [u32]),
+    /// 16 bits each.
+    U16(&'a [u16]),
+}
+
+/// A mesh in its own frame; [`World`] copies what it needs.
+#[derive(Debug, Clone, Copy)]
+pub struct MeshData<'a> {
+    /// Where its corners are.
+    pub vertices: Vertices<'a>,
+    /// Which of them make a triangle.
+    pub indices: Indices<'a>,
+    /// Its box stands for it in rays and contacts.
+    pub without_triangles: bool,
+}
+
+impl<'a> MeshData<'a> {
+    /// The usual kind.
+    pub fn new(positions: &'a [[f32; 3]], indices: &'a [u32]) -> MeshData<'a> {
+        MeshData { vertices: Vertices::F32(positions), indices: Indices::U32(indices), without_triangles: false }
+    }
+
+    pub(crate) fn raw(&self) -> Result<sys::MeshData> {
+        let (positions, position_count, position_stride, is_double) = match self.vertices {
+            Vertices::F32(p) => (p.as_ptr() as *const c_void, p.len(), 0, 0),
+            Vertices::F64(p) => (p.as_ptr() as *const c_void, p.len(), 0, 1),
+            Vertices::Interleaved { floats, stride } => {
+                if stride < 3 || floats.len() % stride != 0 {
+                    return Err(wrong(
+                        "interleaved vertices: `floats` is to hold whole vertices of `stride` >= 3 numbers",
+                    ));
+                }
+                (floats.as_ptr() as *const c_void, floats.len() / stride, stride * size_of::<f32>(), 0)
+            }
+        };
+        let (indices, index_count, is_short) = match self.indices {
+            Indices::None => (ptr::null(), 0, 0),
+            Indices::U32(i) => (i.as_ptr() as *const c_void, i.len(), 0),
+            Indices::U16(i) => (i.as_ptr() as *const c_void, i.len(), 1),
+        };
+        Ok(sys::MeshData {
+            size: size_of::<sys::MeshData>(),
+            positions,
+            position_count,
+            position_stride,
+            indices,
+            index_count,
+            is_double,
+            is_short,
+            without_triangles: self.without_triangles as u32,
+        })
+    }
+}
+
+/// The shape of an object without a mesh, in the world's coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// An oriented box.
+    Box(Obb),
+    /// A box along the axes.
+    Aligned {
+        /// Its least corner.
+        min: [f64; 3],
+        /// Its greatest corner.
+        max: [f64; 3],
+    },
+    /// A ball.
+    Ball {
+        /// Its middle.
+        center: [f64; 3],
+        /// At least 0.
+        radius: f64,
+    },
+}
+
+impl Bound {
+    pub(crate) fn raw(&self) -> sys::Bound {
+        let mut bound = sys::Bound {
+            kind: 0,
+            bounding_box: Obb::aligned([0.0; 3], [0.0; 3]),
+            min: [0.0; 3],
+            max: [0.0; 3],
+            center: [0.0; 3],
+            radius: 0.0,
+        };
+        match *self {
+            Bound::Box(b) => (bound.kind, bound.bounding_box) = (1, b),
+            Bound::Aligned { min, max } => (bound.kind, bound.min, bound.max) = (2, min, max),
+            Bound::Ball { center, radius } => (bound.kind, bound.center, bound.radius) = (3, center, radius),
+        }
+        bound
+    }
+}
+
+/// An object to be: a mesh that is placed under a node or in the world, or a bound.
+#[derive(Debug, Clone, Copy)]
+pub struct Description {
+    pub(crate) mesh: Option<Mesh>,
+    pub(crate) bound: Option<Bound>,
+    pub(crate) node: Option<Node>,
+    pub(crate) transform: Option<Transform>,
+    pub(crate) user: u64,
+    pub(crate) layers: u32,
+    pub(crate) collides_with: u32,
+    pub(crate) transparent: bool,
+}
+
+impl Description {
+    fn new(mesh: Option<Mesh>, bound: Option<Bound>) -> Description {
+        Description {
+            mesh,
+            bound,
+            node: None,
+            transform: None,
+            user: 0,
+            layers: u32::MAX,
+            collides_with: u32::MAX,
+            transparent: false,
+        }
+    }
+    /// An object with a mesh.
+    pub fn mesh(mesh: Mesh) -> Description {
+        Description::new(Some(mesh), None)
+    }
+    /// An object that is a bound alone.
+    pub fn bound(bound: Bound) -> Description {
+        Description::new(None, Some(bound))
+    }
+    /// Moves with this node.
+    pub fn under(self, node: Node) -> Description {
+        Description { node: Some(node), ..self }
+    }
+    /// Where its mesh is, under its node or in the world.
+    pub fn at(self, transform: Transform) -> Description {
+        Description { transform: Some(transform), ..self }
+    }
+    /// A number that is given back with every answer.
+    pub fn user(self, user: u64) -> Description {
+        Description { user, ..self }
+    }
+    /// The layers that the object is in; all unless told.
+    pub fn layers(self, layers: u32) -> Description {
+        Description { layers, ..self }
+    }
+    /// The layers that the object collides with; all unless told.
+    pub fn collides_with(self, layers: u32) -> Description {
+        Description { collides_with: layers, ..self }
+    }
+    /// Hides nothing.
+    pub fn transparent(self) -> Description {
+        Description { transparent: true, ..self }
+    }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+use crate::error::check;
+use crate::{sys, Camera, Obb, Result};
+use std::{mem::size_of, ptr};
+
+/// What a box is to have least of: volume_weight V + area_weight F + mean_curvature_weight M. Weights are at least 0
+/// and not all 0.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Criterion {
+    /// Of the volume.
+    pub volume_weight: f64,
+    /// Of the surface area.
+    pub area_weight: f64,
+    /// Of the integral of mean curvature; for a box, pi times the sum of its three sides.
+    pub mean_curvature_weight: f64,
+}
+
+impl Criterion {
+    fn zero() -> Criterion {
+        Criterion { volume_weight: 0.0, area_weight: 0.0, mean_curvature_weight: 0.0 }
+    }
+    /// The sum of the edges: for frusta that are large beside the objects.
+    pub fn minimal_perimeter() -> Criterion {
+        let mut criterion = Criterion::zero();
+        check(unsafe { sys::crofton_criterion_minimal_perimeter(&mut criterion) }).expect("it takes no input");
+        criterion
+    }
+    /// Makes the camera's expected number of hits least; its far distance must be finite.
+    pub fn for_frustum(camera: &Camera) -> Result<Criterion> {
+        let mut criterion = Criterion::zero();
+        check(unsafe { sys::crofton_criterion_for_frustum(&camera.raw(), &mut criterion) })?;
+        Ok(criterion)
+    }
+    /// For rays and segments of this length.
+    pub fn for_rays(length: f64) -> Result<Criterion> {
+        let mut criterion = Criterion::zero();
+        check(unsafe { sys::crofton_criterion_for_rays(length, &mut criterion) })?;
+        Ok(criterion)
+    }
+}
+
+/// How much work goes into a box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quality {
+    /// One or two passes over the points.
+    Fast = 0,
+    /// Convex hull and local search.
+    Tight = 1,
+    /// The global optimum.
+    Exact = 2,
+}
+
+/// Points to put a box around.
+#[derive(Debug, Clone, Copy)]
+pub enum Points<'a> {
+    /// x, y, z each.
+    F32(&'a [[f32; 3]]),
+    /// x, y, z each.
+    F64(&'a [[f64; 3]]),
+}
+
+/// A box that holds every point, best by `criterion`.
+pub fn fit(points: Points, quality: Quality, criterion: &Criterion) -> Result<Obb> {
+    let options =
+        sys::FitOptions { size: size_of::<sys::FitOptions>(), quality: quality as u32, criterion: *criterion };
+    let mut result = Obb::aligned([0.0; 3], [0.0; 3]);
+    check(unsafe {
+        match points {
+            Points::F32(p) => sys::crofton_fit_floats(p.as_ptr() as *const f32, p.len(), &options, &mut result),
+            Points::F64(p) => sys::crofton_fit_doubles(p.as_ptr() as *const f64, p.len(), &options, &mut result),
+        }
+    })?;
+    Ok(result)
+}
+
+/// A box that holds all the boxes; minimal perimeter unless told.
+pub fn fit_boxes(boxes: &[Obb], criterion: Option<&Criterion>) -> Result<Obb> {
+    let mut result = Obb::aligned([0.0; 3], [0.0; 3]);
+    let criterion = criterion.map_or(ptr::null(), |c| c as *const Criterion);
+    check(unsafe { sys::crofton_fit_boxes(boxes.as_ptr(), boxes.len(), criterion, &mut result) })?;
+    Ok(result)
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//! Crofton for Rust: what a camera sees, what touches what, what a ray hits, exactly; and boxes and triangulations that
+//! are best by a stated measure. A thin crate over Crofton's C API: the library does the work, the compiler checks who
+//! owns what.
+//!
+//! ```
+//! use crofton::{Bound, Camera, Description, VisibleObjects, World};
+//! # fn main() -> Result<(), crofton::Error> {
+//! let mut world = World::new()?;
+//! let ball = world.add(&Description::bound(Bound::Ball { center: [0.0, 0.0, -5.0], radius: 1.0 }).user(7))?;
+//! world.update()?; // once a frame; then ask
+//! let mut visible = VisibleObjects::new()?;
+//! let seen = world.view(&Camera::default().frustum()?, &mut visible)?;
+//! assert_eq!(seen.ids(), [ball.index]);
+//! # Ok(()) }
+//! ```
+//!
+//! Positions are `f64` in the world's coordinates, which are right-handed; angles are radians. Answers are as of the
+//! last [`World::update`]. A `&World` may be asked from many threads at once.
+#![warn(missing_docs)]
+mod collider;
+mod description;
+mod error;
+mod fit;
+mod geometry;
+mod jobs;
+mod occlusion;
+mod queries;
+#[allow(missing_docs, dead_code)]
+mod sys;
+mod triangulate;
+mod views;
+mod world;
+
+pub use collider::{Collider, TriangleHit};
+pub use description::{Bound, Description, Indices, MeshData, Vertices};
+pub use error::{Error, Result, Status};
+pub use fit::{fit, fit_boxes, Criterion, Points, Quality};
+pub use geometry::{
+    classify, distance, manifold, ray_enters, touches, Camera, ContactPoint, DepthRange, Frustum, Manifold, Obb,
+    Projection, Ray, Separation, Transform, Verdict,
+};
+pub use jobs::{Executor, Threads};
+pub use occlusion::{FindOptions, OcclusionOptions, OcclusionStatistics};
+pub use queries::{Closest, Contact, Containment, Found, MeshContact, ObjectHit, ObjectPair, Phase, Shape};
+pub use triangulate::{Method, Triangulation, Triangulator};
+pub use views::{Seen, SeenInViews, VisibleInViews, VisibleObjects};
+pub use world::{Mesh, Node, Object, ObjectRef, Statistics, World, WorldOptions};
+
+/// All 32 layers.
+pub const ALL_LAYERS: u32 = u32::MAX;
+
+/// The library's version, "major.minor.patch".
+pub fn version() -> &'static str {
+    // The library returns a constant of plain ASCII.
+    unsafe { std::ffi::CStr::from_ptr(sys::crofton_version_string()) }.to_str().unwrap_or("")
+}
+
+/// The programs of README.md are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

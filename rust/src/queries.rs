@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+//! What rays and shapes meet, and what touches.
+use crate::error::{check, slice};
+use crate::{sys, ContactPoint, Obb, Object, ObjectRef, Ray, Result, World};
+use std::{mem::size_of, os::raw::c_int, ptr};
+
+const NONE: u32 = u32::MAX;
+
+/// Where a ray meets an object.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ObjectHit {
+    /// Its handle.
+    pub object: Object,
+    /// The caller's number.
+    pub user: u64,
+    /// The ray's.
+    pub t: f64,
+    /// In the world's coordinates.
+    pub point: [f64; 3],
+    triangle: u32,
+}
+
+impl ObjectHit {
+    /// Of the object's mesh.
+    pub fn triangle(&self) -> Option<u32> {
+        (self.triangle != NONE).then_some(self.triangle)
+    }
+}
+
+/// A shape to ask with, in the world's coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// An oriented box.
+    Box(Obb),
+    /// A ball.
+    Ball {
+        /// Its middle.
+        center: [f64; 3],
+        /// At least 0.
+        radius: f64,
+    },
+    /// All points no farther than `radius` from a segment.
+    Capsule {
+        /// One end of the segment.
+        begin: [f64; 3],
+        /// The other.
+        end: [f64; 3],
+        /// At least 0.
+        radius: f64,
+    },
+}
+
+/// The nearest object to a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closest {
+    /// Its handle.
+    pub object: Object,
+    /// The caller's number.
+    pub user: u64,
+    /// 0 where they meet.
+    pub distance: f64,
+    /// A nearest point of the shape.
+    pub on_shape: [f64; 3],
+    /// A nearest point of the object's box or ball.
+    pub on_object: [f64; 3],
+}
+
+/// Two objects whose boxes or balls meet; `first` has the lower index.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ObjectPair {
+    /// The one with the lower index.
+    pub first: ObjectRef,
+    /// The other.
+    pub second: ObjectRef,
+}
+
+/// Since when two objects touch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Since this update.
+    Began,
+    /// Since an earlier one.
+    Stayed,
+    /// No longer; they did in the update before.
+    Ended,
+}
+
+/// Which of two objects lies inside the other, where no surfaces meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Containment {
+    /// Neither, or the surfaces meet.
+    Nothing,
+    /// The first lies inside the second.
+    FirstInside,
+    /// The second lies inside the first.
+    SecondInside,
+    /// Some pieces of a mesh do, but not all.
+    Partly,
+}
+
+/// Where two triangles meet.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshContact {
+    /// Of the first mesh.
+    pub first_triangle: u32,
+    /// Of the second mesh.
+    pub second_triangle: u32,
+    /// One end of their common segment.
+    pub begin: [f64; 3],
+    /// The other end.
+    pub end: [f64; 3],
+    /// Of the second mesh's triangle; unit.
+    pub normal: [f64; 3],
+}
+
+/// Two objects that touch, or that did in the update before.
+#[derive(Debug, Clone, Copy)]
+pub struct Contact<'a> {
+    /// The one with the lower index.
+    pub first: ObjectRef,
+    /// The other.
+    pub second: ObjectRef,
+    /// Since when.
+    pub phase: Phase,
+    /// Whether one holds the other.
+    pub inside: Containment,
+    /// Unit, from first to second; 0 where no direction is known.
+    pub normal: [f64; 3],
+    /// Moving the second by `depth * normal` parts them; 0 between meshes unless options ask for it.
+    pub depth: f64,
+    /// At most four.
+    pub points: &'a [ContactPoint],
+    /// Of two meshes, or a mesh and a box.
+    pub triangles: &'a [MeshContact],
+}
+
+/// Memory for lists of objects or hits; keep it from frame to frame.
+pub struct Found {
+    raw: *mut sys::Found,
+}
+
+unsafe impl Send for Found {}
+unsafe impl Sync for Found {}
+
+impl Found {
+    /// Room for nothing yet.
+    pub fn new() -> Result<Found> {
+        let mut raw = ptr::null_mut();
+        check(unsafe { sys::crofton_found_create(&mut raw) })?;
+        Ok(Found { raw })
+    }
+}
+
+impl Drop for Found {
+    fn drop(&mut self) {
+        unsafe { sys::crofton_found_destroy(self.raw) };
+    }
+}
+
+impl World {
+    /// The nearest hit among objects in any of `layers`: triangles of meshes, boxes and balls.
+    pub fn raycast(&self, ray: &Ray, layers: u32) -> Result<Option<ObjectHit>> {
+        Ok(self.raycasts(std::slice::from_ref(ray), layers)?.pop().flatten())
+    }
+
+    /// The nearest hit of each ray.
+    pub fn raycasts(&self, rays: &[Ray], layers: u32) -> Result<Vec<Option<ObjectHit>>> {
+        let mut hits = vec![no_hit(); rays.len()];
+        check(unsafe { sys::crofton_world_raycast(self.raw, rays.as_ptr(), rays.len(), layers, hits.as_mut_ptr()) })?;
+        Ok(hits.into_iter().map(|hit| (hit.object.index != NONE).then_some(hit)).collect())
+    }
+
+    /// Whether the ray hits anything: quicker than what.
+    pub fn raycast_any(&self, ray: &Ray, layers: u32) -> Result<bool> {
+        let mut hit = 0;
+        check(unsafe { sys::crofton_world_raycast_any(self.raw, ray, layers, &mut hit) })?;
+        Ok(hit != 0)
+    }
+
+    /// The nearest hit of every object that the ray meets, by t, then by index.
+    pub fn raycast_all<'a>(&self, ray: &Ray, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectHit]> {
+        let (mut hits, mut count) = (ptr::null(), 0);
+        check(unsafe { sys::crofton_world_raycast_all(self.raw, ray, layers, found.raw) })?;
+        check(unsafe { sys::crofton_found_hits(found.raw, &mut hits, &mut count) })?;
+        Ok(unsafe { slice(hits, count) })
+    }
+
+    /// Whose box or ball meets the shape, by index. A mesh's box stands for it.
+    pub fn overlap<'a>(&self, shape: &Shape, layers: u32, found: &'a mut Found) -> Result<&'a [ObjectRef]> {
+        check(unsafe {
+            match shape {
+                Shape::Box(b) => sys::crofton_world_overlap_box(self.raw, b, layers, found.raw),
+                Shape::Ball { center, radius } => {
+                    sys::crofton_world_overlap_ball(self.raw, center.as_ptr(), *radius, layers, found.raw)
+                }
+                Shape::Capsule { begin, end, radius } => {
+                    let (b, e) = (begin.as_ptr(), end.as_ptr());
+                    sys::crofton_world_overlap_capsule(self.raw, b, e, *radius, layers, found.raw)
+                }
+            }
+        })?;
+        let (mut objects, mut count) = (ptr::null(), 0);
+        check(unsafe { sys::crofton_found_objects(found.raw, &mut objects, &mut count) })?;
+        Ok(unsafe { slice(objects, count) })
+    }
+
+    /// The box or ball nearest to the shape, no farther than `max_distance`, which may be infinite.
+    pub fn closest(&self, shape: &Shape, max_distance: f64, layers: u32) -> Result<Option<Closest>> {
+        let mut c: sys::ClosestObject = unsafe { std::mem::zeroed() };
+        c.size = size_of::<sys::ClosestObject>();
+        check(unsafe {
+            match shape {
+                Shape::Box(b) => sys::crofton_world_closest_to_box(self.raw, b, max_distance, layers, &mut c),
+                Shape::Ball { center, radius } => {
+                    sys::crofton_world_closest_to_ball(self.raw, center.as_ptr(), *radius, max_distance, layers, &mut c)
+                }
+                Shape::Capsule { begin, end, radius } => {
+                    let (b, e) = (begin.as_ptr(), end.as_ptr());
+                    sys::crofton_world_closest_to_capsule(self.raw, b, e, *radius, max_distance, layers, &mut c)
+                }
+            }
+        })?;
+        let (object, user, distance) = (c.object, c.user, c.distance);
+        let closest = Closest { object, user, distance, on_shape: c.on_shape, on_object: c.on_object };
+        Ok((object.index != NONE).then_some(closest))
+    }
+
+    /// Objects whose boxes or balls meet, in order.
+    ///
+    /// ```compile_fail
+    /// # let mut world = crofton::World::new().unwrap();
+    /// let pairs = world.pairs().unwrap();
+    /// world.update().unwrap(); // the pairs are the world's
+    /// assert!(pairs.is_empty());
+    /// ```
+    pub fn pairs(&self) -> Result<&[ObjectPair]> {
+        let (mut pairs, mut count) = (ptr::null(), 0);
+        check(unsafe { sys::crofton_world_pairs(self.raw, &mut pairs, &mut count) })?;
+        Ok(unsafe { slice(pairs, count) })
+    }
+
+    /// What touches, and what has ceased to, in the order of the pairs.
+    pub fn contacts(&self) -> Result<Vec<Contact<'_>>> {
+        let mut count = 0;
+        check(unsafe { sys::crofton_world_contact_count(self.raw, &mut count) })?;
+        (0..count).map(|i| self.contact(i)).collect()
+    }
+
+    fn contact(&self, place: usize) -> Result<Contact<'_>> {
+        let mut c: sys::ObjectContact = unsafe { std::mem::zeroed() };
+        c.size = size_of::<sys::ObjectContact>();
+        check(unsafe { sys::crofton_world_contact(self.raw, place, &mut c) })?;
+        Ok(Contact {
+            first: c.first,
+            second: c.second,
+            phase: [Phase::Began, Phase::Stayed, Phase::Ended][c.phase.min(2) as usize],
+            inside: match c.inside as c_int {
+                1 => Containment::FirstInside,
+                2 => Containment::SecondInside,
+                3 => Containment::Partly,
+                _ => Containment::Nothing,
+            },
+            normal: c.normal,
+            depth: c.depth,
+            points: unsafe { slice(c.points, c.point_count) },
+            triangles: unsafe { slice(c.triangles, c.triangle_count) },
+        })
+    }
+}
+
+fn no_hit() -> ObjectHit {
+    ObjectHit { object: Object { index: NONE, generation: 0 }, user: 0, t: 0.0, point: [0.0; 3], triangle: NONE }
+}

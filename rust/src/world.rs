@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+//! An engine's objects, what they are and where.
+use crate::error::{check, wrong};
+use crate::jobs::with_jobs;
+use crate::{sys, Bound, Description, Executor, Indices, MeshData, Obb, Result, Transform, Vertices};
+use std::{mem::size_of, ptr};
+
+macro_rules! handle {
+    ($name:ident, $text:literal) => {
+        #[doc = $text]
+        ///
+        /// An index that is used again and a generation that tells its users apart. A call that takes the handle of
+        /// what has been removed fails with [`Status::StaleHandle`](crate::Status::StaleHandle).
+        #[repr(C)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $name {
+            /// What views list.
+            pub index: u32,
+            /// How often the index had been given out before.
+            pub generation: u32,
+        }
+    };
+}
+handle!(Object, "An object of a [`World`].");
+handle!(Node, "A node of a [`World`]: what moves it moves all below it.");
+handle!(Mesh, "A mesh of a [`World`].");
+
+/// An object and the number that the caller gave it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ObjectRef {
+    /// Its handle.
+    pub object: Object,
+    /// The caller's own, from [`Description::user`].
+    pub user: u64,
+}
+
+/// What a [`World`] looks for; the default is everything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WorldOptions {
+    /// Neither pairs nor contacts.
+    pub without_pairs: bool,
+    /// Pairs alone.
+    pub without_contacts: bool,
+    /// A closed mesh around another object does not touch it.
+    pub without_containment: bool,
+    /// Contacts between meshes have a way out, which costs more.
+    pub with_mesh_depth: bool,
+    /// More are an error; 0: 2^24.
+    pub max_pairs: u64,
+}
+
+/// As of the last update.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Statistics {
+    /// All of them.
+    pub objects: u64,
+    /// Shown ones that rest.
+    pub resting: u64,
+    /// Shown ones that move.
+    pub moving: u64,
+    /// Boxes that the last update changed.
+    pub boxes_changed: u32,
+    /// Hidden because the product of transforms has put them beyond the range, until they return.
+    pub out_of_range: u32,
+}
+
+/// Owns nodes, meshes and objects. Changes take effect in [`World::update`]; answers are as of the last one.
+pub struct World {
+    pub(crate) raw: *mut sys::World,
+}
+
+// Calls that take a pointer to const may run at the same time; all others take &mut here.
+unsafe impl Send for World {}
+unsafe impl Sync for World {}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        unsafe { sys::crofton_world_destroy(self.raw) };
+    }
+}
+
+impl World {
+    /// An empty world.
+    pub fn new() -> Result<World> {
+        World::with(WorldOptions::default())
+    }
+
+    /// An empty world that does less, or more.
+    pub fn with(options: WorldOptions) -> Result<World> {
+        let options = sys::WorldOptions {
+            size: size_of::<sys::WorldOptions>(),
+            without_pairs: options.without_pairs as u32,
+            without_contacts: options.without_contacts as u32,
+            without_containment: options.without_containment as u32,
+            with_mesh_depth: options.with_mesh_depth as u32,
+            max_pairs: options.max_pairs,
+            rebuild_budget: 0,
+            without_rebuild: 0,
+            updates_to_rest: 0,
+        };
+        if unsafe { sys::crofton_api_version() } != sys::API_VERSION {
+            return Err(wrong(
+                "this crate and the library that was loaded have different API versions: build both anew",
+            ));
+        }
+        let mut raw = ptr::null_mut();
+        check(unsafe { sys::crofton_world_create(&options, &mut raw) })?;
+        Ok(World { raw })
+    }
+
+    /// Copies what it needs of `data`.
+    pub fn add_mesh(&mut self, data: &MeshData) -> Result<Mesh> {
+        let mut mesh = Mesh { index: 0, generation: 0 };
+        check(unsafe { sys::crofton_world_add_mesh(self.raw, &data.raw()?, &mut mesh) })?;
+        Ok(mesh)
+    }
+    /// All objects with this mesh get the new one.
+    pub fn replace_mesh(&mut self, mesh: Mesh, data: &MeshData) -> Result<()> {
+        check(unsafe { sys::crofton_world_replace_mesh(self.raw, mesh, &data.raw()?) })
+    }
+    /// For a mesh that deforms: as many vertices as before.
+    pub fn set_vertices(&mut self, mesh: Mesh, vertices: Vertices) -> Result<()> {
+        let data = MeshData { vertices, indices: Indices::None, without_triangles: false };
+        check(unsafe { sys::crofton_world_set_vertices(self.raw, mesh, &data.raw()?) })
+    }
+    /// An error while objects use it.
+    pub fn remove_mesh(&mut self, mesh: Mesh) -> Result<()> {
+        check(unsafe { sys::crofton_world_remove_mesh(self.raw, mesh) })
+    }
+
+    /// `layers` limits those of all objects below.
+    pub fn add_node(&mut self, parent: Option<Node>, transform: &Transform, layers: u32) -> Result<Node> {
+        let mut node = Node { index: 0, generation: 0 };
+        check(unsafe { sys::crofton_world_add_node(self.raw, as_pointer(&parent), transform, layers, &mut node) })?;
+        Ok(node)
+    }
+    /// With all nodes and objects below it.
+    pub fn remove_node(&mut self, node: Node) -> Result<()> {
+        check(unsafe { sys::crofton_world_remove_node(self.raw, node) })
+    }
+    /// An error where `parent` is the node itself or one below it.
+    pub fn set_parent(&mut self, node: Node, parent: Option<Node>) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_parent(self.raw, node, as_pointer(&parent)) })
+    }
+    /// Limits the layers of all objects below.
+    pub fn set_node_layers(&mut self, node: Node, layers: u32) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_node_layers(self.raw, node, layers) })
+    }
+    /// Items that are refused stay as they are and all others change; the error names the first.
+    pub fn set_node_transforms(&mut self, nodes: &[Node], transforms: &[Transform]) -> Result<()> {
+        same_length(nodes.len(), transforms.len())?;
+        let (n, t) = (nodes.as_ptr(), transforms.as_ptr());
+        check(unsafe { sys::crofton_world_set_node_transforms(self.raw, n, 0, t, 0, nodes.len()) })
+    }
+
+    /// Adds an object; it is in answers from the next update on.
+    pub fn add(&mut self, description: &Description) -> Result<Object> {
+        let bound = description.bound.map(|b| b.raw());
+        let none = (u32::MAX, u32::MAX);
+        let mesh = description.mesh.unwrap_or(Mesh { index: none.0, generation: none.1 });
+        let node = description.node.unwrap_or(Node { index: none.0, generation: none.1 });
+        let raw = sys::ObjectDescription {
+            size: size_of::<sys::ObjectDescription>(),
+            user: description.user,
+            bound: as_pointer(&bound),
+            transform: as_pointer(&description.transform),
+            has_mesh: description.mesh.is_some() as u32,
+            has_node: description.node.is_some() as u32,
+            mesh,
+            node,
+            hidden_layers: !description.layers,
+            ignored_layers: !description.collides_with,
+            transparent: description.transparent as u32,
+            only_occludes: 0,
+        };
+        let mut object = Object { index: 0, generation: 0 };
+        check(unsafe { sys::crofton_world_add(self.raw, &raw, &mut object) })?;
+        Ok(object)
+    }
+    /// Its handle is stale from now on.
+    pub fn remove(&mut self, object: Object) -> Result<()> {
+        check(unsafe { sys::crofton_world_remove(self.raw, object) })
+    }
+    /// Of objects with a mesh. Items that are refused stay as they are; the error names the first.
+    pub fn set_transforms(&mut self, objects: &[Object], transforms: &[Transform]) -> Result<()> {
+        same_length(objects.len(), transforms.len())?;
+        let (o, t) = (objects.as_ptr(), transforms.as_ptr());
+        check(unsafe { sys::crofton_world_set_transforms(self.raw, o, 0, t, 0, objects.len()) })
+    }
+    /// Of objects that were added with a bound, which becomes a box. Refused items as in [`World::set_transforms`].
+    pub fn set_boxes(&mut self, objects: &[Object], boxes: &[Obb]) -> Result<()> {
+        same_length(objects.len(), boxes.len())?;
+        let (o, b) = (objects.as_ptr(), boxes.as_ptr());
+        check(unsafe { sys::crofton_world_set_boxes(self.raw, o, 0, b, 0, objects.len()) })
+    }
+    /// Of an object that was added with a bound.
+    pub fn set_bound(&mut self, object: Object, bound: Bound) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_bound(self.raw, object, &bound.raw()) })
+    }
+    /// Of an object that has a mesh.
+    pub fn set_mesh(&mut self, object: Object, mesh: Mesh) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_mesh(self.raw, object, mesh) })
+    }
+    /// A hidden object is in no answer until it is shown again.
+    pub fn set_hidden(&mut self, object: Object, hidden: bool) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_hidden(self.raw, object, hidden as i32) })
+    }
+    /// The layers that it is in.
+    pub fn set_layers(&mut self, object: Object, layers: u32) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_layers(self.raw, object, layers) })
+    }
+    /// The layers that it collides with.
+    pub fn set_collides_with(&mut self, object: Object, layers: u32) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_collides_with(self.raw, object, layers) })
+    }
+    /// The number that answers give back.
+    pub fn set_user(&mut self, object: Object, user: u64) -> Result<()> {
+        check(unsafe { sys::crofton_world_set_user(self.raw, object, user) })
+    }
+
+    /// Makes the changes take effect; once a frame.
+    pub fn update(&mut self) -> Result<()> {
+        check(unsafe { sys::crofton_world_update(self.raw, ptr::null()) })
+    }
+    /// The same on several threads, with the same result.
+    pub fn update_on(&mut self, executor: &dyn Executor) -> Result<()> {
+        check(with_jobs(Some(executor), |jobs| unsafe { sys::crofton_world_update(self.raw, jobs) }))
+    }
+    /// What the last update did.
+    pub fn statistics(&self) -> Result<Statistics> {
+        let mut s: sys::WorldStatistics = unsafe { std::mem::zeroed() };
+        s.size = size_of::<sys::WorldStatistics>();
+        check(unsafe { sys::crofton_world_get_statistics(self.raw, &mut s) })?;
+        Ok(Statistics {
+            objects: s.objects,
+            resting: s.resting,
+            moving: s.moving,
+            boxes_changed: s.boxes_changed,
+            out_of_range: s.out_of_range,
+        })
+    }
+
+    /// How many objects there are.
+    pub fn object_count(&self) -> usize {
+        let mut count = 0;
+        match check(unsafe { sys::crofton_world_object_count(self.raw, &mut count) }) {
+            Ok(()) => count,
+            Err(_) => 0,
+        }
+    }
+    /// Whether the handle is of an object that is still there.
+    pub fn contains(&self, object: Object) -> bool {
+        let mut contains = 0;
+        unsafe { sys::crofton_world_contains(self.raw, object, &mut contains) == 0 && contains != 0 }
+    }
+    /// Whether the handle is of a node that is still there.
+    pub fn contains_node(&self, node: Node) -> bool {
+        let mut contains = 0;
+        unsafe { sys::crofton_world_contains_node(self.raw, node, &mut contains) == 0 && contains != 0 }
+    }
+    /// Whether the handle is of a mesh that is still there.
+    pub fn contains_mesh(&self, mesh: Mesh) -> bool {
+        let mut contains = 0;
+        unsafe { sys::crofton_world_contains_mesh(self.raw, mesh, &mut contains) == 0 && contains != 0 }
+    }
+    /// The caller's number.
+    pub fn user(&self, object: Object) -> Result<u64> {
+        let mut user = 0;
+        check(unsafe { sys::crofton_world_get_user(self.raw, object, &mut user) })?;
+        Ok(user)
+    }
+    /// The object's box; an error before the first update after it was added.
+    pub fn obb(&self, object: Object) -> Result<Obb> {
+        let mut result = Obb::aligned([0.0; 3], [0.0; 3]);
+        check(unsafe { sys::crofton_world_get_box(self.raw, object, &mut result) })?;
+        Ok(result)
+    }
+    /// Of an object with a mesh: to the world's coordinates.
+    pub fn transform(&self, object: Object) -> Result<Transform> {
+        let mut result = Transform::default();
+        check(unsafe { sys::crofton_world_get_transform(self.raw, object, &mut result) })?;
+        Ok(result)
+    }
+}
+
+fn as_pointer<T>(value: &Option<T>) -> *const T {
+    value.as_ref().map_or(ptr::null(), |v| v as *const T)
+}
+
+fn same_length(a: usize, b: usize) -> Result<()> {
+    if a == b {
+        return Ok(());
+    }
+    Err(wrong("the two slices are to be of one length"))
+}

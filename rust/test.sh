@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds the shared library, then builds, tests and runs the crate. Says so and does nothing where there is no cargo.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+if ! command -v cargo >/dev/null; then
+    echo "rust: skipped, no cargo here; third_party/install.sh --rust installs it"
+    exit 0
+fi
+cmake --preset shared >/dev/null
+cmake --build --preset shared
+export CROFTON_LIB_DIR=$PWD/build/shared/engine LD_LIBRARY_PATH=$PWD/build/shared/engine CARGO_TARGET_DIR=$PWD/build/rust
+cd rust
+cargo test --offline --quiet
+cargo run --offline --quiet --example first_frame
