@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Runtime.InteropServices;
+
+namespace Crofton {
+    /// <summary>A point or a direction, in the world's right-handed coordinates.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Vector3 : IEquatable<Vector3> {
+        public double X, Y, Z;
+        public Vector3(double x, double y, double z) { X = x; Y = y; Z = z; }
+        public bool Equals(Vector3 other) { return X == other.X && Y == other.Y && Z == other.Z; }
+        public override bool Equals(object other) { return other is Vector3 && Equals((Vector3)other); }
+        public override int GetHashCode() { return X.GetHashCode() ^ (Y.GetHashCode() << 1) ^ (Z.GetHashCode() << 2); }
+        public override string ToString() { return "(" + X + ", " + Y + ", " + Z + ")"; }
+    }
+
+    /// <summary>Three unit or column vectors of single precision.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Float3 {
+        public float X, Y, Z;
+        public Float3(float x, float y, float z) { X = x; Y = y; Z = z; }
+    }
+
+    /// <summary>An oriented box: the points Center + sum t_k HalfExtents_k Axis_k with |t_k| at most 1.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Obb {
+        public Vector3 Center;
+        /// <summary>Unit vectors.</summary>
+        public Float3 Axis0, Axis1, Axis2;
+        /// <summary>At least 0.</summary>
+        public Float3 HalfExtents;
+
+        /// <summary>A box along the axes of the coordinates.</summary>
+        public static Obb Aligned(Vector3 center, Float3 halfExtents) {
+            return new Obb {
+                Center = center, Axis0 = new Float3(1, 0, 0), Axis1 = new Float3(0, 1, 0), Axis2 = new Float3(0, 0, 1),
+                HalfExtents = halfExtents
+            };
+        }
+        /// <summary>Throws what is wrong with it.</summary>
+        public void Validate() {
+            Library.Load();
+            Library.Check(Native.crofton_boxes_validate(new[] { this }, (UIntPtr)1));
+        }
+        /// <summary>A box around this one under a transform.</summary>
+        public Obb Transformed(Transform transform) {
+            Library.Load();
+            Obb result;
+            Library.Check(Native.crofton_box_transform(ref transform, ref this, out result));
+            return result;
+        }
+        /// <summary>Whether two boxes share a point, exactly; touching counts.</summary>
+        public static bool Touches(Obb a, Obb b) {
+            Library.Load();
+            int meet;
+            Library.Check(Native.crofton_boxes_meet(ref a, ref b, out meet));
+            return meet != 0;
+        }
+        /// <summary>How far two boxes are apart: 0 where they meet.</summary>
+        public static double Distance(Obb a, Obb b, out Vector3 onA, out Vector3 onB) {
+            Library.Load();
+            double distance;
+            Library.Check(Native.crofton_boxes_distance(ref a, ref b, out distance, out onA, out onB));
+            return distance;
+        }
+        /// <summary>Where the ray enters: its t, 0 where it starts inside; null where it misses.</summary>
+        public double? Enters(Ray ray) {
+            Library.Load();
+            double t;
+            Library.Check(Native.crofton_box_raycast(ref this, ref ray, out t));
+            return double.IsInfinity(t) ? (double?)null : t;
+        }
+    }
+
+    /// <summary>The map x -> C0 x.X + C1 x.Y + C2 x.Z + Translation.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Transform {
+        public Vector3 C0, C1, C2, Translation;
+        /// <summary>Moves and turns nothing.</summary>
+        public static Transform At(double x, double y, double z) {
+            return new Transform {
+                C0 = new Vector3(1, 0, 0), C1 = new Vector3(0, 1, 0), C2 = new Vector3(0, 0, 1), Translation = new Vector3(x, y, z)
+            };
+        }
+        /// <summary>Changes nothing.</summary>
+        public static readonly Transform Identity = At(0, 0, 0);
+    }
+
+    /// <summary>The points Origin + t Direction with t from 0 to MaxT, which may be infinite.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Ray {
+        public Vector3 Origin, Direction;
+        public double MaxT;
+        public Ray(Vector3 origin, Vector3 direction, double maxT = double.PositiveInfinity) {
+            Origin = origin;
+            Direction = direction;
+            MaxT = maxT;
+        }
+    }
+
+    /// <summary>Where an observer stands, where it looks, and how wide. Angles in radians.</summary>
+    public sealed class Camera {
+        public Vector3 Position, Forward, Up;
+        /// <summary>The full height of an orthographic camera's block; 0: a perspective camera.</summary>
+        public double OrthographicHeight;
+        /// <summary>The full vertical angle of a perspective camera.</summary>
+        public double FovY;
+        /// <summary>Width over height; distances of the near and the far plane. The far one may be infinite in perspective.</summary>
+        public double Aspect, Near, Far;
+
+        /// <summary>At the origin, looking along -z, 60 degrees, 16:9, from 0.1 to 1000.</summary>
+        public Camera() {
+            Library.Load();
+            var c = new Native.CameraData { Size = Native.SizeOf<Native.CameraData>() };
+            Library.Check(Native.crofton_camera_default(ref c));
+            Position = c.Position;
+            Forward = c.Forward;
+            Up = c.Up;
+            FovY = c.FovY;
+            Aspect = c.Aspect;
+            Near = c.Near;
+            Far = c.Far;
+        }
+        internal Native.CameraData Data() {
+            return new Native.CameraData {
+                Size = Native.SizeOf<Native.CameraData>(), Position = Position, Forward = Forward, Up = Up,
+                Projection = OrthographicHeight != 0 ? 1u : 0u, FovY = FovY, Height = OrthographicHeight, Aspect = Aspect, Near = Near,
+                Far = Far
+            };
+        }
+        /// <summary>What this camera sees.</summary>
+        public Frustum Frustum() {
+            var data = Data();
+            var frustum = new Frustum();
+            Library.Check(Native.crofton_frustum_from_camera(ref data, ref frustum.Data));
+            return frustum;
+        }
+    }
+
+    /// <summary>Which depths a projection matrix gives to what is near and what is far.</summary>
+    public enum DepthRange { ReversedZeroToOne = 0, ZeroToOne = 1, MinusOneToOne = 2 }
+
+    /// <summary>How a box lies to a frustum.</summary>
+    public enum Verdict : byte { Outside = 0, Straddling = 1, Inside = 2 }
+
+    /// <summary>A convex volume of view: up to twelve half-spaces.</summary>
+    public sealed class Frustum {
+        internal Native.FrustumData Data;
+        internal Frustum() {
+            Library.Load();
+            Data = new Native.FrustumData { Size = Native.SizeOf<Native.FrustumData>(), Planes = new double[4 * Native.MaxPlanes] };
+        }
+        /// <summary>From a column-major matrix that takes column vectors relative to the origin to clip space.</summary>
+        public static Frustum FromMatrix(double[] toClip, DepthRange depth, Vector3 origin) {
+            Library.NotNull(toClip, "toClip");
+            if (toClip.Length != 16) throw new ArgumentException("a matrix has 16 numbers", "toClip");
+            var frustum = new Frustum();
+            Library.Check(Native.crofton_frustum_from_matrix(toClip, (uint)depth, ref origin, ref frustum.Data));
+            return frustum;
+        }
+        /// <summary>How each box lies to the frustum, exactly.</summary>
+        public Verdict[] Classify(Obb[] boxes) {
+            Library.NotNull(boxes, "boxes");
+            var bytes = new byte[boxes.Length];
+            Library.Check(Native.crofton_classify(ref Data, boxes, (UIntPtr)boxes.Length, bytes));
+            return Array.ConvertAll(bytes, b => (Verdict)b);
+        }
+    }
+}

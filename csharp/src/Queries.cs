@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Runtime.InteropServices;
+
+namespace Crofton {
+    /// <summary>Memory for the answer to a view; keep it from frame to frame.</summary>
+    public sealed class VisibleObjects : IDisposable {
+        internal readonly VisibleHandle Handle;
+        ObjectRef[] objects = new ObjectRef[0];
+
+        public VisibleObjects() {
+            Library.Load();
+            Library.Check(Native.crofton_visible_objects_create(out Handle));
+        }
+        public void Dispose() { Handle.Dispose(); }
+
+        /// <summary>How many objects the last view saw.</summary>
+        public int Count { get; private set; }
+        /// <summary>The objects and the caller's numbers, by index; only the first Count are of the last view.</summary>
+        public ObjectRef[] Objects { get { return objects; } }
+
+        internal void Read(World world) {
+            IntPtr ids;
+            UIntPtr count;
+            Library.Check(Native.crofton_visible_objects_ids(Handle, out ids, out count, IntPtr.Zero, IntPtr.Zero));
+            if (objects.Length < (int)count) objects = new ObjectRef[(int)count + (int)count / 2];
+            Library.Check(Native.crofton_visible_objects_list(Handle, world.Handle, UIntPtr.Zero, objects, count));
+            Count = (int)count;
+        }
+    }
+
+    /// <summary>Where a ray meets an object.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Hit {
+        public ObjectHandle Object;
+        public ulong User;
+        /// <summary>The ray's.</summary>
+        public double T;
+        public Vector3 Point;
+        uint triangle;
+        /// <summary>Whether the ray meets anything; the other members count only then.</summary>
+        public bool IsHit { get { return Object.Index != uint.MaxValue; } }
+        /// <summary>Of the object's mesh.</summary>
+        public uint? Triangle { get { return triangle == uint.MaxValue ? (uint?)null : triangle; } }
+    }
+
+    /// <summary>The nearest object to a shape.</summary>
+    public struct Closest {
+        public ObjectHandle Object;
+        public ulong User;
+        public double Distance;
+        public Vector3 OnShape, OnObject;
+    }
+
+    /// <summary>Two objects whose boxes or balls meet; First has the lower index.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct ObjectPair { public ObjectRef First, Second; }
+
+    /// <summary>Since when two objects touch: since this update, since an earlier one, or no longer.</summary>
+    public enum Phase : uint { Began = 0, Stayed = 1, Ended = 2 }
+
+    /// <summary>A point where two bodies touch: midway between the surfaces, and how deep.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct ContactPoint {
+        public Vector3 Position;
+        public double Depth;
+    }
+
+    /// <summary>Where two triangles meet: the ends of their common segment, and the unit normal of the second's.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct MeshContact {
+        public uint FirstTriangle, SecondTriangle;
+        public Vector3 Begin, End, Normal;
+    }
+
+    /// <summary>Two objects that touch, or that did in the update before.</summary>
+    public sealed class Contact {
+        public ObjectRef First, Second;
+        public Phase Phase;
+        /// <summary>Unit, from first to second; 0 where no direction is known.</summary>
+        public Vector3 Normal;
+        /// <summary>Moving the second by Depth * Normal parts them; 0 between meshes unless options ask for it.</summary>
+        public double Depth;
+        public ContactPoint[] Points;
+        public MeshContact[] Triangles;
+    }
+
+    public sealed partial class World {
+        /// <summary>What a view sees, by the objects' boxes, exactly: no visible box is left out.</summary>
+        public void View(Frustum frustum, VisibleObjects visible, uint layers = AllLayers) {
+            Library.NotNull(frustum, "frustum");
+            Library.NotNull(visible, "visible");
+            var view = new Native.ViewData { Size = Native.SizeOf<Native.ViewData>(), LayerMask = layers, Frustum = frustum.Data };
+            Library.Check(Native.crofton_world_view(Handle, ref view, IntPtr.Zero, IntPtr.Zero, visible.Handle));
+            visible.Read(this);
+        }
+
+        /// <summary>What a camera sees, without what is hidden behind occluders; nothing visible is left out.</summary>
+        public void ViewOccluding(Camera camera, VisibleObjects visible) {
+            Library.NotNull(camera, "camera");
+            Library.NotNull(visible, "visible");
+            var view = new Native.OccludingViewData { Size = Native.SizeOf<Native.OccludingViewData>() };
+            var options = new Native.OcclusionOptionsData { Size = Native.SizeOf<Native.OcclusionOptionsData>() };
+            view.Camera = Marshal.AllocHGlobal(Marshal.SizeOf(typeof(Native.CameraData)));
+            try {
+                Marshal.StructureToPtr(camera.Data(), view.Camera, false);
+                Library.Check(Native.crofton_world_view_occluding(Handle, ref view, ref options, IntPtr.Zero, IntPtr.Zero, visible.Handle));
+            } finally {
+                Marshal.FreeHGlobal(view.Camera);
+            }
+            visible.Read(this);
+        }
+
+        /// <summary>The nearest hit of a ray: triangles of meshes, boxes and balls.</summary>
+        public Hit Raycast(Ray ray, uint layers = AllLayers) { return Raycast(new[] { ray }, layers)[0]; }
+        /// <summary>The nearest hit of each ray.</summary>
+        public Hit[] Raycast(Ray[] rays, uint layers = AllLayers) {
+            Library.NotNull(rays, "rays");
+            var hits = new Hit[rays.Length];
+            Library.Check(Native.crofton_world_raycast(Handle, rays, (UIntPtr)rays.Length, layers, hits));
+            return hits;
+        }
+        /// <summary>Whether the ray hits anything: quicker than what.</summary>
+        public bool RaycastAny(Ray ray, uint layers = AllLayers) {
+            int hit;
+            Library.Check(Native.crofton_world_raycast_any(Handle, ref ray, layers, out hit));
+            return hit != 0;
+        }
+        /// <summary>The nearest hit of every object that the ray meets, by T, then by index.</summary>
+        public Hit[] RaycastAll(Ray ray, uint layers = AllLayers) {
+            using (var found = Find()) {
+                IntPtr hits;
+                UIntPtr count;
+                Library.Check(Native.crofton_world_raycast_all(Handle, ref ray, layers, found));
+                Library.Check(Native.crofton_found_hits(found, out hits, out count));
+                return Library.ToArray<Hit>(hits, count);
+            }
+        }
+
+        /// <summary>Whose box or ball meets a box, by index. A mesh's box stands for it.</summary>
+        public ObjectRef[] Overlap(Obb box, uint layers = AllLayers) {
+            return Overlap(found => Native.crofton_world_overlap_box(Handle, ref box, layers, found));
+        }
+        /// <summary>Whose box or ball meets a ball.</summary>
+        public ObjectRef[] OverlapBall(Vector3 center, double radius, uint layers = AllLayers) {
+            return Overlap(found => Native.crofton_world_overlap_ball(Handle, ref center, radius, layers, found));
+        }
+        /// <summary>Whose box or ball meets the points no farther than the radius from a segment.</summary>
+        public ObjectRef[] OverlapCapsule(Vector3 begin, Vector3 end, double radius, uint layers = AllLayers) {
+            return Overlap(found => Native.crofton_world_overlap_capsule(Handle, ref begin, ref end, radius, layers, found));
+        }
+        /// <summary>The box or ball nearest to a ball, no farther than a distance; null where there is none.</summary>
+        public Closest? ClosestToBall(Vector3 center, double radius, double maxDistance = double.PositiveInfinity, uint layers = AllLayers) {
+            var data = new Native.ClosestData { Size = Native.SizeOf<Native.ClosestData>() };
+            Library.Check(Native.crofton_world_closest_to_ball(Handle, ref center, radius, maxDistance, layers, ref data));
+            if (data.Object.Index == uint.MaxValue) return null;
+            return new Closest {
+                Object = data.Object, User = data.User, Distance = data.Distance, OnShape = data.OnShape, OnObject = data.OnObject
+            };
+        }
+
+        /// <summary>Objects whose boxes or balls meet, in order.</summary>
+        public ObjectPair[] Pairs() {
+            IntPtr pairs;
+            UIntPtr count;
+            Library.Check(Native.crofton_world_pairs(Handle, out pairs, out count));
+            return Library.ToArray<ObjectPair>(pairs, count);
+        }
+        /// <summary>What touches, and what has ceased to, in the order of the pairs.</summary>
+        public Contact[] Contacts() {
+            UIntPtr count;
+            Library.Check(Native.crofton_world_contact_count(Handle, out count));
+            var result = new Contact[(int)count];
+            for (int i = 0; i < result.Length; ++i) {
+                var c = new Native.ContactData { Size = Native.SizeOf<Native.ContactData>() };
+                Library.Check(Native.crofton_world_contact(Handle, (UIntPtr)i, ref c));
+                result[i] = new Contact {
+                    First = c.First, Second = c.Second, Phase = (Phase)c.Phase, Normal = c.Normal, Depth = c.Depth,
+                    Points = Library.ToArray<ContactPoint>(c.Points, c.PointCount),
+                    Triangles = Library.ToArray<MeshContact>(c.Triangles, c.TriangleCount)
+                };
+            }
+            return result;
+        }
+
+        static FoundHandle Find() {
+            FoundHandle found;
+            Library.Check(Native.crofton_found_create(out found));
+            return found;
+        }
+        static ObjectRef[] Overlap(Func<FoundHandle, int> call) {
+            using (var found = Find()) {
+                IntPtr objects;
+                UIntPtr count;
+                Library.Check(call(found));
+                Library.Check(Native.crofton_found_objects(found, out objects, out count));
+                return Library.ToArray<ObjectRef>(objects, count);
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Runtime.InteropServices;
+
+namespace Crofton {
+    /// <summary>What a box is to have least of: VolumeWeight V + AreaWeight F + MeanCurvatureWeight M, weights at least 0 and
+    /// not all 0.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Criterion {
+        public double VolumeWeight, AreaWeight, MeanCurvatureWeight;
+
+        /// <summary>The sum of the edges: for frusta that are large beside the objects.</summary>
+        public static Criterion MinimalPerimeter() {
+            Library.Load();
+            Criterion criterion;
+            Library.Check(Native.crofton_criterion_minimal_perimeter(out criterion));
+            return criterion;
+        }
+        /// <summary>For rays and segments of this length.</summary>
+        public static Criterion ForRays(double length) {
+            Library.Load();
+            Criterion criterion;
+            Library.Check(Native.crofton_criterion_for_rays(length, out criterion));
+            return criterion;
+        }
+        /// <summary>Makes the camera's expected number of hits least; its far distance must be finite.</summary>
+        public static Criterion ForFrustum(Camera camera) {
+            Library.NotNull(camera, "camera");
+            var data = camera.Data();
+            Criterion criterion;
+            Library.Check(Native.crofton_criterion_for_frustum(ref data, out criterion));
+            return criterion;
+        }
+    }
+
+    /// <summary>How much work goes into a box: two passes over the points; convex hull and search; the global optimum.</summary>
+    public enum Quality : uint { Fast = 0, Tight = 1, Exact = 2 }
+
+    /// <summary>Boxes around points.</summary>
+    public static class Fit {
+        /// <summary>A box that holds every point (x, y, z each), best by the criterion; minimal perimeter unless told.</summary>
+        public static Obb Box(float[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
+            var options = Options(points, quality, criterion);
+            Obb box;
+            Library.Check(Native.crofton_fit_floats(points, (UIntPtr)(points.Length / 3), ref options, out box));
+            return box;
+        }
+        /// <summary>The same for double precision.</summary>
+        public static Obb Box(double[] points, Quality quality = Quality.Tight, Criterion? criterion = null) {
+            var options = Options(points, quality, criterion);
+            Obb box;
+            Library.Check(Native.crofton_fit_doubles(points, (UIntPtr)(points.Length / 3), ref options, out box));
+            return box;
+        }
+        static Native.FitOptionsData Options(Array points, Quality quality, Criterion? criterion) {
+            Library.NotNull(points, "points");
+            if (points.Length % 3 != 0) throw new ArgumentException("points are x, y, z each", "points");
+            return new Native.FitOptionsData {
+                Size = Native.SizeOf<Native.FitOptionsData>(), Quality = (uint)quality,
+                Criterion = criterion ?? Criterion.MinimalPerimeter()
+            };
+        }
+    }
+
+    /// <summary>How a polygon is cut: quickest; angles as large as they can be; diagonals as short as they can be in all.</summary>
+    public enum Method : uint { Ear = 0, Delaunay = 1, MinimumWeight = 2 }
+
+    /// <summary>A polygon cut into triangles.</summary>
+    public sealed class Triangulation {
+        /// <summary>Three places of points a triangle, counter-clockwise.</summary>
+        public int[] Indices;
+        /// <summary>The total length of the diagonals.</summary>
+        public double Weight;
+        /// <summary>A proven bound on (weight - minimum) / minimum; infinite where none is known.</summary>
+        public double Gap;
+        /// <summary>The weight is proven to be the least.</summary>
+        public bool IsOptimal;
+    }
+
+    /// <summary>Cuts polygons; keeps memory from one to the next. For one thread at a time.</summary>
+    public sealed class Triangulator : IDisposable {
+        readonly TriangulatorHandle handle;
+        public Triangulator() {
+            Library.Load();
+            Library.Check(Native.crofton_triangulator_create(out handle));
+        }
+        public void Dispose() { handle.Dispose(); }
+
+        /// <summary>Points are x, y each. Ring r is the points from ringEnds[r - 1] to before ringEnds[r]; the first ring is the
+        /// outer one, the others are holes; null: all points are one ring.</summary>
+        public Triangulation Triangulate(double[] points, uint[] ringEnds = null, Method method = Method.MinimumWeight) {
+            Library.NotNull(points, "points");
+            if (points.Length % 2 != 0) throw new ArgumentException("points are x, y each", "points");
+            ringEnds = ringEnds ?? new[] { (uint)(points.Length / 2) };
+            var p = GCHandle.Alloc(points, GCHandleType.Pinned);
+            var r = GCHandle.Alloc(ringEnds, GCHandleType.Pinned);
+            try {
+                var polygon = new Native.PolygonData {
+                    Size = Native.SizeOf<Native.PolygonData>(), Points = p.AddrOfPinnedObject(), PointCount = (UIntPtr)(points.Length / 2),
+                    RingEnds = r.AddrOfPinnedObject(), RingCount = (UIntPtr)ringEnds.Length
+                };
+                var data = new Native.TriangulationData { Size = Native.SizeOf<Native.TriangulationData>() };
+                Library.Check(Native.crofton_triangulate(handle, ref polygon, (uint)method, ref data));
+                var indices = new int[3 * (int)data.TriangleCount];
+                if (indices.Length > 0) Marshal.Copy(data.Indices, indices, 0, indices.Length);
+                return new Triangulation { Indices = indices, Weight = data.Weight, Gap = data.Gap, IsOptimal = data.Optimal != 0 };
+            } finally {
+                p.Free();
+                r.Free();
+            }
+        }
+    }
+}

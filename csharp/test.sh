@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Builds the shared library, then builds and tests the classes and runs the example. Says so and does nothing where there is no Mono.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+for tool in mcs mono; do
+    if ! command -v "$tool" >/dev/null; then
+        echo "csharp: skipped, no $tool here; third_party/install.sh --csharp installs it"
+        exit 0
+    fi
+done
+cmake --preset shared >/dev/null
+cmake --build --preset shared
+out=$PWD/build/csharp
+mkdir -p "$out"
+compile() { mcs -nologo -warnaserror -debug "$@"; }
+compile -target:library -out:"$out/Crofton.dll" csharp/src/*.cs
+compile -r:"$out/Crofton.dll" -out:"$out/Tests.exe" csharp/tests/*.cs
+compile -r:"$out/Crofton.dll" -out:"$out/FirstFrame.exe" csharp/example/FirstFrame.cs
+sed -n '/^```csharp$/,/^```$/{/^```/d;p}' csharp/README.md >"$out/Readme.cs"
+compile -r:"$out/Crofton.dll" -out:"$out/Readme.exe" "$out/Readme.cs"
+export LD_LIBRARY_PATH=$PWD/build/shared/engine CROFTON_ROOT=$PWD
+mono --debug "$out/Tests.exe"
+mono "$out/FirstFrame.exe"
+mono "$out/Readme.exe"

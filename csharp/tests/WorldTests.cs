@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: MIT
+using System;
+using System.Collections.Generic;
+using System.Linq;
+using System.Threading;
+using Crofton;
+
+static class WorldTests {
+    static readonly float[] Tetrahedron = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+    static readonly uint[] Faces = { 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 };
+    static readonly Vector3 Forth = new Vector3(0, 0, -1);
+
+    static Bound Ball(double x, double y, double z, double radius) { return Bound.Ball(new Vector3(x, y, z), radius); }
+
+    // Balls of radius 0.25 along x at 0, 1, 2, …, five units before the default camera.
+    static World Row(int count, out ObjectHandle[] objects) {
+        var world = new World();
+        objects = Enumerable.Range(0, count).Select(i => world.Add(Ball(i, 0, -5, 0.25), (ulong)i)).ToArray();
+        world.Update();
+        return world;
+    }
+    static ulong[] Users(VisibleObjects visible) { return visible.Objects.Take(visible.Count).Select(o => o.User).ToArray(); }
+
+    [Test] static void AnObjectIsThereFromAddToRemove() {
+        ObjectHandle[] o;
+        using (var world = Row(3, out o)) {
+            Expect.Equal(3, world.Count);
+            world.Remove(o[1]);
+            Expect.True(!world.Contains(o[1]) && world.Contains(o[2]));
+            Expect.Equal(2, world.Count);
+        }
+    }
+    [Test] static void AStaleHandleIsANamedError() {
+        ObjectHandle[] o;
+        using (var world = Row(1, out o)) {
+            world.Remove(o[0]);
+            world.Update();
+            var next = world.Add(Ball(0, 0, 0, 1), 9);
+            Expect.Equal(o[0].Index, next.Index);
+            Expect.Fails(Status.StaleHandle, () => world.SetUser(o[0], 1));
+            Expect.Equal(9ul, world.User(next));
+        }
+    }
+    [Test] static void UserDataIsGivenBack() {
+        ObjectHandle[] o;
+        using (var world = Row(1, out o)) {
+            world.SetUser(o[0], ulong.MaxValue);
+            Expect.Equal(ulong.MaxValue, world.User(o[0]));
+        }
+    }
+    [Test] static void ABoxIsKnownAfterTheFirstUpdateOnly() {
+        using (var world = new World()) {
+            var o = world.Add(Ball(1, 2, 3, 0.5));
+            Expect.Fails(Status.Empty, () => world.Box(o));
+            world.Update();
+            Expect.Equal(new Vector3(1, 2, 3), world.Box(o).Center);
+        }
+    }
+    [Test] static void ANaNIsRefusedAndChangesNothing() {
+        ObjectHandle[] o;
+        using (var world = Row(1, out o)) {
+            Expect.Fails(Status.NonFinite, () => world.SetBound(o[0], Ball(double.NaN, 0, 0, 1)));
+            Expect.Throws<CroftonException>(() => world.Add(Ball(double.NaN, 0, 0, 1)));
+            world.Update();
+            Expect.Equal(1, world.Count);
+            Expect.Equal(new Vector3(0, 0, -5), world.Box(o[0]).Center);
+        }
+    }
+    [Test] static void OfManyBoxesTheBadOneIsNamed() {
+        ObjectHandle[] o;
+        using (var world = Row(3, out o)) {
+            var boxes = Enumerable.Repeat(Obb.Aligned(new Vector3(9, 0, 0), new Float3(1, 1, 1)), 3).ToArray();
+            boxes[1].HalfExtents.X = -1;
+            var e = Expect.Throws<CroftonException>(() => world.SetBoxes(o, boxes));
+            Expect.Equal((ulong?)1, e.Item);
+            world.Update();
+            Expect.Equal(9.0, world.Box(o[0]).Center.X);
+            Expect.Equal(1.0, world.Box(o[1]).Center.X);
+            Expect.Equal(9.0, world.Box(o[2]).Center.X);
+        }
+    }
+    [Test] static void ArraysOfTwoLengthsAreRefused() {
+        ObjectHandle[] o;
+        using (var world = Row(2, out o)) {
+            Expect.Throws<ArgumentException>(() => world.SetBoxes(o, new Obb[1]));
+            Expect.Throws<ArgumentNullException>(() => world.SetBoxes(o, null));
+        }
+    }
+    [Test] static void ANodeMovesWhatIsBelowIt() {
+        using (var world = new World()) {
+            var mesh = world.AddMesh(Tetrahedron, Faces);
+            var top = world.AddNode(null, Transform.At(10, 0, 0));
+            var below = world.AddNode(top, Transform.At(0, 1, 0));
+            var o = world.Add(mesh, Transform.Identity, 0, below);
+            world.Update();
+            Expect.Equal(new Vector3(10, 1, 0), world.TransformOf(o).Translation);
+            world.SetNodeTransforms(new[] { top }, new[] { Transform.At(-4, 0, 0) });
+            world.Update();
+            Expect.Equal(new Vector3(-4, 1, 0), world.TransformOf(o).Translation);
+        }
+    }
+    [Test] static void ANodeIsNotItsOwnAncestor() {
+        using (var world = new World()) {
+            var top = world.AddNode(null, Transform.Identity);
+            var below = world.AddNode(top, Transform.Identity);
+            Expect.Throws<CroftonException>(() => world.SetParent(top, below));
+            world.SetParent(below, null);
+            world.SetParent(top, below);
+        }
+    }
+    [Test] static void ANodeTakesAllBelowItAlong() {
+        using (var world = new World()) {
+            var mesh = world.AddMesh(Tetrahedron, Faces);
+            var node = world.AddNode(null, Transform.Identity);
+            var o = world.Add(mesh, Transform.Identity, 0, node);
+            world.RemoveNode(node);
+            Expect.True(!world.Contains(o));
+        }
+    }
+    [Test] static void AMeshInUseStays() {
+        using (var world = new World()) {
+            var mesh = world.AddMesh(Tetrahedron, Faces);
+            var o = world.Add(mesh, Transform.Identity);
+            Expect.Throws<CroftonException>(() => world.RemoveMesh(mesh));
+            world.Remove(o);
+            world.RemoveMesh(mesh);
+        }
+    }
+    [Test] static void BadMeshesAreRefused() {
+        using (var world = new World()) {
+            Expect.Throws<CroftonException>(() => world.AddMesh(Tetrahedron, new uint[] { 0, 1, 4 }));
+            Expect.Throws<ArgumentException>(() => world.AddMesh(new float[7], null));
+            Expect.Throws<ArgumentNullException>(() => world.AddMesh(null, Faces));
+        }
+    }
+    [Test] static void AMeshThatDeformsTakesItsObjectAlong() {
+        using (var world = new World()) {
+            var mesh = world.AddMesh(Tetrahedron, Faces);
+            var o = world.Add(mesh, Transform.Identity);
+            world.Update();
+            world.SetVertices(mesh, Tetrahedron.Select((v, i) => i % 3 == 0 ? v + 100 : v).ToArray());
+            world.Update();
+            Expect.True(world.Box(o).Center.X > 99);
+            Expect.Throws<CroftonException>(() => world.SetVertices(mesh, new float[9]));
+        }
+    }
+    [Test] static void AViewListsWhatIsBeforeIt() {
+        ObjectHandle[] o;
+        using (var world = Row(3, out o))
+        using (var visible = new VisibleObjects()) {
+            world.Add(Ball(0, 0, 5, 0.25), 99);
+            world.Update();
+            world.View(new Camera().Frustum(), visible);
+            Expect.Sequence(new ulong[] { 0, 1, 2 }, Users(visible));
+        }
+    }
+    [Test] static void LayersChoose() {
+        ObjectHandle[] o;
+        using (var world = Row(3, out o))
+        using (var visible = new VisibleObjects()) {
+            world.SetLayers(o[1], 2);
+            world.Update();
+            world.View(new Camera().Frustum(), visible, 1);
+            Expect.Sequence(new ulong[] { 0, 2 }, Users(visible));
+        }
+    }
+    [Test] static void HiddenObjectsAreNotSeen() {
+        ObjectHandle[] o;
+        using (var world = Row(2, out o))
+        using (var visible = new VisibleObjects()) {
+            world.SetHidden(o[0], true);
+            world.Update();
+            world.View(new Camera().Frustum(), visible);
+            Expect.Sequence(new ulong[] { 1 }, Users(visible));
+        }
+    }
+    [Test] static void WhatAWallHidesIsNotSeen() {
+        using (var world = new World())
+        using (var visible = new VisibleObjects()) {
+            var corners = Enumerable.Range(0, 24).Select(i => (i / 3 >> i % 3 & 1) == 1 ? 1f : -1f).ToArray();
+            var faces = new uint[] { 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5 };
+            var mesh = world.AddMesh(corners, faces);
+            world.FindOccluders(mesh);
+            Expect.True(world.OccluderCount(mesh) > 0);
+            var wide = Transform.At(0, 0, -5);
+            wide.C0.X = wide.C1.Y = 4;
+            var wall = world.Add(mesh, wide, 1);
+            world.Add(Ball(0, 0, -20, 0.5), 2);
+            world.Add(Ball(0, 0, -3, 0.2), 3);
+            world.Update();
+            world.ViewOccluding(new Camera(), visible);
+            Expect.Sequence(new ulong[] { 1, 3 }, Users(visible));
+            world.SetOccludes(wall, false);
+            world.Update();
+            world.ViewOccluding(new Camera(), visible);
+            Expect.Equal(3, visible.Count);
+        }
+    }
+    [Test] static void ARayMeetsTheNearest() {
+        ObjectHandle[] o;
+        using (var world = Row(2, out o)) {
+            var hit = world.Raycast(new Ray(new Vector3(1, 0, 0), Forth));
+            Expect.Equal(o[1], hit.Object);
+            Expect.Near(4.75, hit.T);
+            Expect.True(hit.Triangle == null);
+            Expect.True(!world.Raycast(new Ray(new Vector3(0.5, 0, 0), Forth)).IsHit);
+            Expect.True(!world.RaycastAny(new Ray(new Vector3(0, 0, 0), Forth, 4.7)));
+            Expect.True(world.RaycastAny(new Ray(new Vector3(0, 0, 0), Forth, 4.8)));
+        }
+    }
+    [Test] static void ARayNamesTheTriangle() {
+        using (var world = new World()) {
+            world.Add(world.AddMesh(Tetrahedron, Faces), Transform.Identity);
+            world.Update();
+            var hit = world.Raycast(new Ray(new Vector3(0.2, 0.2, -3), new Vector3(0, 0, 1)));
+            Expect.Equal((uint?)0, hit.Triangle);
+            Expect.Equal(3.0, hit.T);
+        }
+    }
+    [Test] static void ARayMeetsAll() {
+        ObjectHandle[] o;
+        using (var world = Row(5, out o)) {
+            var hits = world.RaycastAll(new Ray(new Vector3(-10, 0, -5), new Vector3(1, 0, 0)));
+            Expect.Sequence(o, hits.Select(h => h.Object).ToArray());
+        }
+    }
+    [Test] static void ARayWithoutDirectionIsAnError() {
+        ObjectHandle[] o;
+        using (var world = Row(1, out o)) {
+            Expect.Throws<CroftonException>(() => world.Raycast(new Ray(new Vector3(), new Vector3())));
+            Expect.Equal(0, world.Raycast(new Ray[0]).Length);
+        }
+    }
+    [Test] static void ShapesFindWhatTheyMeet() {
+        ObjectHandle[] o;
+        using (var world = Row(5, out o)) {
+            var middle = new Vector3(1.5, 0, -5);
+            var expected = new[] { o[1], o[2] };
+            Expect.Sequence(expected, world.Overlap(Obb.Aligned(middle, new Float3(0.3f, 0.3f, 0.3f))).Select(r => r.Object).ToArray());
+            Expect.Sequence(expected, world.OverlapBall(middle, 0.26).Select(r => r.Object).ToArray());
+            Expect.Sequence(expected, world.OverlapCapsule(new Vector3(1.1, 0.5, -5), new Vector3(1.9, 0.5, -5), 0.3).Select(r => r.Object).ToArray());
+        }
+    }
+    [Test] static void TheClosestIsFoundWithinADistance() {
+        ObjectHandle[] o;
+        using (var world = Row(3, out o)) {
+            var closest = world.ClosestToBall(new Vector3(2, 4, -5), 0.5).Value;
+            Expect.Equal(o[2], closest.Object);
+            Expect.Near(3.25, closest.Distance);
+            Expect.True(world.ClosestToBall(new Vector3(2, 4, -5), 0.5, 3) == null);
+        }
+    }
+    [Test] static void ContactsBeginStayAndEnd() {
+        using (var world = new World()) {
+            world.Add(Ball(0, 0, 0, 1), 1);
+            var b = world.Add(Ball(1.5, 0, 0, 1), 2);
+            world.Update();
+            Expect.Equal(1, world.Pairs().Length);
+            var contact = world.Contacts().Single();
+            Expect.Equal(Phase.Began, contact.Phase);
+            Expect.Near(0.5, contact.Depth);
+            Expect.Near(1, contact.Normal.X);
+            Expect.True(contact.Points.Length > 0);
+            world.Update();
+            Expect.Equal(Phase.Stayed, world.Contacts().Single().Phase);
+            world.SetBound(b, Ball(5, 0, 0, 1));
+            world.Update();
+            Expect.Equal(Phase.Ended, world.Contacts().Single().Phase);
+            world.Update();
+            Expect.Equal(0, world.Contacts().Length);
+        }
+    }
+    [Test] static void TwoMeshesNameTheTrianglesThatTouch() {
+        using (var world = new World()) {
+            var mesh = world.AddMesh(Tetrahedron, Faces);
+            world.Add(mesh, Transform.Identity);
+            world.Add(mesh, Transform.At(0.1, 0.1, 0.1));
+            world.Update();
+            var triangles = world.Contacts().Single().Triangles;
+            Expect.True(triangles.Length > 0 && triangles.All(t => t.FirstTriangle < 4 && t.SecondTriangle < 4));
+        }
+    }
+    [Test] static void ALimitOfPairsIsKept() {
+        using (var world = new World(new WorldOptions { MaxPairs = 1 })) {
+            for (int i = 0; i < 3; ++i) world.Add(Ball(0, 0, 0, 1));
+            Expect.Fails(Status.BudgetExceeded, world.Update);
+            Expect.Equal(0, world.Pairs().Length);
+        }
+    }
+    [Test] static void ADisposedWorldSaysSo() {
+        var world = new World();
+        world.Dispose();
+        world.Dispose();
+        Expect.Throws<ObjectDisposedException>(world.Update);
+        Expect.Throws<ObjectDisposedException>(() => world.Add(Ball(0, 0, 0, 1)));
+        var visible = new VisibleObjects();
+        visible.Dispose();
+        using (var other = new World()) Expect.Throws<ObjectDisposedException>(() => other.View(new Camera().Frustum(), visible));
+    }
+    [Test] static void TheCollectorMayRunAtAnyTime() {
+        var stop = false;
+        var collector = new Thread(() => { while (!Volatile.Read(ref stop)) GC.Collect(); });
+        collector.Start();
+        try {
+            for (int i = 0; i < 200; ++i) {
+                var world = new World(); // dropped, not disposed
+                var o = world.Add(world.AddMesh(Tetrahedron.ToArray(), Faces.ToArray()), Transform.At(0, 0, -5), 7);
+                world.Update();
+                var visible = new VisibleObjects();
+                world.View(new Camera().Frustum(), visible);
+                Expect.Sequence(new ulong[] { 7 }, Users(visible));
+                Expect.True(world.Contains(o));
+            }
+        } finally {
+            Volatile.Write(ref stop, true);
+            collector.Join();
+        }
+    }
+    [Test] static void AWorldIsAskedFromManyThreads() {
+        ObjectHandle[] o;
+        using (var world = Row(50, out o)) {
+            var failures = new List<Exception>();
+            var threads = Enumerable.Range(0, 6).Select(t => new Thread(() => {
+                try {
+                    var frustum = new Camera().Frustum();
+                    using (var visible = new VisibleObjects())
+                        for (int i = 0; i < 100; ++i) {
+                            world.View(frustum, visible);
+                            Expect.True(visible.Count > 3);
+                            Expect.Equal(o[t], world.Raycast(new Ray(new Vector3(t, 0, 0), Forth)).Object);
+                        }
+                } catch (Exception e) {
+                    lock (failures) failures.Add(e);
+                }
+            })).ToList();
+            threads.ForEach(t => t.Start());
+            threads.ForEach(t => t.Join());
+            if (failures.Count > 0) throw failures[0];
+        }
+    }
+    [Test] static void AChangeFromTwoThreadsIsAnErrorAndNoCrash() {
+        ObjectHandle[] o;
+        using (var world = Row(1, out o)) {
+            int busy = 0;
+            var threads = Enumerable.Range(0, 4).Select(t => new Thread(() => {
+                for (int i = 0; i < 2000; ++i) {
+                    try {
+                        world.SetBound(o[0], Ball(i % 7, 0, -5, 0.25));
+                        world.Update();
+                    } catch (CroftonException e) {
+                        if (e.Status != Status.Busy) throw;
+                        Interlocked.Increment(ref busy);
+                    }
+                }
+            })).ToList();
+            threads.ForEach(t => t.Start());
+            threads.ForEach(t => t.Join());
+            world.Update();
+            Expect.Equal(1, world.Count);
+        }
+    }
+}
