@@ -19,6 +19,11 @@ foreach(component study render)
         install(EXPORT crofton-${component}-targets NAMESPACE crofton:: DESTINATION ${package_dir} COMPONENT ${component})
     endif()
 endforeach()
+if(TARGET crofton_cli)
+    install(TARGETS crofton_cli COMPONENT tools)
+    install(FILES ${PROJECT_SOURCE_DIR}/packaging/crofton.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+            RENAME crofton COMPONENT tools)
+endif()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/crofton-config.cmake.in ${PROJECT_BINARY_DIR}/crofton-config.cmake
     INSTALL_DESTINATION ${package_dir})
@@ -42,4 +47,3 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PR
               ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md ${PROJECT_SOURCE_DIR}/SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/engine/crofton.natvis ${PROJECT_SOURCE_DIR}/engine/crofton_gdb.py DESTINATION ${CMAKE_INSTALL_DATADIR}/crofton)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})  # where the README's links lead
-include(CroftonPackage)

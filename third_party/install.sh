@@ -8,6 +8,7 @@
 #   third_party/install.sh --python   also what the Python package needs (python/README.md)
 #   third_party/install.sh --rust     also what the Rust crate needs (rust/README.md)
 #   third_party/install.sh --csharp   also what the C# classes need (csharp/README.md)
+#   third_party/install.sh --packages also what makes and checks packages (packaging/README.md)
 #   third_party/install.sh --engines  also the engines, decoders, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
 
@@ -29,6 +30,7 @@ engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscene
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 rust_packages=(cargo)
 csharp_packages=(mono-mcs mono-runtime libmono-system-core4.0-cil)
+packaging_packages=(debhelper dpkg-dev help2man lintian abigail-tools)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 
 for argument in "$@"; do
@@ -39,8 +41,9 @@ for argument in "$@"; do
         --python) packages+=("${python_packages[@]}") ;;
         --rust) packages+=("${rust_packages[@]}") ;;
         --csharp) packages+=("${csharp_packages[@]}") ;;
+        --packages) packages+=("${packaging_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--rust] [--csharp] [--packages] [--engines]" >&2; exit 2 ;;
     esac
 done
 

@@ -3,6 +3,7 @@
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/core/version.hpp>
+#include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/measure/measure.hpp>
@@ -27,6 +28,12 @@ int main() {
     const auto frustum = crofton::frustum_of(crofton::Camera{});
     if (frustum) crofton::cull::find_visible({&box, 1}, {}, {.frustum = *frustum}, visible);
     good = good && visible.size() == 1;
+    // A template of the library's, which a shared one has to export too.
+    crofton::cull::BoxSet set;
+    set.assign({&box, 1});
+    crofton::cull::VerdictBits verdicts;
+    if (frustum) crofton::cull::find_visible(set, {&box, 1}, {.frustum = *frustum}, verdicts);
+    good = good && verdicts.visible.size() == 1 && verdicts.visible[0] == 1;
     good = good && !crofton::bake::BakedScene::from_memory({}).has_value();
     std::printf("crofton %s: edge sum %g, %zu box in view\n", crofton::version_string(), edges, visible.size());
     return good ? 0 : 1;

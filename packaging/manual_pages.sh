@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Writes the manual pages of the command line and of each of its commands: manual_pages.sh PROGRAM FOLDER
+set -euo pipefail
+program=$1 folder=$2
+mkdir -p "$folder"
+page() { # NAME ONE-LINE-TEXT ARGUMENT…
+    local name=$1 text=$2
+    shift 2
+    printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$program" "$*" >"$folder/run"
+    chmod +x "$folder/run"
+    help2man --no-info --no-discard-stderr --section=1 --name="$text" --version-string="$("$program" --version)" \
+        --source=Crofton --manual="Crofton's commands" "$folder/run" |
+        sed -e "s/^\.TH [^ ]*/.TH ${name^^}/" -e "/^\.SH NAME/{n;s/^[^ ]*/$name/}" >"$folder/$name.1"
+    rm "$folder/run"
+}
+page crofton "frustum culling, collision detection and triangle counts by integral geometry"
+"$program" --help | sed -n '/^Subcommands:/,$s/^  \([a-z]*\)  *\(.*\)/\1 \2/p' | while read -r command text; do
+    page "crofton-$command" "$text" "$command"
+done
