@@ -9,6 +9,7 @@
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/measure/measure.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
+#include <crofton/pvs/pvs.hpp>
 #include <crofton/radiosity/lines.hpp>
 #include <crofton/radiosity/patches.hpp>
 #include <crofton/radiosity/solver.hpp>
@@ -16,10 +17,12 @@
 #include <crofton/triangulate/triangulate.hpp>
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <random>
+
+#include <pvs/subjects.hpp>
 
 #include "failing_memory.hpp"
+#include "shapes.hpp"
+#include "sweep.hpp"
 
 using namespace crofton;
 
@@ -55,93 +58,8 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
 
 namespace {
 
-using Outcome = std::optional<ErrorCode>;  // nothing: it succeeded
-
-template <class T>
-Outcome outcome_of(const Result<T>& result) {
-    return result ? Outcome() : Outcome(result.error().code);
-}
-
-int failures_tried = 0;
-
-// Runs the operation with its first allocation failing, then its second, until it makes no more. `unchanged` looks at
-// what the operation might have changed.
-template <class Operation, class Unchanged>
-void sweep(const char* name, const Operation& operation, const Unchanged& unchanged) {
-    CAPTURE(std::string(name));
-    REQUIRE_FALSE(operation());  // with all memory, and warm
-    for (std::int64_t n = 0;; ++n) {
-        CAPTURE(n);
-        const std::int64_t before = testing::live_blocks;
-        testing::has_failed = false;
-        testing::allocations_left = n;
-        const Outcome outcome = operation();
-        testing::allocations_left = testing::kNever;
-        const std::int64_t after = testing::live_blocks;
-        if (!testing::has_failed) {
-            REQUIRE_FALSE(outcome);
-            REQUIRE(n > 0);
-            return;
-        }
-        ++failures_tried;
-        REQUIRE(outcome);
-        CHECK(to_string(*outcome) == to_string(ErrorCode::out_of_memory));
-        REQUIRE(after == before);
-        REQUIRE(unchanged());
-    }
-}
-
-template <class Operation>
-void sweep(const char* name, const Operation& operation) {
-    sweep(name, operation, [] { return true; });
-}
-
-Vector<glm::vec3> points(std::size_t count) {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
-    Vector<glm::vec3> result(count);
-    for (glm::vec3& p : result) p = {uniform(random), uniform(random), uniform(random)};
-    return result;
-}
-
-Vector<Obb> boxes(std::size_t count) {
-    Vector<Obb> result(count);
-    const auto centers = points(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        result[i].center = 100.0 * glm::dvec3(centers[i]);
-        result[i].half_extents = {1.0f, 0.5f, 0.25f};
-    }
-    return result;
-}
-
-// A flat grid of 2 n² triangles.
-TriangleMesh grid(std::uint32_t n) {
-    TriangleMesh mesh;
-    for (std::uint32_t y = 0; y <= n; ++y)
-        for (std::uint32_t x = 0; x <= n; ++x)
-            mesh.positions.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
-    for (std::uint32_t y = 0; y < n; ++y)
-        for (std::uint32_t x = 0; x < n; ++x) {
-            const std::uint32_t a = y * (n + 1) + x, b = a + n + 1;
-            for (const std::uint32_t i : {a, a + 1, b, b, a + 1, b + 1}) mesh.indices.push_back(i);
-        }
-    mesh.colors.assign(mesh.positions.size(), glm::vec3(0.5f));
-    return mesh;
-}
-
-// A star with a square hole.
-Polygon star() {
-    Polygon polygon;
-    for (int i = 0; i < 24; ++i) {
-        const double radius = i % 2 == 0 ? 10.0 : 6.0, angle = i * 0.2617993877991494;
-        polygon.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-    }
-    polygon.ring_ends.push_back(24);
-    for (const auto& p : {glm::dvec2(-1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1), glm::dvec2(1, -1)})
-        polygon.points.push_back(p);
-    polygon.ring_ends.push_back(28);
-    return polygon;
-}
+using testing::boxes, testing::grid, testing::points, testing::star;
+using testing::failures_tried, testing::outcome_of, testing::sweep;
 
 // What is passed by value is copied while memory lasts.
 template <class T>
@@ -304,6 +222,41 @@ TEST_SUITE("memory/fault") {
         std::filesystem::remove(path);
     }
 
+    TEST_CASE("a scene's mesh is replaced as a whole or stays") {
+        const testing::FailingMemory memory;
+        scene::Scene scene = small_scene();
+        const TriangleMesh other = grid(3);
+        sweep(
+            "replace_mesh", [&] { return outcome_of(scene.replace_mesh(0, copy_of(other))); },
+            [&] { return scene.mesh(0).indices == other.indices; });
+    }
+
+    TEST_CASE("what may be seen from where: lines, proofs, files") {
+        const testing::FailingMemory memory;
+        const pvs::Subject subject = testing::random_subject(1, 6);
+        const auto cells = pvs::Cells::grid({{-5.0, 0.0, -5.0}, {5.0, 2.0, 5.0}}, {2, 1, 2}).value();
+        sweep("Bake::create", [&] { return outcome_of(pvs::Bake::create(subject, cells, {.epsilon = 0.05})); });
+        auto bake = pvs::Bake::create(subject, cells, {.epsilon = 0.05}).value();
+        sweep("Bake::run", [&] {
+            auto fresh = [&] {
+                const std::int64_t left = testing::allocations_left.exchange(testing::kNever);
+                auto made = pvs::Bake::create(subject, cells, {.epsilon = 0.05});
+                testing::allocations_left = left;
+                return made;
+            }();
+            return outcome_of(fresh->run({.lines = 2000}));
+        });
+        REQUIRE(bake.run({.lines = 2000}));
+        sweep("Bake::state", [&] { return outcome_of(bake.state()); });
+        const auto state = bake.state().value();
+        sweep("Bake::add_state", [&] { return outcome_of(bake.add_state(state)); });
+        sweep("Pvs::finish", [&] { return outcome_of(pvs::Pvs::finish(bake)); });
+        const auto sets = pvs::Pvs::finish(bake).value();
+        sweep("Pvs::to_file", [&] { return outcome_of(sets.to_file()); });
+        const auto file = sets.to_file().value();
+        sweep("Pvs::from_memory", [&] { return outcome_of(pvs::Pvs::from_memory(file)); });
+    }
+
     TEST_CASE("light: patches, tracers, solvers") {
         const testing::FailingMemory memory;
         const TriangleMesh mesh = grid(4);
@@ -311,6 +264,7 @@ TEST_SUITE("memory/fault") {
         sweep("make_patches", [&] { return outcome_of(radiosity::make_patches(copy_of(mesh), materials)); });
         sweep("refine", [&] { return outcome_of(radiosity::refine(mesh, 0.4)); });
         sweep("mend_t_junctions", [&] { return outcome_of(radiosity::mend_t_junctions(mesh, 1e-4)); });
+        sweep("BundleTracer::build", [&] { return outcome_of(radiosity::BundleTracer::build(mesh)); });
         sweep("LineTracer::build", [&] { return outcome_of(radiosity::LineTracer::build(mesh)); });
         const auto patches = radiosity::make_patches(TriangleMesh(mesh), materials).value();
         sweep("Solver::create", [&] { return outcome_of(radiosity::Solver::create(patches)); });

@@ -3,6 +3,7 @@
 """Puts deliberate faults into a copy of the engine, one at a time, and sees whether the tests notice.
 
 tests/mutation/run.py [NAME|MODULE|FILE …]   those that a word selects (all without one); resumes where it was stopped
+tests/mutation/run.py --together [WORD …]    those of them that fit into one build: minutes instead of hours
 tests/mutation/run.py --list                 what there is, nothing run
 tests/mutation/run.py --report               the table of what is known, nothing run
 
@@ -20,6 +21,7 @@ import time
 from pathlib import Path
 
 from mutants import Mutant, by_rule, read_list
+from together import try_together
 
 ROOT = Path(__file__).resolve().parents[2]
 LISTS = ROOT / "tests" / "mutation"
@@ -72,8 +74,8 @@ class Scratch:
         if done.returncode:
             sys.exit(f"cmake cannot configure {self.tree}:\n{done.stdout}{done.stderr}")
 
-    def compile(self, tests):
-        command = ["nice", "-n", "10", "cmake", "--build", str(self.build), "-j", str(self.jobs), "--target"]
+    def compile(self, tests, keep_going=False):
+        command = ["ninja", "-C", str(self.build), "-j", str(self.jobs)] + ["-k0"] * keep_going
         return subprocess.run(command + [f"test_{t}" for t in tests], capture_output=True, text=True)
 
     def run(self, test, limit):
@@ -233,6 +235,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="print the mutants and end")
     parser.add_argument("--report", action="store_true", help="print what is known and end")
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of those selected")
+    parser.add_argument("--together", action="store_true", help="only those that fit into one build, switched on in turn")
     parser.add_argument("--hand", action="store_true", help="only those that are written down")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after so long")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutation", help="folder of the copy and the results")
@@ -262,6 +265,9 @@ def main():
         scratch.configure()
         started = time.monotonic()
         todo = [m for m in mutants if not m.equivalent and known.get(m) is None]
+        if options.together:
+            try_together(scratch, todo, known, options.minutes)
+            return 0 if report(mutants, known) else 1
         for number, mutant in enumerate(sorted(todo, key=lambda m: (m.file.endswith("hpp"), m.tests, m.file)), 1):
             if time.monotonic() - started > 60 * options.minutes:
                 break

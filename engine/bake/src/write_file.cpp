@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/bake/baked_scene.hpp>
+#include <crofton/core/recovery.hpp>
 
 #include <cerrno>
 #include <cstdio>
@@ -104,15 +105,20 @@ Result<void> open_partial(const std::string& partial, const std::string& path, O
 }
 
 // The name itself is on the disk once its folder is. Where folders cannot be flushed it gets there in its time.
-void flush_folder(const std::string& target) {
-    const std::size_t slash = target.find_last_of('/');
+void flush_folder(const std::string& name) {
     OpenFile folder;
-    folder.open(slash == std::string::npos ? "." : target.substr(0, slash + 1), O_RDONLY | O_DIRECTORY);
+    folder.open(name, O_RDONLY | O_DIRECTORY);
     if (folder.number() >= 0) static_cast<void>(fsync(folder.number()));
 }
 
+std::string folder_of(const std::string& target) {
+    const std::size_t slash = target.find_last_of('/');
+    return slash == std::string::npos ? "." : target.substr(0, slash + 1);
+}
+
 Result<void> write_and_rename(const std::string& target, const std::string& path, std::span<const std::byte> bytes) {
-    const std::string partial = target + ".partial";
+    // Memory may end before the file is there, not after.
+    const std::string partial = target + ".partial", folder = folder_of(target);
     OpenFile file;
     if (auto opened = open_partial(partial, path, file); !opened) return opened;
     struct stat old {};
@@ -123,7 +129,7 @@ Result<void> write_and_rename(const std::string& target, const std::string& path
     if (reason == 0 && fsync(file.number()) != 0 && errno != EINVAL && errno != EROFS) reason = errno;
     if (reason == 0 && std::rename(partial.c_str(), target.c_str()) != 0) reason = errno;
     if (reason == 0) {
-        flush_folder(target);
+        flush_folder(folder);
         return {};
     }
     std::remove(partial.c_str());
@@ -166,8 +172,10 @@ Result<void> write_directly(const std::string& path, std::span<const std::byte> 
 
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes) {
     // Links of /proc lead to pipes that have no path of their own: these are opened by the link.
-    if (is_special(path)) return write_directly(path, bytes);
-    return write_and_rename(behind_links(path), path, bytes);
+    return detail::recover([&]() -> Result<void> {
+        if (is_special(path)) return write_directly(path, bytes);
+        return write_and_rename(behind_links(path), path, bytes);
+    });
 }
 
 }  // namespace crofton::bake

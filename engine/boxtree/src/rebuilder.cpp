@@ -89,14 +89,14 @@ Owner<Structure> Rebuilder::step(const Structure& current, Items& items, std::si
     last_step_ = {};
     if (!work_) {
         if (items.count_in_leaves() == 0) return {};
-        work_ = std::make_unique<Work>(current, items);
+        work_ = Owner<Work>::make(current, items);
     }
     if (work_->stage == Work::Stage::apply_changes) budget += work_->new_work;
     work_->new_work = 0;
     while (budget > 0 && work_->stage != Work::Stage::done) budget -= std::min(budget, run_stage(current, budget));
     if (work_->stage != Work::Stage::done) return {};
     Owner<Structure> result = std::move(work_->next);
-    work_.reset();
+    work_ = {};
     return result;
 }
 

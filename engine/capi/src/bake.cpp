@@ -41,16 +41,18 @@ crofton_status open_file(const char* path, const crofton_jobs* jobs, bake::FileA
     CROFTON_CHECK(check_pointer(baked, function));
     CROFTON_CHECK(check_pointer(tree, function));
     HostJobs executor(jobs);
-    auto opened = bake::BakedScene::open(path, executor, {.access = access});
-    if (!opened) return report(opened.error(), function);
-    crofton_tree* made = nullptr;
-    CROFTON_CHECK(create(&made, function, std::move(opened->tree())));
-    if (const crofton_status status = create(baked, function, std::move(*opened)); status != CROFTON_OK) {
-        static_cast<void>(destroy(made, function));
-        return status;
-    }
-    *tree = made;
-    return CROFTON_OK;
+    return recover(function, [&] {
+        auto opened = bake::BakedScene::open(path, executor, {.access = access});
+        if (!opened) return report(opened.error(), function);
+        crofton_tree* made = nullptr;
+        CROFTON_CHECK(create(&made, function, std::move(opened->tree())));
+        if (const crofton_status status = create(baked, function, std::move(*opened)); status != CROFTON_OK) {
+            static_cast<void>(destroy(made, function));
+            return status;
+        }
+        *tree = made;
+        return CROFTON_OK;
+    });
 }
 
 }  // namespace
@@ -61,10 +63,11 @@ crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, 
     CROFTON_CHECK(check_pointer(path, __func__));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
-    const auto bytes = bake::bake(scene->scene, executor);
-    if (!bytes) return report(bytes.error(), __func__);
-    const auto written = bake::write_file(path, *bytes);
-    return written ? CROFTON_OK : report(written.error(), __func__);
+    const char* const function = __func__;
+    return recover(function, [&] {
+        const auto bytes = bake::bake(scene->scene, executor);
+        return bytes ? status_of(bake::write_file(path, *bytes), function) : report(bytes.error(), function);
+    });
 }
 
 crofton_status crofton_baked_scene_open(const char* path, const crofton_jobs* jobs, crofton_baked_scene** baked,

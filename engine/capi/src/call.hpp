@@ -108,6 +108,17 @@ template <class T>
     return pointer || capacity == 0 ? CROFTON_OK : report(CROFTON_INVALID_ARGUMENT, function, "an array is NULL");
 }
 
+// Where memory ends in `call`, the status says so; what the call had built is destroyed by then.
+template <class Call>
+[[nodiscard]] crofton_status recover(const char* function, Call&& call) {
+    const detail::Recovery recovery;
+    try {
+        return call();
+    } catch (const std::bad_alloc&) {
+        return report(CROFTON_OUT_OF_MEMORY, function, "out of memory");
+    }
+}
+
 // Handles live in the host's memory. Where there is none, `*handle` stays as it was.
 template <class Handle, class... Arguments>
 [[nodiscard]] crofton_status create(Handle** handle, const char* function, Arguments&&... arguments) {

@@ -31,10 +31,12 @@ crofton_status copy_polygon(const crofton_polygon* polygon, const char* function
     }
     if (end != polygon->point_count)
         return report(CROFTON_OUT_OF_RANGE, function, "the last ring must end at the number of points");
-    const auto* points = reinterpret_cast<const glm::dvec2*>(polygon->points);
-    result.points.assign(points, points + polygon->point_count);
-    result.ring_ends.assign(polygon->ring_ends, polygon->ring_ends + polygon->ring_count);
-    return CROFTON_OK;
+    return recover(function, [&] {
+        const auto* points = reinterpret_cast<const glm::dvec2*>(polygon->points);
+        result.points.assign(points, points + polygon->point_count);
+        result.ring_ends.assign(polygon->ring_ends, polygon->ring_ends + polygon->ring_count);
+        return CROFTON_OK;
+    });
 }
 
 }  // namespace

@@ -168,12 +168,8 @@ crofton_status crofton_world_create(const crofton_world_options* options, crofto
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
     if (!(given.contact_margin >= 0.0 && std::isfinite(given.contact_margin)))
         return report(CROFTON_INVALID_ARGUMENT, __func__, "contact_margin is negative or not finite");
-    const detail::Recovery recovery;
-    try {
-        return create(world, __func__, World(to_world_options(given)), next_serial());
-    } catch (const std::bad_alloc&) {
-        return report(CROFTON_OUT_OF_MEMORY, __func__, "out of memory");
-    }
+    const char* const function = __func__;
+    return recover(function, [&] { return create(world, function, World(to_world_options(given)), next_serial()); });
 }
 
 crofton_status crofton_world_destroy(crofton_world* world) {

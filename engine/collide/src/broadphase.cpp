@@ -20,7 +20,7 @@ constexpr std::size_t kFewMovers = 8;
 
 }  // namespace
 
-Broadphase::Broadphase(const BroadphaseOptions& options) : state_(std::make_unique<State>()) {
+Broadphase::Broadphase(const BroadphaseOptions& options) : state_(Owner<State>::make()) {
     state_->options = options;
     state_->options.max_pairs = std::min<std::size_t>(options.max_pairs, 0xffffffffu);  // counted in 32 bits
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/error.hpp>
 
+#include <new>
+#include <utility>
+
 namespace crofton {
 
 const char* to_string(ErrorCode code) {
@@ -35,6 +38,15 @@ const char* to_string(ErrorCode code) {
             return "out of memory";
     }
     return "unknown";
+}
+
+tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message) {
+    Error error{code, item, {}};
+    try {
+        error.message = message;
+    } catch (const std::bad_alloc&) {
+    }
+    return tl::unexpected<Error>(std::move(error));
 }
 
 }  // namespace crofton

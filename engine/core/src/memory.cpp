@@ -51,6 +51,9 @@ detail::Recovery::Recovery() {
 detail::Recovery::~Recovery() {
     --recoveries;
 }
+bool detail::Recovery::is_nested() {
+    return recoveries > 1;
+}
 
 void* detail::try_allocate(std::size_t bytes, std::size_t alignment) {
     return hooks_in_force.allocate(hooks_in_force.user, bytes, alignment);
@@ -64,6 +67,12 @@ void* detail::allocate(std::size_t bytes, std::size_t alignment) {
         std::abort();
     }
     return memory;
+}
+
+void detail::give_up() {
+    if (recoveries > 0) throw std::bad_alloc();
+    std::fprintf(stderr, "crofton: out of memory\n");
+    std::abort();
 }
 
 void detail::release(void* memory, std::size_t bytes, std::size_t alignment) {

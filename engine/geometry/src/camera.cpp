@@ -8,27 +8,27 @@
 
 namespace crofton {
 Result<void> validate(const Camera& camera) {
-    const auto bad = [](ErrorCode code, const char* why) { return fail(code, kNoItem, std::string("camera: ") + why); };
+    const auto bad = [](ErrorCode code, const char* why) { return fail(code, kNoItem, why); };
     if (!is_finite(camera.position) || !is_finite(camera.forward) || !is_finite(camera.up))
-        return bad(ErrorCode::non_finite, "position, forward or up is NaN or infinite");
+        return bad(ErrorCode::non_finite, "camera: position, forward or up is NaN or infinite");
     const double scale = glm::length(camera.forward) * glm::length(camera.up);
     if (!(glm::length(glm::cross(camera.forward, camera.up)) > 1e-9 * scale))
-        return bad(ErrorCode::degenerate, "forward and up are parallel or zero; choose another up");
+        return bad(ErrorCode::degenerate, "camera: forward and up are parallel or zero; choose another up");
     if (camera.projection == Projection::perspective) {
         if (!(camera.fov_y > 1e-6 && camera.fov_y < std::numbers::pi - 1e-6))
-            return bad(ErrorCode::out_of_range, "fov_y must lie in (1e-6, pi - 1e-6) radians");
-        if (!(camera.near_distance > 0.0)) return bad(ErrorCode::out_of_range, "near must be positive");
+            return bad(ErrorCode::out_of_range, "camera: fov_y must lie in (1e-6, pi - 1e-6) radians");
+        if (!(camera.near_distance > 0.0)) return bad(ErrorCode::out_of_range, "camera: near must be positive");
     } else {
         if (!(camera.height > 0.0 && std::isfinite(camera.height)))
-            return bad(ErrorCode::out_of_range, "height must be positive");
+            return bad(ErrorCode::out_of_range, "camera: height must be positive");
         if (!std::isfinite(camera.far_distance))
-            return bad(ErrorCode::out_of_range, "an orthographic far must be finite");
+            return bad(ErrorCode::out_of_range, "camera: an orthographic far must be finite");
     }
     if (!(camera.aspect > 0.0 && std::isfinite(camera.aspect)))
-        return bad(ErrorCode::out_of_range, "aspect must be positive");
-    if (!std::isfinite(camera.near_distance)) return bad(ErrorCode::non_finite, "near is NaN or infinite");
+        return bad(ErrorCode::out_of_range, "camera: aspect must be positive");
+    if (!std::isfinite(camera.near_distance)) return bad(ErrorCode::non_finite, "camera: near is NaN or infinite");
     if (!(camera.far_distance > camera.near_distance))
-        return bad(ErrorCode::out_of_range, "far must be greater than near");
+        return bad(ErrorCode::out_of_range, "camera: far must be greater than near");
     return {};
 }
 

@@ -35,21 +35,25 @@ Cross exact_cross(const glm::dvec3& a, const glm::dvec3& b) {
 }  // namespace
 
 Result<void> validate(const Obb& box, std::uint64_t item) {
-    const auto bad = [&](ErrorCode code, const char* why) { return fail(code, item, std::string("box: ") + why); };
+    const auto bad = [&](ErrorCode code, const char* why) { return fail(code, item, why); };
     for (int k = 0; k < 3; ++k) {
-        if (!is_finite(glm::dvec3(box.axes[k]))) return bad(ErrorCode::non_finite, "an axis is NaN or infinite");
-        if (!std::isfinite(box.half_extents[k])) return bad(ErrorCode::non_finite, "a half extent is NaN or infinite");
-        if (!(box.half_extents[k] >= 0.0f)) return bad(ErrorCode::invalid_argument, "a half extent is negative");
-        if (half_extent(box, k) > kMaxCoordinate) return bad(ErrorCode::out_of_range, "a half extent exceeds 1e30");
+        if (!is_finite(glm::dvec3(box.axes[k]))) return bad(ErrorCode::non_finite, "box: an axis is NaN or infinite");
+        if (!std::isfinite(box.half_extents[k]))
+            return bad(ErrorCode::non_finite, "box: a half extent is NaN or infinite");
+        if (!(box.half_extents[k] >= 0.0f)) return bad(ErrorCode::invalid_argument, "box: a half extent is negative");
+        if (half_extent(box, k) > kMaxCoordinate)
+            return bad(ErrorCode::out_of_range, "box: a half extent exceeds 1e30");
     }
-    if (!is_finite(box.center)) return bad(ErrorCode::non_finite, "the centre is NaN or infinite");
+    if (!is_finite(box.center)) return bad(ErrorCode::non_finite, "box: the centre is NaN or infinite");
     for (int k = 0; k < 3; ++k)
-        if (std::abs(box.center[k]) > kMaxCoordinate) return bad(ErrorCode::out_of_range, "the centre exceeds 1e30");
+        if (std::abs(box.center[k]) > kMaxCoordinate)
+            return bad(ErrorCode::out_of_range, "box: the centre exceeds 1e30");
     for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j) {
             const double product = glm::dot(glm::dvec3(box.axes[i]), glm::dvec3(box.axes[j]));
             if (std::abs(product - (i == j ? 1.0 : 0.0)) > kMaxAxisDeviation)
-                return bad(ErrorCode::invalid_argument, "the axes are not orthonormal to 1e-4; normalise them first");
+                return bad(ErrorCode::invalid_argument,
+                           "box: the axes are not orthonormal to 1e-4; normalise them first");
         }
     return {};
 }

@@ -52,7 +52,7 @@ class MeshTreeBuilder {
   public:
     MeshTreeBuilder(const TriangleMesh& mesh, const MeshTreeOptions& options)
         : mesh_(mesh), options_(options), last_range_(mesh.positions.size(), 0) {
-        tree_.parts_ = std::make_unique<MeshParts>();
+        tree_.parts_ = Owner<MeshParts>::make();
     }
 
     Result<MeshTree> build();
@@ -274,7 +274,7 @@ MeshTree::MeshTree(const MeshTree& other)
       pieces_(other.pieces_),
       triangle_count_(other.triangle_count_),
       extent_(other.extent_),
-      parts_(other.parts_ ? std::make_unique<MeshParts>(*other.parts_) : nullptr) {}
+      parts_(other.parts_ ? Owner<MeshParts>::make(*other.parts_) : Owner<MeshParts>()) {}
 
 const MeshParts& MeshTree::parts() const {
     static const MeshParts kNone;

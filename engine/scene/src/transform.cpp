@@ -53,16 +53,15 @@ Result<Transform> from_matrix(const glm::dmat4& matrix) {
 
 Result<void> validate(const Transform& transform, std::uint64_t item) {
     if (is_valid(transform)) return {};
-    const auto bad = [&](ErrorCode code, const char* why) {
-        return fail(code, item, std::string("transform: ") + why);
-    };
+    const auto bad = [&](ErrorCode code, const char* why) { return fail(code, item, why); };
     for (int k = 0; k < 3; ++k)
         if (!is_finite(transform.linear[k]))
-            return bad(ErrorCode::non_finite, "the matrix holds a NaN or infinite number");
-    if (!is_finite(transform.translation)) return bad(ErrorCode::non_finite, "the translation is NaN or infinite");
+            return bad(ErrorCode::non_finite, "transform: the matrix holds a NaN or infinite number");
+    if (!is_finite(transform.translation))
+        return bad(ErrorCode::non_finite, "transform: the translation is NaN or infinite");
     if (!glm::all(glm::lessThanEqual(glm::abs(transform.translation), glm::dvec3(kLargest))))
-        return bad(ErrorCode::out_of_range, "the translation exceeds 1e15");
-    return bad(ErrorCode::out_of_range, "the matrix scales by more than 1e15");
+        return bad(ErrorCode::out_of_range, "transform: the translation exceeds 1e15");
+    return bad(ErrorCode::out_of_range, "transform: the matrix scales by more than 1e15");
 }
 
 bool maps_to_point(const Transform& transform) {

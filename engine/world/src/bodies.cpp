@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <crofton/core/error.hpp>
+#include <crofton/core/recovery.hpp>
 #include <crofton/mesh/mesh_parts.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
 #include <glm/geometric.hpp>
@@ -56,6 +57,7 @@ Bodies::Bodies() {
     point.positions.resize(1);
     point.indices.assign(3, 0);
     auto built = mesh::MeshTree::build(point);
+    detail::give_up_without_memory(built);
     CROFTON_ASSERT(built.has_value(), "a point is a mesh");
     if (built) point_ = std::move(*built);
 }
@@ -70,6 +72,7 @@ void Bodies::update_tree(const TriangleMesh& triangles, Mesh& mesh) {
     if (mesh.can_refit && mesh.tree.refit(triangles.positions) && spread_of(mesh.tree) <= kWornOut * mesh.spread)
         return;
     auto built = mesh::MeshTree::build(triangles, {.refittable = mesh.deforms, .rays = true});
+    detail::give_up_without_memory(built);
     mesh.is_usable = built.has_value();
     mesh.tree = built ? std::move(*built) : mesh::MeshTree();
     mesh.can_refit = mesh.is_usable && mesh.deforms;
@@ -143,6 +146,7 @@ void Bodies::build_own(const scene::Scene& scene, Own& own) const {
         for (const glm::vec3& p : mesh.positions) turned.positions.push_back(glm::vec3(own.linear * glm::dvec3(p)));
     }
     auto built = mesh::MeshTree::build(turned);
+    detail::give_up_without_memory(built);
     own.is_usable = built.has_value();
     if (built) own.tree = std::move(*built);
 }

@@ -8,6 +8,7 @@
 #include <crofton/cull/classify.hpp>
 #include <optional>
 
+#include "must.hpp"
 #include "occluded_view.hpp"
 #include "world_state.hpp"
 
@@ -127,7 +128,7 @@ Result<void> World::view(std::span<const OccludingView> views, const OcclusionOp
         if (auto sized = visible.occluded_[v]->resize(occlusion.size); !sized) return sized;
     executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t v = begin; v < end; ++v)
-            (void)state_->find_visible(views[v], occlusion, options, serial_executor(), *visible.occluded_[v]);
+            world::must(state_->find_visible(views[v], occlusion, options, serial_executor(), *visible.occluded_[v]));
     });
     visible.names_ = &state_->table.names;
     visible.hides_ = true;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
+#include <crofton/core/recovery.hpp>
 #include <utility>
 
 #include "must.hpp"
@@ -28,7 +29,7 @@ constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 }  // namespace
 
 SpatialIndex::SpatialIndex(boxtree::Orientation orientation)
-    : tree_(std::move(*boxtree::BoxTree::build({}, {.orientation = orientation}))) {}
+    : tree_(detail::value_or_give_up(boxtree::BoxTree::build({}, {.orientation = orientation}))) {}
 
 Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     auto item = tree_.insert_detached(layers);
@@ -258,6 +259,7 @@ void SpatialIndex::build_tree(std::span<const ItemId> fresh, Executor& executor)
     }
     auto built = boxtree::BoxTree::build(
         boxes, tree_.layer_masks(), {.detached = detached, .orientation = tree_.structure().orientation()}, executor);
+    detail::give_up_without_memory(built);
     CROFTON_ASSERT(built.has_value(), "boxes were checked before");
     if (!built) return;
     // The lowest ids are given first.

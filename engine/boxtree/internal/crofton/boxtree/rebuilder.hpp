@@ -2,7 +2,7 @@
 // Rebuilds a tree's structure in the background, a bounded step at a time, while the old one is in use and changes.
 #pragma once
 #include <crofton/boxtree/structure.hpp>
-#include <memory>
+#include <crofton/core/memory.hpp>
 
 namespace crofton::boxtree {
 
@@ -42,7 +42,7 @@ class Rebuilder {
     std::size_t apply_changes(const Structure& current, std::size_t budget);
     void sync_item(ItemId item, bool present, bool placed);
 
-    std::unique_ptr<Work> work_;  // of the rebuild under way
+    Owner<Work> work_;  // of the rebuild under way
     RebuildStep last_step_;
 };
 

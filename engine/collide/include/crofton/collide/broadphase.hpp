@@ -10,7 +10,6 @@
 #include <crofton/geometry/shapes.hpp>
 #include <crofton/mesh/mesh_query.hpp>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 
@@ -76,7 +75,7 @@ class Broadphase {
 
   private:
     struct State;
-    std::unique_ptr<State> state_;
+    Owner<State> state_;
 };
 
 // Which of many boxes does a body or a ray meet? Asked of the tree that culling uses.

@@ -47,6 +47,8 @@ using Result = tl::expected<T, Error>;
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, std::string message) {
     return tl::unexpected<Error>(Error{code, item, std::move(message)});
 }
+// Where memory has ended, the message is empty; code and item are told all the same.
+[[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message);
 
 // What the engine tells its host: messages for a person, and a caller's mistakes.
 

@@ -5,6 +5,7 @@
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
 #include <new>
+#include <utility>
 
 namespace crofton::detail {
 
@@ -16,18 +17,37 @@ class Recovery {
     ~Recovery();
     Recovery(const Recovery&) = delete;
     Recovery& operator=(const Recovery&) = delete;
+    [[nodiscard]] static bool is_nested();  // two live on this thread
 };
 
 // The operation's result, or ErrorCode::out_of_memory. What the operation had built is destroyed by then; an object
-// that it changes must be changed by steps that cannot fail, after all that can.
+// that it changes must be changed by steps that cannot fail, after all that can. Within another operation it throws on
+// to that one's: nothing goes on with half of what it asked for.
 template <class Operation>
 [[nodiscard]] auto recover(Operation&& operation) -> decltype(operation()) {
     const Recovery recovery;
     try {
         return operation();
     } catch (const std::bad_alloc&) {
+        if (Recovery::is_nested()) throw;
         return fail(ErrorCode::out_of_memory, kNoItem, "out of memory");  // short: the text itself allocates nothing
     }
+}
+
+// As a failed allocation: throws std::bad_alloc while a Recovery lives, else ends the program with a message.
+[[noreturn]] void give_up();
+
+// The value of an operation that nothing but the end of memory can make fail.
+template <class T>
+[[nodiscard]] T value_or_give_up(Result<T> result) {
+    if (!result) give_up();
+    return std::move(*result);
+}
+
+// Where other errors than the end of memory have an answer of their own.
+template <class T>
+void give_up_without_memory(const Result<T>& result) {
+    if (!result && result.error().code == ErrorCode::out_of_memory) give_up();
 }
 
 // As executor.parallel_for within an operation: an allocation that fails in a body, on whichever thread, is thrown

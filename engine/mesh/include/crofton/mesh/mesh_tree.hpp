@@ -7,7 +7,6 @@
 #include <crofton/geometry/box.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 namespace crofton::mesh {
@@ -82,7 +81,7 @@ class MeshTree {
     Vector<MeshPiece> pieces_;
     std::size_t triangle_count_ = 0;
     float extent_ = 0.0f;
-    std::unique_ptr<MeshParts> parts_;  // none without triangles
+    Owner<MeshParts> parts_;  // none without triangles
 };
 
 }  // namespace crofton::mesh
