@@ -62,12 +62,20 @@ struct BoxRows {
 
     // Counts the row behind the last in, unless all wanted boxes are certainly inside of its plane.
     HWY_INLINE void keep_next(MF wanted) {
-        const DF d;
-        const Row& row = rows[count];
+        cut[count] = cut_by(rows[count], wanted);
+        count += cut[count] != 0;
+    }
+
+    // The first rows are set: finds which of the wanted boxes each cuts.
+    HWY_INLINE void keep_first(unsigned rows_set, MF wanted) {
+        for (count = 0; count < rows_set; ++count) cut[count] = cut_by(rows[count], wanted);
+    }
+
+  private:
+    [[nodiscard]] HWY_INLINE std::uint32_t cut_by(const Row& row, MF wanted) const {
         const VF size = hn::MulAdd(row.reach, unit, hn::Abs(row.base));
         const VF bottom = hn::Sub(row.base, hn::Mul(row.reach, unit));
-        cut[count] = bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(d, 0x1p-19f), row.slack))));
-        count += cut[count] != 0;
+        return bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(DF(), 0x1p-19f), row.slack))));
     }
 };
 

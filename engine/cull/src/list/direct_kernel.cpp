@@ -61,8 +61,24 @@ struct DirectLanes {
     }
     HWY_INLINE VF distance() const { return size_of(center); }
     HWY_INLINE VF extent() const { return size_of(half); }
+    // No corner is farther than |Σ ±h_k a_k|² ≤ Σ h_k² a_k · a_k + 2 Σ |h_i h_j a_i · a_j|, whatever the axes a are.
+    HWY_INLINE VF square_of_reach() const {
+        const DF d;
+        VF square = hn::Zero(d), skew = hn::Zero(d);
+        for (unsigned k = 0; k < 3; ++k) {
+            const unsigned next = (k + 1) % 3;
+            square = hn::MulAdd(hn::Mul(half[k], half[k]), product(k, k), square);
+            skew = hn::Add(skew, hn::Abs(hn::Mul(hn::Mul(half[k], half[next]), product(k, next))));
+        }
+        return hn::MulAdd(skew, hn::Set(d, 2.0f), square);
+    }
+    HWY_INLINE VF sum_of_squares() const { return hn::Add(hn::Add(product(0, 0), product(1, 1)), product(2, 2)); }
 
   private:
+    HWY_INLINE VF product(unsigned i, unsigned j) const {
+        const VF *a = axis + 3 * i, *b = axis + 3 * j;
+        return hn::MulAdd(a[0], b[0], hn::MulAdd(a[1], b[1], hn::Mul(a[2], b[2])));
+    }
     static HWY_INLINE VF size_of(const VF (&v)[3]) {
         return hn::Add(hn::Add(hn::Abs(v[0]), hn::Abs(v[1])), hn::Abs(v[2]));
     }
@@ -99,6 +115,8 @@ HWY_INLINE BoxLanes lanes_of(const Picked<DirectBoxes>& picked, std::size_t coun
     // No component of an axis exceeds 2.
     const VF size = hn::MulAdd(in.extent(), hn::Set(d, 6.0f), in.distance());
     boxes.edge_slack = hn::Mul(size, hn::Set(d, kDirectError));
+    // 2^-18 covers twenty roundings, 1e-18 squares that underflow.
+    boxes.ball = hn::MulAdd(hn::Sqrt(in.square_of_reach()), hn::Set(d, 1.0f + 0x1p-18f), hn::Set(d, 1e-18f));
     return boxes;
 }
 
@@ -131,27 +149,14 @@ HWY_INLINE MF are_valid(VF squares, VF size) {
 HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
                                    float slack) {
     const DF d;
-    // No corner is farther than |Σ ±h_k a_k|² ≤ Σ h_k² a_k · a_k + 2 Σ |h_i h_j a_i · a_j|, whatever the axes a are.
-    const auto product = [&](unsigned i, unsigned j) HWY_ATTR {
-        const VF *a = boxes.axis + 3 * i, *b = boxes.axis + 3 * j;
-        return hn::MulAdd(a[0], b[0], hn::MulAdd(a[1], b[1], hn::Mul(a[2], b[2])));
-    };
-    VF squares = hn::Zero(d), square = hn::Zero(d), skew = hn::Zero(d);
-    for (unsigned k = 0; k < 3; ++k) {
-        const unsigned next = (k + 1) % 3;
-        const VF own = product(k, k), h = boxes.half[k];
-        squares = hn::Add(squares, own);
-        square = hn::MulAdd(hn::Mul(h, h), own, square);
-        skew = hn::Add(skew, hn::Abs(hn::Mul(hn::Mul(h, boxes.half[next]), product(k, next))));
-    }
-    square = hn::MulAdd(skew, hn::Set(d, 2.0f), square);
     const VF distance = boxes.distance(), size = hn::MulAdd(boxes.extent(), hn::Set(d, 6.0f), distance);
     // Normals are up to 1.0005 long; 2^-18 covers twenty roundings, 1e-18 squares that underflow.
-    const VF radius = hn::MulAdd(hn::Sqrt(square), hn::Set(d, 1.0005f * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
+    const VF radius =
+        hn::MulAdd(hn::Sqrt(boxes.square_of_reach()), hn::Set(d, 1.0005f * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
     const VF margin = hn::Add(radius, hn::MulAdd(distance, hn::Set(d, kDirectError), hn::Set(d, slack)));
     VF least = hn::Set(d, 3e38f);
     for (std::uint32_t i = 0; i < count; ++i) least = hn::Min(least, value_at(planes[i], boxes.center));
-    const std::uint32_t valid = bits_of(are_valid(squares, size));
+    const std::uint32_t valid = bits_of(are_valid(boxes.sum_of_squares(), size));
     return {bits_of(hn::Lt(least, hn::Neg(margin))) & valid, bits_of(hn::Ge(least, margin)) & valid, 0, 0};
 }
 
@@ -219,6 +224,9 @@ class DirectQuery {
     }
 
     HWY_INLINE void outside(std::uint32_t i) { out_.visible[i / 64] &= ~bit(i); }
+    HWY_INLINE void sixteen(std::size_t, const std::uint32_t* which, std::uint32_t outside_bits, std::uint32_t) {
+        for_each_bit(outside_bits, [&](unsigned i) { outside(which[i]); });
+    }
     HWY_INLINE void undecided(std::uint32_t i) { out_.undecided[out_.undecided_count++] = i; }
 
   private:

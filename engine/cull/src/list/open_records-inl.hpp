@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <crofton/cull/list_layout.hpp>
 #include <crofton/simd/deposit_bits-inl.hpp>
+#include <type_traits>
 
 #include "list/list_lanes-inl.hpp"
+#include "list/own_planes-inl.hpp"
 
 #if defined(CROFTON_CULL_OPEN_RECORDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_OPEN_RECORDS_INL
@@ -86,9 +88,15 @@ class OpenRecords {
         for_each_bit(planes, [&](unsigned i) { local_[i] = local_plane(view.planes[i], at); });
     }
 
+    // Oriented boxes take their own planes from tables. Others need so little arithmetic a plane that all are tested.
+    static constexpr bool kOwnPlanes =
+        !std::is_same_v<Record, SphereRecord> && !std::is_same_v<Record, AabbRecord> && PlaneTable::kEntries >= 8;
+
     // Of each of `indices`; room for 16 more is needed there. `needs_edge_test` is for its own use and has room for all
     // and 16 more.
     HWY_INLINE OpenCounts test(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
+        if constexpr (kOwnPlanes)
+            if (PlaneTable::takes(planes_)) return test_own(indices, count);
         for_each_sixteen(indices, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
             const std::uint32_t* which = indices + at;
             const Sixteen test =
@@ -103,11 +111,26 @@ class OpenRecords {
 
     // The second stage alone, of bounds that no plane certainly rejects and that are not certainly inside.
     HWY_INLINE OpenCounts resolve(std::uint32_t* indices, std::size_t count) {
+        if constexpr (kOwnPlanes)
+            if (PlaneTable::takes(planes_) && count > PlaneTable::kEntries) return test_own(indices, count);
         resolve_all(indices, count);
         return counts_;
     }
 
   private:
+    OpenCounts test_own(std::uint32_t* indices, std::size_t count) {
+        const PlaneTable table(view_, planes_, local_);
+        for_each_sixteen(indices, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
+            const std::uint32_t* which = indices + at;
+            const Sixteen test =
+                lanes([&](const auto& bounds) HWY_ATTR { return test_own_planes(table, bounds, exact_); });
+            sink_.sixteen(at, which, valid & ~(test.inside | test.straddling | test.undecided), test.inside);
+            counts_.resolved += hwy::PopCount(test.needs_edge_test);
+            count_rest(test, which);
+        });
+        return counts_;
+    }
+
     // Hands sixteen at a time to `visit`: the place of the first, a function that applies a test to their lanes, and a
     // bit for each that there is.
     template <class Visit>

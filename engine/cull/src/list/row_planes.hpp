@@ -23,7 +23,4 @@ struct RowPlanes {
     bool useless;          // the integers are too coarse here to say anything
 };
 
-// Writes to the caller's struct, which is too large to be copied.
-void set_row_planes(const KernelView& view, const ListChunk& chunk, RowPlanes& planes);
-
 }  // namespace crofton::cull

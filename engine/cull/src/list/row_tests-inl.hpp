@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A list's rows against planes in integers, 64 bounds at a time. Compiled once per instruction set (Highway).
-#include "list/row_planes.hpp"
+#include "list/row_planes-inl.hpp"
 #include "tree/block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_ROW_TESTS_INL) == defined(HWY_TARGET_TOGGLE)

@@ -104,7 +104,15 @@ struct BoxLanes {
     VF x, y, z, unit;
     VF edge_slack;
     VF edge[9];  // in units
+    VF ball;     // radius of a ball around the box
     MF present;
+
+    // As slope(), with a normal for each lane.
+    HWY_INLINE void slopes(const VF (&n)[3], VF (&result)[3]) const {
+        for (unsigned k = 0; k < 3; ++k)
+            result[k] =
+                hn::MulAdd(n[0], edge[3 * k], hn::MulAdd(n[1], edge[3 * k + 1], hn::Mul(n[2], edge[3 * k + 2])));
+    }
 
     // normal · edge k, in units.
     HWY_INLINE VF slope(const KernelPlane& plane, unsigned k) const {
