@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <crofton/pvs/line_plan.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/sampling/sampling.hpp>
 #include <glm/geometric.hpp>
@@ -82,19 +83,14 @@ inline void add_witnessed(const pvs::Subject& subject, const pvs::Cells& cells, 
     }
 }
 
-// Lines number [0, count) of a bake: in blocks of 4096, through the box around all cells, or an equal number of blocks
-// through each cell where `blocks_a_cell` is not 0.
-inline Pairs witnessed(const pvs::Subject& subject, const pvs::Cells& cells, const pvs::BakeOptions& options,
-                       std::uint64_t count, std::uint64_t blocks_a_cell) {
+// All lines of a bake.
+inline Pairs witnessed(const pvs::Subject& subject, const pvs::Cells& cells, const pvs::BakeOptions& options) {
     Pairs pairs;
-    for (std::uint64_t block = 0; block < count / 4096; ++block) {
-        const Aabb body = blocks_a_cell ? cells.box(block / blocks_a_cell) : cells.bounds();
-        sampling::Random random(options.seed, block);
-        for (int i = 0; i < 4096; ++i)
-            add_witnessed(
-                subject, cells, options.sides,
-                sampling::line_from_box(Aabb{body.min - subject.origin, body.max - subject.origin}, random.point<5>()),
-                pairs);
+    const auto plan = pvs::plan_lines(cells, cells.size() * subject.boxes.size(), options);
+    Vector<Line> lines;
+    for (std::uint64_t block = 0; plan && block < plan->blocks; ++block) {
+        plan->draw(block, cells, subject.origin, lines);
+        for (const Line& line : lines) add_witnessed(subject, cells, options.sides, line, pairs);
     }
     return pairs;
 }

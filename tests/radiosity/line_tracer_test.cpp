@@ -109,6 +109,61 @@ TEST_SUITE("radiosity/line_tracer") {
         }
     }
 
+    TEST_CASE("lines near each other, which go through the tree together, have the bits they have alone") {
+        sampling::Random random(17);
+        for (const float size : {0.03f, 0.3f, 1.5f}) {
+            const TriangleMesh mesh = shapes::soup(3000, size, 8);
+            const auto tracer = LineTracer::build(mesh);
+            REQUIRE(tracer.has_value());
+            std::size_t crossings = 0;
+            for (int round = 0; round < 60; ++round) {
+                // From parallel lines at nearly one place to lines that have nothing in common, some from far away and
+                // some along an axis.
+                const double wide = std::exp2(-random.uniform(0.0, 14.0)),
+                             apart = std::exp2(-random.uniform(0.0, 14.0));
+                const double far = round % 5 == 0 ? 1000.0 : 0.0;
+                glm::dvec3 middle = sampling::direction(random.point<2>());
+                if (round % 3 == 0) middle = {round % 2 ? 1.0 : 0.0, round % 2 ? 0.0 : 1.0, 0.0};
+                const glm::dvec3 at = sampling::ball_point(random.point<3>());
+                std::vector<Line> lines;
+                for (int i = 0; i < 64; ++i) {
+                    glm::dvec3 direction = middle + wide * sampling::ball_point(random.point<3>());
+                    if (round % 3 == 0 && i % 4 == 0) direction = middle;
+                    direction = glm::normalize(direction);
+                    lines.push_back(
+                        {at + apart * sampling::ball_point(random.point<3>()) - far * direction, direction});
+                }
+                LineHits together, alone;
+                tracer->all_hits(lines, together);
+                REQUIRE(together.ends.size() == 64);
+                for (std::size_t i = 0, first = 0; i < 64; first = together.ends[i], ++i) {
+                    tracer->all_hits({&lines[i], 1}, alone);
+                    REQUIRE(together.ends[i] - first == alone.hits.size());
+                    for (std::size_t h = 0; h < alone.hits.size(); ++h) {
+                        REQUIRE(together.hits[first + h].t == alone.hits[h].t);
+                        REQUIRE(together.hits[first + h].triangle == alone.hits[h].triangle);
+                        REQUIRE(together.hits[first + h].front == alone.hits[h].front);
+                    }
+                    crossings += alone.hits.size();
+                }
+            }
+            CHECK(crossings > 300);
+        }
+    }
+
+    TEST_CASE("sixty-four lines that meet more than a beam has room for have all of their crossings") {
+        TriangleMesh mesh;
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        for (int i = 0; i < 900; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
+        const auto tracer = LineTracer::build(mesh);
+        REQUIRE(tracer.has_value());
+        const std::vector<Line> lines(130, Line{{0.2, 0.2, -5.0}, {0.0, 0.0, 1.0}});
+        LineHits hits;
+        tracer->all_hits(lines, hits);
+        REQUIRE(hits.ends.size() == 130);
+        for (std::size_t i = 0; i < 130; ++i) CHECK(hits.ends[i] == 900 * (i + 1));
+    }
+
     TEST_CASE("the first crossing is the least positive one of all, the ray's own triangle left out") {
         const TriangleMesh mesh = shapes::soup(2000, 0.3f, 9);
         const auto tracer = LineTracer::build(mesh);

@@ -16,7 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 34;
-constexpr std::uint32_t kNothing = ~std::uint32_t{0};
 
 // Bits are only ever set, so the order of threads does not matter.
 template <class T>
@@ -25,50 +24,44 @@ void set_bits(T& word, T bits) {
     if ((shared.load(std::memory_order_relaxed) & bits) != bits) shared.fetch_or(bits, std::memory_order_relaxed);
 }
 
+// An object's bit in a cell's row, or none.
+struct ObjectBit {
+    std::uint32_t word = 0;
+    std::uint64_t bit = 0;
+
+    static ObjectBit of(std::uint32_t object) { return {object / 64, std::uint64_t{1} << (object % 64)}; }
+    [[nodiscard]] bool is_nothing() const { return bit == 0; }
+};
+
 // What is seen from one gap between crossings: the object at each of its ends.
 struct Gap {
     double end = 0.0;  // along the line
-    std::uint32_t behind = kNothing, ahead = kNothing;
-    std::uint16_t flags = 0;  // of CellFlag
+    ObjectBit behind, ahead;
+    std::uint16_t flags = kPassed;  // of CellFlag
 };
 
 // One thread's memory.
 struct Scratch {
-    Vector<Line> drawn, lines;
-    Vector<std::uint32_t> keys, numbers, firsts;
+    Vector<Line> lines;
     radiosity::LineHits hits;
     Vector<CellSpan> spans;
     Vector<Gap> gaps;
 };
 
-// The five low bits of x, each followed by two zeros.
-std::uint32_t spread(std::uint32_t x) {
-    return (x & 1) | (x & 2) << 2 | (x & 4) << 4 | (x & 8) << 6 | (x & 16) << 8;
-}
-
-// Blocks are traced together, lines near each other in turn: the tree's nodes and the cells' bits are then in the
-// cache.
+// Lines of a block come in strata, and those of one go through the tree together.
 class BlockTracing {
   public:
-    static constexpr std::size_t kTogether = 16;
-
     BlockTracing(Bake::State& state, Scratch& scratch) : state_(state), scratch_(scratch) {}
 
-    void trace(std::uint64_t first_block, std::uint64_t end_block) {
-        scratch_.drawn.clear();
-        for (std::uint64_t block = first_block; block < end_block; ++block) {
-            state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
-            scratch_.drawn.insert(scratch_.drawn.end(), scratch_.lines.begin(), scratch_.lines.end());
-        }
-        put_in_order();
+    void trace(std::uint64_t block) {
+        state_.plan.draw(block, state_.cells, state_.origin, scratch_.lines);
         constexpr std::size_t kAtOnce = 1024;
         for (std::size_t begin = 0; begin < scratch_.lines.size(); begin += kAtOnce) {
             const auto lines = std::span(std::as_const(scratch_.lines)).subspan(begin).first(kAtOnce);
             state_.tracer->all_hits(lines, scratch_.hits);
             for (std::size_t i = 0, first = 0; i < lines.size(); ++i) {
                 const std::size_t end = scratch_.hits.ends[i];
-                find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first),
-                          scratch_.numbers[begin + i] % LinePlan::kBlock % kEscapeClasses);
+                find_gaps(std::span(scratch_.hits.hits).subspan(first, end - first), (begin + i) % kEscapeClasses);
                 state_.walk->find(lines[i], scratch_.spans);
                 witness();
                 first = end;
@@ -77,58 +70,28 @@ class BlockTracing {
     }
 
   private:
-    // Along a curve through the middles of the lines' ways in the box around all cells (Morton's).
-    void put_in_order() {
-        const Aabb box{state_.cells.bounds().min - state_.origin, state_.cells.bounds().max - state_.origin};
-        constexpr std::uint32_t kKeys = 1u << 15;
-        const std::size_t count = scratch_.drawn.size();
-        scratch_.keys.resize(count);
-        scratch_.numbers.resize(count);
-        scratch_.lines.resize(count);
-        scratch_.firsts.assign(kKeys + 1, 0);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Line& line = scratch_.drawn[i];
-            double begin = 0.0, end = 0.0;
-            (void)clip(line, box, begin, end);
-            const glm::dvec3 middle = line.point + 0.5 * (begin + end) * line.direction - box.min;
-            std::uint32_t key = 0;
-            for (int k = 0; k < 3; ++k) {
-                const double share = middle[k] / (box.max[k] - box.min[k]);
-                key |= spread(static_cast<std::uint32_t>(share > 0.0 ? (std::min)(32.0 * share, 31.0) : 0.0)) << k;
-            }
-            scratch_.keys[i] = key;
-            ++scratch_.firsts[key + 1];
-        }
-        for (std::size_t key = 0; key < kKeys; ++key) scratch_.firsts[key + 1] += scratch_.firsts[key];
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::uint32_t to = scratch_.firsts[scratch_.keys[i]]++;
-            scratch_.lines[to] = scratch_.drawn[i];
-            scratch_.numbers[to] = static_cast<std::uint32_t>(i);
-        }
+    [[nodiscard]] ObjectBit object(const radiosity::Hit& hit) const {
+        return ObjectBit::of(state_.object_of[hit.triangle]);
     }
-
-    [[nodiscard]] std::uint32_t object(const radiosity::Hit& hit) const { return state_.object_of[hit.triangle]; }
 
     void find_gaps(std::span<const radiosity::Hit> hits, std::size_t line_class) {
         auto& gaps = scratch_.gaps;
         gaps.assign(hits.size() + 1, Gap{});
         const bool both = state_.options.sides == occlude::Sides::both;
-        std::uint32_t behind = kNothing, ahead = kNothing;
-        for (std::size_t g = 0; g <= hits.size(); ++g) {
+        for (std::size_t h = 0; h < hits.size(); ++h) {
+            const ObjectBit met = object(hits[h]);
+            gaps[h].end = static_cast<double>(hits[h].t);
+            if (both || hits[h].front) gaps[h].ahead = met;
             // After it has come from a front the line leaves a back behind.
-            if (g > 0 && (both || !hits[g - 1].front)) behind = object(hits[g - 1]);
-            gaps[g].behind = behind;
-            gaps[g].end = g < hits.size() ? static_cast<double>(hits[g].t) : HUGE_VAL;
-            gaps[g].flags = kPassed;
+            gaps[h + 1].behind = both || !hits[h].front ? met : gaps[h].behind;
         }
-        for (std::size_t g = hits.size() + 1; g-- > 0;) {
-            if (g < hits.size() && (both || hits[g].front)) ahead = object(hits[g]);
-            gaps[g].ahead = ahead;
-        }
+        gaps.back().end = HUGE_VAL;
+        for (std::size_t h = hits.size(); h-- > 0 && !both;)
+            if (!hits[h].front) gaps[h].ahead = gaps[h + 1].ahead;
         tell_solids(hits);
         const auto escapes = static_cast<std::uint16_t>(kFirstEscape << line_class);
         for (Gap& gap : gaps)
-            if ((gap.behind == kNothing || gap.ahead == kNothing) && !(gap.flags & kSolid)) gap.flags |= escapes;
+            if ((gap.behind.is_nothing() || gap.ahead.is_nothing()) && !(gap.flags & kSolid)) gap.flags |= escapes;
     }
 
     // Depth is how often the line is inside of something. A line that goes in as often as it comes out, and has been at
@@ -167,17 +130,14 @@ class BlockTracing {
 
     void see(std::uint32_t cell, const Gap& gap) {
         set_bits(state_.found.flags[cell], gap.flags);
-        mark(cell, gap.behind);
-        mark(cell, gap.ahead);
-    }
-
-    void mark(std::uint32_t cell, std::uint32_t object) {
-        if (object == kNothing) return;
-        set_bits(state_.found.seen[cell * state_.found.words() + object / 64], std::uint64_t{1} << (object % 64));
+        std::uint64_t* row = state_.found.seen.data() + cell * words_;
+        set_bits(row[gap.behind.word], gap.behind.bit);
+        set_bits(row[gap.ahead.word], gap.ahead.bit);
     }
 
     Bake::State& state_;
     Scratch& scratch_;
+    std::size_t words_ = state_.found.words();
 };
 
 std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const BakeOptions& options) {
@@ -272,7 +232,7 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
         Vector<Scratch> scratch(executor.concurrency());
         std::uint64_t lines = 0;
         // Blocks between two looks at the limits.
-        const std::uint64_t wave = BlockTracing::kTogether * (std::max)(8u, 2 * executor.concurrency());
+        const std::uint64_t wave = 32 * executor.concurrency();
         for (;;) {
             const BlockRange todo = found.done.first_gap(shard, wave);
             const auto done = static_cast<double>(found.done.count_within(shard));
@@ -280,11 +240,12 @@ Result<void> Bake::run(const RunLimits& limits, Executor& executor) {
                 std::chrono::duration<double>(Clock::now() - start).count() >= limits.seconds ||
                 (limits.go_on && !limits.go_on(limits.user, done / static_cast<double>(shard.end - shard.begin))))
                 return {};
-            crofton::detail::recoverable_for(
-                executor, todo.end - todo.begin, BlockTracing::kTogether,
-                [&](std::size_t begin, std::size_t end, unsigned worker) {
-                    BlockTracing(*state_, scratch[worker]).trace(todo.begin + begin, todo.begin + end);
-                });
+            crofton::detail::recoverable_for(executor, todo.end - todo.begin, 1,
+                                             [&](std::size_t begin, std::size_t end, unsigned worker) {
+                                                 BlockTracing tracing(*state_, scratch[worker]);
+                                                 for (std::size_t i = begin; i < end; ++i)
+                                                     tracing.trace(todo.begin + i);
+                                             });
             found.done.add(todo);
             lines += (todo.end - todo.begin) * LinePlan::kBlock;
         }
@@ -301,7 +262,12 @@ std::uint64_t Bake::lines_done() const {
 double Bake::epsilon_reached() const {
     const LinePlan& plan = state_->plan;
     const BlockRanges& done = state_->found.done;
-    double lines = static_cast<double>(lines_done()) * plan.least_share;
+    double lines = 0.0;
+    for (std::size_t r = 0; r < plan.rounds.size(); ++r) {
+        const LinePlan::Part &first = plan.parts[6 * r], &last = plan.parts[6 * r + 5];
+        const BlockRange blocks{first.first, last.first + last.blocks};
+        if (done.count_within(blocks) == blocks.end - blocks.begin) lines += plan.rounds[r] * plan.least_share;
+    }
     if (!plan.whole) {
         std::uint64_t least = plan.per_cell;
         for (std::uint64_t c = 0; c < state_->cells.size(); ++c)

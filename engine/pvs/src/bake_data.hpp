@@ -2,6 +2,7 @@
 // What a bake knows, and how parts of it are added up.
 #pragma once
 #include <crofton/core/memory.hpp>
+#include <crofton/pvs/line_plan.hpp>
 #include <crofton/pvs/pvs.hpp>
 #include <crofton/radiosity/lines.hpp>
 #include <cstdint>
@@ -9,7 +10,6 @@
 #include <span>
 
 #include "cell_walk.hpp"
-#include "line_plan.hpp"
 
 namespace crofton::pvs {
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::uint32_t voxel_of(double x, const Aabb& bounds, int k, std::uint32_t count) {
+inline std::uint32_t voxel_of(double x, const Aabb& bounds, int k, std::uint32_t count) {
     const double extent = bounds.max[k] - bounds.min[k];
     if (!(extent > 0.0)) return 0;
     const double at = (x - bounds.min[k]) / extent * count;
@@ -38,6 +38,7 @@ CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
     bounds_ = {cells.bounds().min - origin, cells.bounds().max - origin};
     if (cells.is_grid()) {
         for (int k = 0; k < 3; ++k) counts_[k] = cells.counts()[k];
+        set_steps();
         return;
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
@@ -46,6 +47,7 @@ CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
     const double side = std::sqrt(static_cast<double>(boxes_.size()));
     for (int k = 0; k < 3; ++k)
         counts_[k] = static_cast<std::uint32_t>(std::clamp(k == 1 ? side / 4.0 : side, 1.0, 64.0));
+    set_steps();
     const auto each_voxel = [&](const Aabb& box, auto&& visit) {
         std::uint32_t low[3], high[3];
         for (int k = 0; k < 3; ++k) {
@@ -67,6 +69,15 @@ CellWalk::CellWalk(const Cells& cells, const glm::dvec3& origin) {
         each_voxel(boxes_[i], [&](std::uint32_t v) { listed_[next[v]++] = i; });
 }
 
+void CellWalk::set_steps() {
+    for (int k = 0; k < 3; ++k) {
+        const double extent = bounds_.max[k] - bounds_.min[k];
+        widths_[k] = extent / counts_[k];
+        per_length_[k] = extent > 0.0 ? counts_[k] / extent : 0.0;
+        last_[k] = std::int64_t{counts_[k]} - 1;
+    }
+}
+
 // Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing" (1987).
 template <class Visit>
 void CellWalk::walk(const Line& line, Visit&& visit) const {
@@ -75,12 +86,13 @@ void CellWalk::walk(const Line& line, Visit&& visit) const {
     std::int64_t at[3], step[3], stride[3] = {1, counts_[0], std::int64_t{counts_[0]} * counts_[1]};
     double next[3], pace[3];
     for (int k = 0; k < 3; ++k) {
-        const double width = (bounds_.max[k] - bounds_.min[k]) / counts_[k], d = line.direction[k];
-        at[k] = voxel_of(line.point[k] + begin * d, bounds_, k, counts_[k]);
+        const double d = line.direction[k], inverse = 1.0 / d, width = widths_[k];
+        const double from = (line.point[k] + begin * d - bounds_.min[k]) * per_length_[k];
+        at[k] = from > 0.0 ? (std::min)(static_cast<std::int64_t>((std::min)(from, 4e9)), last_[k]) : 0;
         step[k] = d > 0.0 ? 1 : -1;
         const double border = bounds_.min[k] + static_cast<double>(at[k] + (d > 0.0)) * width;
-        next[k] = d == 0.0 ? kInfinity : (border - line.point[k]) / d;
-        pace[k] = d == 0.0 ? kInfinity : width / std::abs(d);
+        next[k] = d == 0.0 ? kInfinity : (border - line.point[k]) * inverse;
+        pace[k] = d == 0.0 ? kInfinity : width * std::abs(inverse);
     }
     std::int64_t voxel = at[0] + stride[1] * at[1] + stride[2] * at[2];
     for (double t = begin;;) {

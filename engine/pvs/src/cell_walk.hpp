@@ -26,8 +26,12 @@ class CellWalk {
     template <class Visit>
     void walk(const Line& line, Visit&& visit) const;
 
+    void set_steps();
+
     Aabb bounds_;
     std::uint32_t counts_[3] = {1, 1, 1};
+    double widths_[3] = {}, per_length_[3] = {};  // of a voxel; voxels to a unit of length
+    std::int64_t last_[3] = {};
     Vector<Aabb> boxes_;                    // empty: the voxels are the cells
     Vector<std::uint32_t> first_, listed_;  // by voxel, the range of boxes that meet it
 };

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "line_plan.hpp"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <crofton/pvs/line_plan.hpp>
+#include <numbers>
 
 namespace crofton::pvs {
 namespace {
+
+// Rounds double: after each the guarantee stands for half of the lines drawn so far at least.
+constexpr double kFirstRound = 0x1p18;  // lines
+constexpr int kMaxRounds = 8;
 
 double surface(const Aabb& box) {
     const glm::dvec3 e = box.max - box.min;
@@ -14,6 +19,70 @@ double surface(const Aabb& box) {
 
 std::uint64_t blocks_for(double lines) {
     return static_cast<std::uint64_t>(std::ceil(lines / static_cast<double>(LinePlan::kBlock)));
+}
+
+// Lines that enter a box through one face: a point (s, t) of the face; the direction's shadow on the face is a point of
+// the unit disc with squared radius u and angle 2πv. Uniform in all four, the lines are uniform.
+struct Stratum {
+    std::array<double, 4> low{0.0, 0.0, 0.0, 0.0}, high{1.0, 1.0, 1.0, 1.0};
+
+    [[nodiscard]] double length(std::size_t k) const { return high[k] - low[k]; }
+};
+
+// Halves the dimension that spreads lines most. `sides`: of the face; `reach`: how far along a line its neighbours
+// should be near.
+class Division {
+  public:
+    Division(const std::array<double, 2>& sides, double reach) : sides_(sides), reach_(reach) {}
+
+    // Number i of n equal parts, and on to number i of n of that, and so on.
+    void take(std::uint64_t i, std::uint64_t n, Stratum& part) const {
+        while (n > 1) {
+            const std::size_t k = widest(part);
+            const std::uint64_t first = n / 2;
+            const double at = part.low[k] + part.length(k) * (static_cast<double>(first) / static_cast<double>(n));
+            if (i < first) {
+                part.high[k] = at, n = first;
+            } else {
+                part.low[k] = at, i -= first, n -= first;
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t widest(const Stratum& part) const {
+        const double r = std::sqrt(part.high[2]);
+        const double widths[4] = {sides_[0] * part.length(0), sides_[1] * part.length(1),
+                                  reach_ * (r - std::sqrt(part.low[2])),
+                                  reach_ * r * 2.0 * std::numbers::pi * part.length(3)};
+        std::size_t k = 0;
+        for (std::size_t i = 1; i < 4; ++i)
+            if (widths[i] > widths[k]) k = i;
+        return k;
+    }
+
+    std::array<double, 2> sides_;
+    double reach_;
+};
+
+void plan_rounds(LinePlan& plan, const Aabb& box, double lines) {
+    double left = std::ceil(lines);
+    int rounds = 1;
+    while (rounds < kMaxRounds && left * std::exp2(-rounds) >= kFirstRound) ++rounds;
+    const glm::dvec3 e = box.max - box.min;
+    const std::array<double, 3> areas = {e.y * e.z, e.z * e.x, e.x * e.y};
+    for (int r = 0; r < rounds; ++r) {
+        const double round = r + 1 == rounds ? left : std::floor(lines * std::exp2((std::max)(r, 1) - rounds));
+        left -= round;
+        plan.rounds.push_back(round);
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                const double share = areas[static_cast<std::size_t>(axis)] / surface(box);
+                const std::uint64_t blocks = blocks_for(round * share * (1.0 + 1e-12));
+                plan.parts.push_back({plan.blocks, blocks, axis, side});
+                plan.blocks += blocks;
+            }
+    }
 }
 
 }  // namespace
@@ -36,16 +105,52 @@ Result<LinePlan> plan_lines(const Cells& cells, std::uint64_t pairs, const BakeO
         return fail(ErrorCode::out_of_range, kNoItem,
                     "pvs: this epsilon needs more than 2^44 lines: ask for a larger one, or for larger cells");
     plan.whole = whole <= each;
-    plan.blocks = plan.whole ? (std::max)(std::uint64_t{1}, blocks_for(whole)) : plan.per_cell * cells.size();
+    if (plan.whole)
+        plan_rounds(plan, cells.bounds(), whole);
+    else
+        plan.blocks = plan.per_cell * cells.size();
     return plan;
 }
 
 void LinePlan::draw(std::uint64_t block, const Cells& cells, const glm::dvec3& origin, Vector<Line>& lines) const {
-    const Aabb body = whole ? cells.bounds() : cells.box(block / per_cell);
-    const Aabb relative{body.min - origin, body.max - origin};
     sampling::Random random(seed, block);
     lines.clear();
-    for (std::uint64_t i = 0; i < kBlock; ++i) lines.push_back(sampling::line_from_box(relative, random.point<5>()));
+    if (!whole) {
+        const Aabb body = cells.box(block / per_cell);
+        const Aabb relative{body.min - origin, body.max - origin};
+        for (std::uint64_t i = 0; i < kBlock; ++i)
+            lines.push_back(sampling::line_from_box(relative, random.point<5>()));
+        return;
+    }
+    const auto next = std::upper_bound(parts.begin(), parts.end(), block,
+                                       [](std::uint64_t b, const Part& part) { return b < part.first; });
+    const Part& part = *(next - 1);  // those without blocks begin where the next does, and come before it
+    const int s = (part.axis + 1) % 3, t = (part.axis + 2) % 3;
+    const glm::dvec3 e = cells.bounds().max - cells.bounds().min;
+    const Division division({e[s], e[t]}, 2.0 * (std::min)({e.x, e.y, e.z}));
+    Stratum of_block;
+    division.take(block - part.first, part.blocks, of_block);
+    glm::dvec3 point(0.0), direction(0.0);
+    point[part.axis] = (part.side < 0.0 ? cells.bounds().min : cells.bounds().max)[part.axis] - origin[part.axis];
+    const glm::dvec3 corner = cells.bounds().min - origin;
+    for (std::uint64_t i = 0; i < kBlock / kStratum; ++i) {
+        Stratum stratum = of_block;
+        division.take(i, kBlock / kStratum, stratum);
+        for (std::uint64_t n = 0; n < kStratum; ++n) {
+            // 2^32 places along each side of a stratum.
+            std::array<double, 4> u;
+            const std::uint64_t first = random.bits(), second = random.bits();
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto bits = static_cast<std::uint32_t>((k < 2 ? first : second) >> (k % 2 * 32));
+                u[k] = stratum.low[k] + stratum.length(k) * ((static_cast<double>(bits) + 0.5) * 0x1p-32);
+            }
+            const glm::dvec2 disc = sampling::disc_point({u[2], u[3]});
+            point[s] = corner[s] + e[s] * u[0], point[t] = corner[t] + e[t] * u[1];
+            direction[s] = disc.x, direction[t] = disc.y;
+            direction[part.axis] = -part.side * std::sqrt((std::max)(0.0, 1.0 - u[2]));
+            lines.push_back({point, direction});
+        }
+    }
 }
 
 }  // namespace crofton::pvs

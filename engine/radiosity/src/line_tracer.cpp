@@ -59,8 +59,13 @@ std::size_t LineTracer::bytes() const {
     return nodes_.capacity() * sizeof(mesh::BoxNode) + leaves_.capacity() * sizeof(detail::TracerLeaf);
 }
 
+detail::TracerView LineTracer::view() const {
+    const glm::vec3 half(bounds_.half_extents());
+    return {nodes_.data(), leaves_.data(), tie_, {half.x, half.y, half.z}};
+}
+
 void LineTracer::all_hits(std::span<const Line> lines, LineHits& result) const {
-    const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
+    const detail::TracerView tree = view();
     std::array<detail::FlatRay, kBatch> rays;
     std::array<std::uint32_t, kBatch> ends;
     thread_local Vector<detail::FlatHit> hits;
@@ -84,7 +89,7 @@ void LineTracer::all_hits(std::span<const Line> lines, LineHits& result) const {
 
 void LineTracer::first_hits(std::span<const FirstHitQuery> rays, std::span<Hit> result) const {
     CROFTON_ASSERT(rays.size() == result.size(), "one result per ray");
-    const detail::TracerView tree{nodes_.data(), leaves_.data(), tie_};
+    const detail::TracerView tree = view();
     std::array<detail::FlatRay, kBatch> flat_rays;
     std::array<detail::FlatHit, kBatch> hits;
     for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {

@@ -32,8 +32,12 @@ struct FlatHit {
 struct TracerView {
     const mesh::BoxNode* nodes;
     const TracerLeaf* leaves;
-    float tie;  // crossings closer together than this along a line count as one place: fronts come first there
+    float tie;      // crossings closer together than this along a line count as one place: fronts come first there
+    float half[3];  // extents of all; the centre is the origin
 };
+
+// Consecutive lines that are near each other go through the tree together: a beam.
+inline constexpr std::size_t kBeamLines = 64;
 
 // All crossings of each line, sorted, into hits[0 .. capacity); ends[i] as in LineHits. Returns how many lines fitted.
 std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t count, FlatHit* hits,

@@ -23,6 +23,7 @@ namespace crofton::radiosity {
 
 namespace detail {
 struct TracerLeaf;
+struct TracerView;
 }  // namespace detail
 
 struct Hit {
@@ -57,7 +58,9 @@ class LineTracer {
     LineTracer(LineTracer&&) noexcept;
     LineTracer& operator=(LineTracer&&) noexcept;
 
-    // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe.
+    // All crossings of each line over its whole length. Appends nothing, replaces `result`; thread-safe. Sixty-four
+    // lines in turn that are near each other, in place and direction, take a fraction of the time of lines that are
+    // not.
     void all_hits(std::span<const Line> lines, LineHits& result) const;
     // The first crossing for each query beyond that distance, triangle = kNothing where there is none. Same sizes.
     void first_hits(std::span<const FirstHitQuery> queries, std::span<Hit> result) const;
@@ -67,6 +70,7 @@ class LineTracer {
 
   private:
     LineTracer();
+    [[nodiscard]] detail::TracerView view() const;
     Aabb bounds_;
     glm::dvec3 origin_{0.0};
     float tie_ = 0.0f;
