@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <set>
 
 #include "run_cli.hpp"
@@ -145,6 +147,32 @@ TEST_SUITE("cli/frames") {
             CHECK(document["summary"]["verified"] == true);
             CHECK(document["summary"]["mismatches"] == 0);
         }
+    }
+
+    TEST_CASE("--trace writes zones that nest, with the stages of each frame") {
+        const std::string file = scratch().file("trace.json");
+        REQUIRE(run_cli(kSmallTown + "--frames 3 --no-draw --occlude --trace " + file).status == 0);
+        std::ifstream stream(file);
+        const json events = json::parse(stream)["traceEvents"];
+        std::vector<std::string> open;
+        std::map<std::string, int> ended;
+        double time = 0.0;
+        for (const json& event : events) {
+            CHECK(event["ts"].get<double>() >= time);
+            time = event["ts"];
+            if (event["ph"] == "B") open.push_back(event["name"]);
+            if (event["ph"] == "E") {
+                REQUIRE(!open.empty());
+                CHECK(open.back() == event["name"]);
+                ++ended[open.back()];
+                open.pop_back();
+            }
+        }
+        CHECK(open.empty());
+        CHECK(ended["frame"] == 3);
+        CHECK(ended["view: draw occluders"] == 3);
+        CHECK(ended["World::update"] >= 3);
+        CHECK(run_cli(kSmallTown + "--frames 1 --no-draw --trace /no/such/folder/t.json").status == 2);
     }
 
     TEST_CASE("with --occlude frames have both columns, the second has less, and nothing that owns a pixel is hidden") {

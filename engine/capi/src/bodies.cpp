@@ -18,16 +18,13 @@ namespace {
 template <class Make>
 crofton_status create_body(crofton_body** body, const char* function, Make make) {
     CROFTON_CHECK(check_pointer(body, function));
-    const detail::Recovery recovery;
-    try {
+    return recover(function, [&] {
         const auto data = std::allocate_shared<BodyData>(Allocator<BodyData>());
         const Result<convex::Body> made = make(*data);
         if (!made) return report(made.error(), function);
         data->body = *made;
         return create(body, function, SharedBody(data));
-    } catch (const std::bad_alloc&) {
-        return report(CROFTON_OUT_OF_MEMORY, function, "out of memory");
-    }
+    });
 }
 
 // Of a body that views nothing.

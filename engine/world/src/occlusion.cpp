@@ -10,6 +10,7 @@
 
 #include "must.hpp"
 #include "occluded_view.hpp"
+#include "trace_zone.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -64,6 +65,7 @@ Result<void> World::State::find_visible(const OccludingView& view, const Occlusi
                                         const cull::CullOptions& how, Executor& executor,
                                         world::OccludedView& result) const {
     if (auto sized = result.resize(occlusion.size); !sized) return sized;
+    const world::TraceZone zone(options.trace, "World::view with occlusion");
     Vector<std::uint32_t>& ids = result.choice.ids;
     occlude::choose_occluders(occluders.candidates(), view.view,
                               {.max_occluders = occlusion.max_occluders,
@@ -80,9 +82,14 @@ Result<void> World::State::find_visible(const OccludingView& view, const Occlusi
                                      return !cull::is_worth_drawing(*how.limits, index.box(object), object, common);
                                  }),
                   ids.end());
-    result.buffer->draw(occluders.set(), ids, view.view, executor);
+    {
+        const world::TraceZone part(options.trace, "view: draw occluders");
+        result.buffer->draw(occluders.set(), ids, view.view, executor);
+    }
+    const world::TraceZone part(options.trace, "view: what is not hidden");
     occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
                           {.layer_mask = view.layer_mask, .mode = how.mode, .limits = how.limits});
+    world::trace_count(options.trace, "objects not hidden", result.visible.size());
     return {};
 }
 

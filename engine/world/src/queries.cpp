@@ -13,6 +13,7 @@
 #include <glm/matrix.hpp>
 
 #include "ray_ball.hpp"
+#include "trace_zone.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -69,12 +70,15 @@ Result<void> World::view(const Camera& camera, VisibleObjects& visible, const cu
 
 void World::view(const cull::View& view, VisibleObjects& visible, const cull::CullOptions& options,
                  Executor& executor) const {
+    const world::TraceZone zone(state_->options.trace, "World::view");
     visible.names_ = &state_->table.names;
     visible.hides_ = false;
     cull::find_visible(state_->index.tree(), state_->index.moving(), view, visible.set_, options, executor);
+    world::trace_count(state_->options.trace, "objects in view", visible.set_.size());
 }
 
 void World::view(std::span<const cull::View> views, VisibleInViews& visible, cull::CullMode mode) const {
+    const world::TraceZone zone(state_->options.trace, "World::view of many");
     visible.names_ = &state_->table.names;
     visible.hides_ = false;
     cull::find_visible(state_->index.tree(), state_->index.moving(), views, visible.set_, mode);

@@ -3,6 +3,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
 
+#include "trace_zone.hpp"
 #include "world_state.hpp"
 
 namespace crofton {
@@ -132,26 +133,41 @@ void World::State::apply_scene(Executor& executor) {
 
 Result<void> World::update(Executor& executor) {
     State& s = *state_;
+    const TraceHooks& trace = s.options.trace;
+    const world::TraceZone zone(trace, "World::update");
     s.statistics = {};
-    s.apply_scene(executor);
-    const auto changes = s.index.update(
-        {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
+    {
+        const world::TraceZone part(trace, "update: transforms");
+        s.apply_scene(executor);
+    }
+    const auto changes = [&] {
+        const world::TraceZone part(trace, "update: tree and movers");
+        return s.index.update(
+            {.rebuild_budget = s.options.rebuild_budget, .updates_to_rest = s.options.updates_to_rest}, executor);
+    }();
     s.note_movers();
-    s.update_occluders();
+    {
+        const world::TraceZone part(trace, "update: occluders");
+        s.update_occluders();
+    }
     Result<void> found;
     const bool changed = changes.boxes > 0 || s.pairs_changed, moved_only = !s.pairs_changed && !changes.members;
     s.pairs_changed = false;
     const auto start = std::chrono::steady_clock::now();
-    if (s.options.pairs && changed)
+    if (s.options.pairs && changed) {
+        const world::TraceZone part(trace, "update: pairs and contacts");
         found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, moved_only, executor);
-    if (s.options.pairs && s.options.contacts && changed)
-        s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, moved_only,
-                               executor);
+        if (s.options.contacts)
+            s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, moved_only,
+                                   executor);
+    }
     if (!changed) s.finder.stay();
     if (!changed) s.body_contacts.stay();
     s.statistics.contacts_us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     if (!found) s.pairs_changed = true;
+    world::trace_count(trace, "boxes changed", changes.boxes);
+    world::trace_count(trace, "pairs", s.finder.pairs().size());
     s.statistics.objects = s.table.count;
     s.statistics.resting = s.index.tree().item_count();
     s.statistics.moving = s.index.moving().size();

@@ -25,6 +25,7 @@
 #include "progress_bar.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
+#include "trace_file.hpp"
 
 namespace crofton::cli {
 namespace {
@@ -45,6 +46,7 @@ struct FramesOptions {
     std::uint32_t occluders = 128;
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
+    std::string trace;   // a file of zones and counters; empty: not wanted
     ReadOptions read;
 };
 
@@ -57,7 +59,9 @@ double microseconds_since(Clock::time_point start) {
 
 class FramesRun {
   public:
-    explicit FramesRun(FramesOptions options) : options_(std::move(options)) {}
+    explicit FramesRun(FramesOptions options) : options_(std::move(options)) {
+        if (!options_.trace.empty()) trace_ = std::make_unique<TraceFile>();
+    }
 
     Result<int> run() {
         catch_interrupts();
@@ -89,6 +93,8 @@ class FramesRun {
         if (auto written = write_results(options_.output, facts, frames, verification); !written)
             return tl::unexpected(written.error());
         if (auto written = write_report(facts, frames, verification); !written) return tl::unexpected(written.error());
+        if (trace_)
+            if (auto written = trace_->write(options_.trace); !written) return tl::unexpected(written.error());
         if (verification)
             for (const std::string& message : verification->messages)
                 std::fprintf(stderr, "crofton: mismatch: %s\n", message.c_str());
@@ -147,6 +153,7 @@ class FramesRun {
                 OcclusionOptions{.size = {buffer->width, buffer->height}, .max_occluders = options_.occluders};
         }
         pipeline_options_.tree = *tree;
+        if (trace_) pipeline_options_.trace = trace_->hooks();
         auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
         if (!frames) return tl::unexpected(frames.error());
         pipeline_.emplace(std::move(*frames));
@@ -174,13 +181,18 @@ class FramesRun {
 
     Result<FrameStatistics> run_frame(std::uint32_t index) {
         const auto start = Clock::now();
-        source_->animate(path_.scene_frames[index]);
-        source_->scene.update(executor());
+        const FileZone zone(trace_.get(), "frame");
+        {
+            const FileZone part(trace_.get(), "scene");
+            source_->animate(path_.scene_frames[index]);
+            source_->scene.update(executor());
+        }
         const double scene_us = microseconds_since(start);
         auto frame = pipeline_->run(path_.cameras[index]);
         if (!frame) return frame;
         frame->index = index;
         frame->update_us += scene_us;
+        const FileZone part(trace_.get(), "draw and count triangles");
         if (drawing_) {
             if (auto drawn = drawing_->draw(*frame); !drawn) return tl::unexpected(drawn.error());
         } else {
@@ -253,6 +265,7 @@ class FramesRun {
 
     FramesOptions options_;
     pipeline::PipelineOptions pipeline_options_;
+    std::unique_ptr<TraceFile> trace_;  // before the pipeline, which tells it
     std::optional<ThreadPool> pool_;
     std::optional<assets::SceneSource> source_;
     Aabb focus_;
@@ -325,6 +338,8 @@ void add_frames_command(CommandLine& line) {
     command.option("--csv", options->output.csv, "Write a line per frame as CSV; - for stdout").writable_file();
     command.option("--png", options->output.png, "Write a picture per frame into this folder");
     command.option("--report", options->report, "Write one self-contained HTML page: pictures, charts, summary")
+        .writable_file();
+    command.option("--trace", options->trace, "Write what took how long, for chrome://tracing or Perfetto")
         .writable_file();
     add_read_options(command, options->read);
     command.action([options] {

@@ -68,7 +68,7 @@ struct Pipeline::State {
           options(the_options),
           executor(the_executor),
           bounds(the_scene, the_options.bounds),
-          world({.pairs = the_options.collide, .tree = the_options.tree}),
+          world({.pairs = the_options.collide, .tree = the_options.tree, .trace = the_options.trace}),
           verdicts(the_scene.instance_count(), cull::Verdict::outside) {
         std::sort(movers.begin(), movers.end());
     }

@@ -30,6 +30,7 @@ struct PipelineOptions {
     // Also asks what is not hidden, with occluders found in the scene's meshes: FrameStatistics::occlusion.
     std::optional<OcclusionOptions> occlusion = {};
     boxtree::Orientation tree = boxtree::Orientation::aligned;
+    TraceHooks trace = {};
 };
 
 // The layer of the objects that stand for instances; views ask for it.

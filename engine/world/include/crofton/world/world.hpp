@@ -22,6 +22,15 @@ struct Motion;
 
 inline constexpr std::size_t kAutomatic = ~std::size_t{0};
 
+// A profiler's functions. Zones are told when they begin and end, on the thread that asked, nested as they run; names
+// are constants that live as long as the program. A function that is null is not called; none may throw.
+struct TraceHooks {
+    void (*begin)(void* user, const char* zone) = nullptr;
+    void (*end)(void* user, const char* zone) = nullptr;
+    void (*count)(void* user, const char* counter, double value) = nullptr;
+    void* user = nullptr;
+};
+
 struct WorldOptions {
     bool pairs = true;            // false: neither pairs nor contacts are looked for
     bool contacts = true;         // false: pairs alone
@@ -34,6 +43,7 @@ struct WorldOptions {
     std::size_t rebuild_budget = kAutomatic;
     std::uint32_t updates_to_rest = 16;  // without moving, until an object counts as resting again
     boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree of what rests
+    TraceHooks trace = {};                                      // told of the stages of updates and views
 };
 
 // As of the last update.
