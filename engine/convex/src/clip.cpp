@@ -125,31 +125,61 @@ void clip_segments(const Patch& reference, const Patch& incident, Clipped& clipp
     }
 }
 
+namespace {
+
+// The index of the first greatest value.
+template <class Value>
+int greatest(int count, Value value) {
+    int best = 0;
+    double most = value(0);
+    for (int i = 1; i < count; ++i)
+        if (const double v = value(i); v > most) {
+            most = v;
+            best = i;
+        }
+    return best;
+}
+
+// Of points as deep but for rounding that which is farthest from their middle: on a flat floor a corner, not whichever
+// inner point rounding made the deepest.
+int deepest_corner(const RawPoint* points, int count) {
+    glm::dvec3 middle(0.0);
+    for (int i = 0; i < count; ++i) middle += points[i].position / static_cast<double>(count);
+    const auto squared = [&](int i) {
+        const glm::dvec3 way = points[i].position - middle;
+        return glm::dot(way, way);
+    };
+    const double depth = points[greatest(count, [&](int i) { return points[i].depth; })].depth;
+    const double reach = std::sqrt(squared(greatest(count, squared)));
+    return greatest(count, [&](int i) { return points[i].depth >= depth - 1e-9 * reach ? squared(i) : -1.0; });
+}
+
+}  // namespace
+
 void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
     int kept[16], chosen = 0;
-    const auto choose = [&](auto value) {
-        int best = 0;
-        for (int i = 1; i < count; ++i)
-            if (value(i) > value(best)) best = i;
-        if (chosen < most && std::find(kept, kept + chosen, best) == kept + chosen) kept[chosen++] = best;
-        return best;
+    const auto keep = [&](int i) {
+        if (chosen < most && std::find(kept, kept + chosen, i) == kept + chosen) kept[chosen++] = i;
+        return i;
     };
     if (count <= most) {
         for (; chosen < count; ++chosen) kept[chosen] = chosen;
     } else {
-        const glm::dvec3 from = points[choose([&](int i) { return points[i].depth; })].position;
-        const glm::dvec3 far = points[choose([&](int i) {
-                                   const glm::dvec3 way = points[i].position - from;
-                                   return glm::dot(way, way);
-                               })].position;
-        const glm::dvec3 along = far - from, across = glm::cross(manifold.normal, along);
-        const auto farthest = [&](const glm::dvec3& d) {
-            return [&points, &from, d](int i) { return glm::dot(d, points[i].position - from); };
+        const glm::dvec3 from = points[keep(deepest_corner(points, count))].position;
+        const auto squared = [&](int i) {
+            const glm::dvec3 way = points[i].position - from;
+            return glm::dot(way, way);
         };
-        choose(farthest(across));
-        choose(farthest(-across));
+        const glm::dvec3 along = points[keep(greatest(count, squared))].position - from;
+        const glm::dvec3 across = glm::cross(manifold.normal, along);
+        const auto keep_farthest = [&](const glm::dvec3& d) {
+            if (chosen < most)
+                keep(greatest(count, [&points, &from, d](int i) { return glm::dot(d, points[i].position - from); }));
+        };
+        keep_farthest(across);
+        keep_farthest(-across);
         for (const double turn : {1.0, -1.0})
-            for (const double side : {1.0, -1.0}) choose(farthest(turn * along + side * across));
+            for (const double side : {1.0, -1.0}) keep_farthest(turn * along + side * across);
     }
     std::sort(kept, kept + chosen);
     manifold.count = chosen;

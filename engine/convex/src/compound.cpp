@@ -109,9 +109,14 @@ class CompoundSearch {
     bool visit(std::uint32_t index) const {
         const CompoundChild& child = compound_.children_[index];
         const RigidTransform pose = within(search_.pose, child.pose);
-        const PartSearch inner{
-            pose,          child.body.sides(), search_.child + compound_.first_part_[index], search_.nearest_first,
-            search_.limit, search_.visit};
+        const PartSearch inner{pose,
+                               child.body.sides(),
+                               search_.child + compound_.first_part_[index],
+                               search_.nearest_first,
+                               search_.limit,
+                               search_.visit,
+                               child.body.reach(),
+                               search_.on_triangle};
         const QueryBox box = seen_from(box_, child.pose);
         if (distance_between(child.body.bounds(), bounds_of(box)) > search_.limit) return false;
         return search_parts({child.body, pose}, box, inner);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kBlock = 4;        // cells, and blocks, along a side of a block
 constexpr std::uint32_t kMaxLine = 32768;  // corners
+constexpr double kFewCells = 8.0;          // along a side: asked without a descent
 
 std::uint32_t blocks_of(std::uint32_t count) {
     return (count + kBlock - 1) / kBlock;
@@ -113,11 +114,33 @@ class FieldSearch {
     }
 
     bool run() const {
+        std::uint32_t first[2], end[2];
+        if (!search_.nearest_first && few_cells(first, end)) {
+            for (std::uint32_t j = first[1]; j < end[1]; ++j)
+                for (std::uint32_t i = first[0]; i < end[0]; ++i)
+                    if (visit_cell(i, j)) return true;
+            return false;
+        }
         const std::size_t top = field_.levels_.size() - 1;
         return distance_to(top, 0, 0) <= search_.limit && descend(top, 0, 0);
     }
 
   private:
+    // The cells below the box, grown by the limit, where they are few: false where they are many.
+    bool few_cells(std::uint32_t (&first)[2], std::uint32_t (&end)[2]) const {
+        const double grown = search_.limit * (1.0 + 1e-4);
+        for (int k = 0; k < 2; ++k) {
+            const double from = (box_.min[2 * k] - grown) / field_.spacing_[k],
+                         to = (box_.max[2 * k] + grown) / field_.spacing_[k], last = static_cast<double>(cells_[k]);
+            if (!(to - from <= kFewCells)) return false;
+            first[k] = static_cast<std::uint32_t>(std::clamp(std::floor(from), 0.0, last));
+            end[k] = static_cast<std::uint32_t>(std::clamp(std::floor(to) + 1.0, 0.0, last));
+            // A box that touches a corner's line from outside meets the cells on the other side.
+            if (first[k] > 0 && static_cast<double>(first[k]) == from) --first[k];
+        }
+        return true;
+    }
+
     bool descend(std::size_t level, std::uint32_t column, std::uint32_t row) const {
         if (level == 0) return visit_cells(column, row);
         const HeightField::Level& below = field_.levels_[level - 1];
@@ -158,22 +181,23 @@ class FieldSearch {
     }
     bool visit_cells(std::uint32_t column, std::uint32_t row) const {
         for (std::uint32_t j = row * kBlock; j < std::min((row + 1) * kBlock, cells_.y); ++j)
-            for (std::uint32_t i = column * kBlock; i < std::min((column + 1) * kBlock, cells_.x); ++i) {
-                const std::uint32_t cell = j * cells_.x + i;
-                if (field_.material(cell) == kHole) continue;
-                const float* const h = field_.heights_.data() + std::size_t{j} * field_.columns_ + i;
-                const float below = h[field_.columns_], beside = h[field_.columns_ + 1];
-                const HeightField::Span span{std::min(std::min(h[0], h[1]), std::min(below, beside)),
-                                             std::max(std::max(h[0], h[1]), std::max(below, beside))};
-                if (distance_between(around(i, j, 1, span), box_) > search_.limit) continue;
-                for (std::uint32_t k = 0; k < 2; ++k) {
-                    const Triangle corners = field_.triangle(2 * cell + k);
-                    Aabb bounds;
-                    for (const glm::dvec3& p : corners) bounds.include(p);
-                    if (distance_between(bounds, box_) <= search_.limit && search_.offer(corners, 2 * cell + k))
-                        return true;
-                }
-            }
+            for (std::uint32_t i = column * kBlock; i < std::min((column + 1) * kBlock, cells_.x); ++i)
+                if (visit_cell(i, j)) return true;
+        return false;
+    }
+    bool visit_cell(std::uint32_t i, std::uint32_t j) const {
+        const std::uint32_t cell = j * cells_.x + i;
+        if (field_.material(cell) == kHole) return false;
+        const float* const h = field_.heights_.data() + std::size_t{j} * field_.columns_ + i;
+        const float below = h[field_.columns_], beside = h[field_.columns_ + 1];
+        // The triangles share two corners.
+        const float low = std::min(h[1], below), high = std::max(h[1], below);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            const float third = k == 0 ? h[0] : beside;
+            const HeightField::Span span{std::min(low, third), std::max(high, third)};
+            if (distance_between(around(i, j, 1, span), box_) > search_.limit) continue;
+            if (search_.offer(field_.triangle(2 * cell + k), 2 * cell + k)) return true;
+        }
         return false;
     }
 

@@ -156,9 +156,11 @@ class PartCaster {
     [[nodiscard]] bool comes_from_behind(const Part& part, const RigidTransform& start, const Motion& motion,
                                          const Impact& impact) const {
         const RigidTransform then = moved(start, motion, impact.time), b_then = moved(b_.pose, motion_b_, impact.time);
-        const Part there{part.body, then, part.id, part.sides};
-        if (impact.normal == glm::dvec3(0.0)) return !is_in_front(there, {b_.body, b_then});
-        return glm::dot(impact.normal, placed_triangle(there, then.translation).normal) <= 0.0;
+        const Triangle corners{part.body.vertex(0), part.body.vertex(1), part.body.vertex(2)};
+        const PlacedTriangle there = placed_triangle(corners, then, then.translation);
+        if (impact.normal == glm::dvec3(0.0))
+            return !is_in_front(there, b_.body, middle_of({b_.body, b_then}, then.translation));
+        return glm::dot(impact.normal, there.normal) <= 0.0;
     }
 
     const Placed &a_, &b_;

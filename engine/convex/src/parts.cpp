@@ -58,11 +58,14 @@ Aabb bounds_of(const QueryBox& box) {
 
 double distance_between(const Aabb& a, const Aabb& b) {
     const glm::dvec3 gap = (glm::max)(glm::dvec3(0.0), (glm::max)(a.min - b.max, b.min - a.max));
+    if (gap == glm::dvec3(0.0)) return 0.0;
     return glm::length(gap) * (1.0 - 1e-4);
 }
 
 bool PartSearch::offer(const Triangle& corners, std::uint32_t triangle) const {
-    return visit({BodyMaker::triangle(corners), pose, {child, triangle}, sides});
+    if (on_triangle == nullptr) return visit({BodyMaker::triangle(corners), pose, {child, triangle}, sides});
+    (*on_triangle)(*this, corners, triangle);
+    return false;
 }
 
 bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search) {
@@ -98,11 +101,17 @@ bool search_parts(const Placed& placed, const QueryBox& box, const PartSearch& s
 }
 
 bool visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit) {
-    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit});
+    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, false, margin, visit, placed.body.reach()});
+}
+
+void visit_parts(const Placed& placed, const QueryBox& box, double margin, PartVisitor visit,
+                 TriangleVisitor triangles) {
+    const Body& body = placed.body;
+    (void)search_parts(placed, box, {placed.pose, body.sides(), 0, false, margin, visit, body.reach(), &triangles});
 }
 
 bool visit_nearest_parts(const Placed& placed, const QueryBox& box, const double& limit, PartVisitor visit) {
-    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, true, limit, visit});
+    return search_parts(placed, box, {placed.pose, placed.body.sides(), 0, true, limit, visit, placed.body.reach()});
 }
 
 }  // namespace crofton::convex

@@ -8,6 +8,9 @@ namespace crofton::convex {
 
 // True ends the search.
 using PartVisitor = FunctionRef<bool(const Part& part)>;
+struct PartSearch;
+// Triangles of surfaces that need not be bodies; with the search that came upon them.
+using TriangleVisitor = FunctionRef<void(const PartSearch& of, const Triangle& corners, std::uint32_t triangle)>;
 
 // A box in some frame: center ± half[k] · axes[k], where the axes are those of a pose seen from another.
 struct QueryBox {
@@ -26,6 +29,8 @@ struct QueryBox {
 // body alone.
 inline constexpr double kEverything = 1e300;
 bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit);
+// The same, with the triangles of surfaces by themselves.
+void visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit, TriangleVisitor triangles);
 
 // Calls `visit` for parts that may be nearer to the box than `limit`, the visitor's to lessen; about the nearest first.
 bool visit_nearest_parts(const Placed& body, const QueryBox& box, const double& limit, PartVisitor visit);
@@ -38,8 +43,10 @@ struct PartSearch {
     bool nearest_first;   // else in the body's order
     const double& limit;  // distance
     PartVisitor visit;
+    double reach = 0.0;                            // of the surface that is searched
+    const TriangleVisitor* on_triangle = nullptr;  // instead of visit
 
-    // Calls visit for one triangle.
+    // Calls one of them for a triangle.
     bool offer(const Triangle& corners, std::uint32_t triangle) const;
 };
 bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSearch& search);

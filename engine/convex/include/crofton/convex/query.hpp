@@ -5,6 +5,7 @@
 #include <crofton/convex/body.hpp>
 #include <crofton/core/memory.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace crofton::convex {
@@ -123,13 +124,17 @@ struct Part {
 // Where two bodies touch, one of them of parts: one manifold for each direction. Memory is kept from call to call.
 class Manifolds {
   public:
+    Manifolds();
+    ~Manifolds();
+    Manifolds(Manifolds&&) noexcept;
+    Manifolds& operator=(Manifolds&&) noexcept;
     [[nodiscard]] std::span<const Manifold> all() const { return all_; }
 
   private:
     friend class ManifoldFinder;
+    struct Scratch;
     Vector<Manifold> all_;
-    Vector<Part> near_;                   // parts that may touch
-    Vector<std::uint32_t> first_, next_;  // their corners, by place
+    std::unique_ptr<Scratch> scratch_;
 };
 
 // Replaces what `found` has. Manifolds of parts whose normals agree within 5 degrees are one, with the normal of its

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// From a touch to contact points: the patches of both bodies along the normal, clipped against each other.
+#pragma once
+#include "touch.hpp"
+
+namespace crofton::convex {
+
+struct GatheredPoints {
+    int count = 0;
+    RawPoint point[kMaxClipped + 1];
+};
+
+// Two bodies as the gatherer sees them: a's origin, and how far the surfaces are from the cores.
+struct Gathering {
+    const glm::dvec3& origin;
+    double radius_a, radius_b, margin;
+};
+
+class Gatherer {
+  public:
+    Gatherer(const Gathering& of, const Touch& touch, GatheredPoints& to) : points(to), of_(of), touch_(touch) {}
+
+    // Points of the cores, around a's origin.
+    void add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b);
+    void add(const Clipped& clipped, bool reference_is_a);
+    // Whether the patches have left out the deepest place by more than `slack`.
+    [[nodiscard]] bool lacks_deepest(double slack) const;
+    void add_deepest();  // the touch's features are known
+
+    GatheredPoints& points;
+
+  private:
+    Gathering of_;
+    const Touch& touch_;
+};
+
+// The reference is the face that looks along the normal more; of faces alike a's, so that it stays. Returns whose it
+// is: 1 a's, 2 b's, 0 where no face is clipped.
+int gather_patches(const Patch& a, const Patch& b, const glm::dvec3& normal, Clipped& clipped, Gatherer& gatherer);
+
+// Sets the features of a touch that are not known: what the vertices of its simplex span, else the patches.
+void name_features(const Body& a, const Body& b, const Patch& patch_a, const Patch& patch_b, Touch& touch);
+
+}  // namespace crofton::convex

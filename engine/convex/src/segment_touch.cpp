@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <limits>
+
+#include "triangle_touch.hpp"
+
+namespace crofton::convex {
+namespace {
+
+constexpr Feature kFace{FeatureKind::face, 0};
+
+Feature end_feature(int end) {
+    return {FeatureKind::vertex, static_cast<std::uint16_t>(end)};
+}
+
+// Of the nearest points so far; `squared` is their distance, squared.
+struct NearestPair {
+    double squared = std::numeric_limits<double>::infinity();
+    glm::dvec3 on_triangle{0.0}, on_segment{0.0};
+    Feature of_triangle{}, of_segment{};
+
+    void offer(const glm::dvec3& p, const glm::dvec3& q, const Feature& a, const Feature& b) {
+        const glm::dvec3 way = q - p;
+        const double d = glm::dot(way, way);
+        if (d < squared) *this = {d, p, q, a, b};
+    }
+};
+
+double clamped(double s) {
+    return s > 0.0 ? (s < 1.0 ? s : 1.0) : 0.0;
+}
+
+// Of edge k of the triangle, from p along u, and the segment from q along v; v may be 0.
+void offer_edge(NearestPair& best, int k, const glm::dvec3& p, const glm::dvec3& u, const glm::dvec3& q,
+                const glm::dvec3& v, int ends) {
+    const glm::dvec3 r = p - q;
+    const double uu = glm::dot(u, u), vv = glm::dot(v, v), uv = glm::dot(u, v), ur = glm::dot(u, r),
+                 vr = glm::dot(v, r);
+    const double whole = uu * vv - uv * uv;
+    double s = whole > 0.0 ? clamped((uv * vr - ur * vv) / whole) : 0.0;
+    const double t = vv > 0.0 ? clamped((uv * s + vr) / vv) : 0.0;
+    s = uu > 0.0 ? clamped((uv * t - ur) / uu) : 0.0;
+    const auto vertex = [](int at) { return Feature{FeatureKind::vertex, static_cast<std::uint16_t>(at)}; };
+    const Feature on_edge = s == 0.0   ? vertex(k)
+                            : s == 1.0 ? vertex(k == 2 ? 0 : k + 1)
+                                       : Feature{FeatureKind::edge, static_cast<std::uint16_t>(k)};
+    const Feature on_segment = ends == 1 || t == 0.0 ? end_feature(0)
+                               : t == 1.0            ? end_feature(1)
+                                                     : Feature{FeatureKind::edge, 0};
+    best.offer(p + s * u, q + t * v, on_edge, on_segment);
+}
+
+}  // namespace
+
+void PlacedTriangle::set_normal() {
+    const glm::dvec3 n = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double length = glm::length(n);
+    normal = length > 0.0 ? n / length : glm::dvec3(0.0);
+}
+
+PlacedTriangle placed_corners(const Triangle& corners, const RigidTransform& pose, const glm::dvec3& origin) {
+    const glm::dvec3 offset = pose.translation - origin;
+    PlacedTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) t.corner[k] = pose.rotation * corners[k] + offset;
+    return t;
+}
+
+PlacedTriangle placed_triangle(const Triangle& corners, const RigidTransform& pose, const glm::dvec3& origin) {
+    PlacedTriangle t = placed_corners(corners, pose, origin);
+    t.set_normal();
+    return t;
+}
+
+SegmentTouch::SegmentTouch(const Placed& body, const glm::dvec3& origin, double reach, double margin)
+    : count_(body.body.vertex_count()), radius_(body.body.radius()), limit_(body.body.radius() + margin) {
+    const glm::dvec3 offset = body.pose.translation - origin;
+    for (int i = 0; i < 2; ++i) end_[i] = body.pose.rotation * body.body.vertex(std::min(i, count_ - 1)) + offset;
+    error_ = 0x1p-48 * (reach + body.body.reach() + glm::length(offset));
+}
+
+Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
+    if (t.normal == glm::dvec3(0.0) || !(error_ < std::numeric_limits<double>::infinity())) return Warm::unknown;
+    const glm::dvec3 edge[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
+    // The corners of a sliver are not quite on its rounded plane.
+    const double second = glm::dot(t.normal, edge[0]), third = -glm::dot(t.normal, edge[2]);
+    const double top = std::max(0.0, std::max(second, third)), bottom = std::min(0.0, std::min(second, third));
+    const double height[2] = {glm::dot(t.normal, end_[0] - t.corner[0]), glm::dot(t.normal, end_[1] - t.corner[0])};
+    const double low = std::min(height[0], height[1]), high = std::max(height[0], height[1]),
+                 far = limit_ + 2.0 * error_;
+    if (low - top > far || high - bottom < -far) return Warm::apart;
+    NearestPair best;
+    for (int i = 0; i < count_; ++i) {
+        bool inside = true;
+        for (int k = 0; k < 3; ++k)
+            inside = inside && glm::dot(glm::cross(edge[k], end_[i] - t.corner[k]), t.normal) >= 0.0;
+        if (inside) best.offer(end_[i] - height[i] * t.normal, end_[i], kFace, end_feature(i));
+    }
+    for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0], count_);
+    const double distance = std::sqrt(best.squared);
+    if (!(distance > 8.0 * error_)) return Warm::unknown;
+    const glm::dvec3 n = (best.on_segment - best.on_triangle) / distance;
+    const double lower =
+        std::min(glm::dot(n, end_[0] - best.on_triangle), glm::dot(n, end_[1] - best.on_triangle)) -
+        std::max(glm::dot(n, t.corner[0] - best.on_triangle),
+                 std::max(glm::dot(n, t.corner[1] - best.on_triangle), glm::dot(n, t.corner[2] - best.on_triangle)));
+    if (lower - 2.0 * error_ > limit_) return Warm::apart;
+    if (!(distance - lower <= 64.0 * error_)) return Warm::unknown;
+    touch.normal = n;
+    touch.depth = radius_ - distance;
+    touch.on_a = best.on_triangle;
+    touch.on_b = best.on_segment;
+    touch.feature_a = best.of_triangle;
+    touch.feature_b = best.of_segment;
+    touch.known = true;
+    return touch.depth >= -limit_ + radius_ ? Warm::touching : Warm::apart;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "surface_manifold.hpp"
+
+#include <cmath>
+
+#include "body_maker.hpp"
+#include "core_query.hpp"
+#include "part_manifold.hpp"
+
+namespace crofton::convex {
+namespace {
+
+void triangle_patch(const PlacedTriangle& t, const glm::dvec3& direction, Patch& patch) {
+    const bool behind = glm::dot(t.normal, direction) < 0.0;
+    patch.count = 3;
+    patch.normal = behind ? -t.normal : t.normal;
+    patch.self = {FeatureKind::face, 0};
+    constexpr std::uint16_t kVertex[2][3] = {{0, 1, 2}, {0, 2, 1}}, kEdge[2][3] = {{0, 1, 2}, {2, 1, 0}};
+    for (int k = 0; k < 3; ++k) {
+        patch.vertex[k] = kVertex[behind ? 1 : 0][k];
+        patch.edge[k] = kEdge[behind ? 1 : 0][k];
+        patch.point[k] = t.corner[patch.vertex[k]];
+    }
+}
+
+}  // namespace
+
+SurfaceContacts::SurfaceContacts(const NearSurface& surface, const Placed& body, double margin)
+    : surface_(surface), body_(body), gathering_{surface.pose.translation, 0.0, body.body.radius(), margin} {
+    const glm::dvec3& origin = surface.pose.translation;
+    size_ = surface.reach + body.body.reach() + glm::length(body.pose.translation - origin);
+    middle_ = middle_of(body, origin);
+    if (body.body.kind() == Kind::box) box_.emplace(body, origin, surface.reach, margin);
+    const bool round = body.body.kind() == Kind::ball || body.body.kind() == Kind::capsule;
+    if (round) segment_.emplace(body, origin, surface.reach, margin);
+}
+
+void SurfaceContacts::ask(const NearTriangle& near, std::uint32_t index, EdgeRule& rule, Contact& contact) const {
+    contact.points.count = 0;
+    PlacedTriangle t = placed_corners(near.corners, surface_.pose, surface_.pose.translation);
+    Touch touch;
+    Warm warm = box_ ? box_->ask(t, touch) : Warm::unknown;
+    if (warm == Warm::apart) return;
+    t.set_normal();
+    if (segment_) warm = segment_->ask(t, touch);
+    if (warm == Warm::apart) return;
+    std::optional<Body> triangle;
+    Found found = Found::touch;
+    if (warm == Warm::unknown) {
+        triangle = BodyMaker::triangle(near.corners);
+        touch = {};
+        found = is_half_space(body_) ? find_on_half_space(*triangle, contact) : find(t, *triangle, touch, contact);
+        if (found == Found::nothing) return;
+    }
+    const glm::dvec3 normal = found == Found::points ? contact.normal : touch.normal;
+    const double along = glm::dot(normal, t.normal);
+    const bool front_only = surface_.sides == Sides::front;
+    if (front_only && along <= 0.0 && !is_in_front(t, body_.body, middle_)) {
+        contact.points.count = 0;
+        return;
+    }
+    const bool allowed = !front_only || along > 0.0;
+    const bool across_face = std::abs(along) >= 1.0 - 0.5 * kFlatSine * kFlatSine;
+    if (allowed && (across_face || !rule.points_into_neighbor(index, surface_.pose, normal))) {
+        if (found == Found::touch) gather(t, triangle ? &*triangle : nullptr, touch, contact);
+        return;
+    }
+    contact.points.count = 0;
+    if (t.normal == glm::dvec3(0.0)) return;
+    gather_along_face(t, front_only || is_in_front(t, body_.body, middle_), contact);
+}
+
+// The triangle's face is tried first: its points are clipped for that already.
+SurfaceContacts::Found SurfaceContacts::find(const PlacedTriangle& t, const Body& triangle, Touch& touch,
+                                             Contact& contact) const {
+    const Placed placed{triangle, surface_.pose};
+    const Pair pair(placed, body_);
+    PairCache face;
+    face.reference = 1;
+    Clipped clipped;
+    const Warm warm = touch_at_face(placed, body_, pair, gathering_.margin, face, kSameDepth, touch, clipped);
+    if (warm == Warm::apart) return Found::nothing;
+    if (warm == Warm::unknown) {
+        touch = {};
+        return find_touch(pair, gathering_.margin, nullptr, touch) ? Found::touch : Found::nothing;
+    }
+    Gatherer gatherer(gathering_, touch, contact.points);
+    gatherer.add(clipped, true);
+    if (gatherer.lacks_deepest(1e-9 * size_)) gatherer.add_deepest();
+    contact.normal = touch.normal;
+    return glm::dot(touch.normal, t.normal) > 0.0 ? Found::points : Found::touch;
+}
+
+SurfaceContacts::Found SurfaceContacts::find_on_half_space(const Body& triangle, Contact& contact) const {
+    const ManifoldOptions options{.margin = gathering_.margin, .max_points = 8};
+    const Manifold m = contact_manifold({triangle, surface_.pose}, body_, options, nullptr);
+    contact.normal = m.normal;
+    contact.points.count = m.count;
+    for (int i = 0; i < m.count; ++i) {
+        const ContactPoint& p = m.points[i];
+        contact.points.point[i] = {p.position, p.depth, p.on_a, p.on_b, {}, {}};
+    }
+    return m.count > 0 ? Found::points : Found::nothing;
+}
+
+void SurfaceContacts::gather(const PlacedTriangle& t, const Body* triangle, Touch& touch, Contact& contact) const {
+    contact.normal = touch.normal;
+    Gatherer gatherer(gathering_, touch, contact.points);
+    Patch on_triangle, on_body;
+    triangle_patch(t, touch.normal, on_triangle);
+    if (body_.body.vertex_count() == 1) {  // a ball has no patch
+        on_body.count = 0;
+    } else {
+        patch_along(body_, -touch.normal, gathering_.origin, on_body);
+        Clipped clipped;
+        (void)gather_patches(on_triangle, on_body, touch.normal, clipped, gatherer);
+    }
+    if (!gatherer.lacks_deepest(1e-9 * size_)) return;
+    if (!touch.known && triangle != nullptr) name_features(*triangle, body_.body, on_triangle, on_body, touch);
+    gatherer.add_deepest();
+}
+
+// What lies above the triangle, along its face's normal.
+void SurfaceContacts::gather_along_face(const PlacedTriangle& t, bool front, Contact& contact) const {
+    Touch touch;
+    touch.normal = front ? t.normal : -t.normal;
+    touch.depth = HUGE_VAL;
+    contact.normal = touch.normal;
+    Patch on_triangle, on_body;
+    triangle_patch(t, touch.normal, on_triangle);
+    patch_along(body_, -touch.normal, gathering_.origin, on_body);
+    Gatherer gatherer(gathering_, touch, contact.points);
+    Clipped clipped;
+    (void)gather_patches(on_triangle, on_body, touch.normal, clipped, gatherer);
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Contacts of a convex body with the triangles of a surface.
+#pragma once
+#include <optional>
+
+#include "edge_rule.hpp"
+#include "gather.hpp"
+#include "manifold_list.hpp"
+
+namespace crofton::convex {
+
+// One surface and one convex body, asked triangle by triangle.
+class SurfaceContacts {
+  public:
+    SurfaceContacts(const NearSurface& surface, const Placed& body, double margin);
+
+    // The contact points of one triangle, along `normal`, from the triangle to the body. No points where it does not
+    // touch.
+    struct Contact {
+        glm::dvec3 normal;
+        GatheredPoints points;
+    };
+    void ask(const NearTriangle& triangle, std::uint32_t index, EdgeRule& rule, Contact& contact) const;
+
+  private:
+    // How the two touch along the least deep direction; false: they do not. Points that come with it go to `contact`.
+    enum class Found : std::uint8_t { nothing, touch, points };
+    [[nodiscard]] Found find(const PlacedTriangle& t, const Body& triangle, Touch& touch, Contact& contact) const;
+    [[nodiscard]] Found find_on_half_space(const Body& triangle, Contact& contact) const;
+    void gather(const PlacedTriangle& t, const Body* triangle, Touch& touch, Contact& contact) const;
+    void gather_along_face(const PlacedTriangle& t, bool front, Contact& contact) const;
+
+    const NearSurface& surface_;
+    const Placed& body_;
+    Gathering gathering_;
+    double size_;
+    glm::dvec3 middle_;
+    std::optional<BoxTouch> box_;
+    std::optional<SegmentTouch> segment_;
+};
+
+}  // namespace crofton::convex
