@@ -10,12 +10,11 @@
 
 #include "exact/box_constraints.hpp"
 #include "exact/spot.hpp"
-#include "lights/froxel_kernel.hpp"
+#include "lights/filter_light.hpp"
 
 namespace crofton::cull {
 namespace {
 
-constexpr std::uint32_t kLightsAPart = 256;
 constexpr double kLargestLight = 1e12;
 
 tl::unexpected<Error> bad_light(std::size_t light, ErrorCode code, const char* why) {
@@ -128,10 +127,14 @@ class LightPass {
             &kernel_grid_, lights,  static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(first),
             decide,        &context};
         part.count = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            if (part.runs.size() < part.count + grid_.size() + 1) part.runs.resize(2 * part.count + grid_.size() + 1);
-            part.count += run_froxel_kernel(input, i, reinterpret_cast<LitRun*>(part.runs.data() + part.count));
-        }
+        SpotBatch batch;
+        const auto free_runs = [&](std::size_t room) {
+            if (part.runs.size() < part.count + room) part.runs.resize(2 * part.count + room);
+            return reinterpret_cast<LitRun*>(part.runs.data() + part.count);
+        };
+        for (std::uint32_t i = 0; i < count; ++i)
+            part.count += run_froxel_kernel(input, i, batch, free_runs(SpotBatch::kPairs + grid_.size()));
+        part.count += finish_spots(input, batch, free_runs(SpotBatch::kPairs + 1));
         part.exact_tests = context.exact_tests;
     }
 

@@ -12,37 +12,158 @@
 #include <cmath>
 #include <crofton/simd/mask_bits-inl.hpp>
 
-#include "lights/light_tests-inl.hpp"
 #include "lights/spot_filter.hpp"
+#include "lights/spot_tests-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 namespace {
 
 using FroxelTag = hn::CappedTag<float, 16>;
+using IndexTag = hn::RebindToSigned<FroxelTag>;
 using SingleTag = hn::CappedTag<double, 1>;
-constexpr int kRounds = 6;  // of test_spot
+constexpr int kRounds = 16;  // of a portal
 
 // Indices from `first` to before `last`.
 struct Range {
     std::uint32_t first, last;
 };
 
+// How far the light reaches in a direction whose product with its axis is `t`.
+double support(const KernelLight& light, double t) {
+    if (!light.is_spot || t >= light.cosine) return light.radius;
+    const double side = light.cosine * t + light.sine * std::sqrt(std::max(0.0, 1.0 - t * t));
+    return light.radius * std::max(0.0, side);
+}
+
+// What vectors leave open, in doubles; and what these cannot tell either by exact arithmetic.
+class OpenPairs {
+  public:
+    OpenPairs(const FroxelKernelInput& input, std::uint32_t light)
+        : in_(input), grid_(*input.grid), light_(input.lights[light]), number_(light), filter_(grid_, light_) {}
+
+    HWY_NOINLINE bool is_lit(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+        const double w = light_.at[2], eta = filter_.eta + 0x1p-24 * light_.radius;
+        const double low = std::max(grid_.doubles.depth[k], w - support(light_, -light_.axis[2]) - eta),
+                     high = std::min(grid_.doubles.depth[k + 1], w + support(light_, light_.axis[2]) + eta);
+        if (low > high) return false;
+        const Answer answer = light_.is_spot ? ask_spot(i, j, low, high) : ask_ball(i, j, low, high);
+        if (answer != Answer::unknown) return answer == Answer::yes;
+        return in_.decide(in_.context, number_, (k * grid_.size[1] + j) * grid_.size[0] + i);
+    }
+
+  private:
+    [[nodiscard]] Answer ask_ball(std::uint32_t i, std::uint32_t j, double low, double high) const {
+        const SingleTag d;
+        const Lit<SingleTag> lit =
+            test_ball(FroxelLanes<SingleTag>(grid_.doubles, i, j, low, high), LightLanes<SingleTag>::all(filter_));
+        return !hn::AllFalse(d, lit.yes) ? Answer::yes : !hn::AllFalse(d, lit.no) ? Answer::no : Answer::unknown;
+    }
+    [[nodiscard]] Answer ask_spot(std::uint32_t i, std::uint32_t j, double low, double high) const {
+        FroxelCell cell{{}, {}, low, high};
+        const std::uint32_t at[2] = {i, j};
+        for (unsigned axis = 0; axis < 2; ++axis)
+            for (unsigned side = 0; side < 2; ++side) {
+                cell.slope[axis][side] = grid_.doubles.slope[axis][at[axis] + side];
+                cell.start[axis][side] = grid_.doubles.start[axis][at[axis] + side];
+            }
+        return filter_spot(light_, cell, filter_.eta);
+    }
+
+    const FroxelKernelInput& in_;
+    const FroxelKernelGrid& grid_;
+    const KernelLight& light_;
+    std::uint32_t number_;
+    FilterLight<double> filter_;
+};
+
+constexpr std::uint32_t kLanes = static_cast<std::uint32_t>(hn::MaxLanes(FroxelTag()));
+constexpr std::uint32_t kAllLanes = (1u << kLanes) - 1;
+
+HWY_INLINE std::uint32_t lanes_of(hn::Mask<FroxelTag> mask) {
+    return crofton::simd::HWY_NAMESPACE::mask_bits(FroxelTag(), mask) & kAllLanes;
+}
+
+// Pairs of spots and froxels, as many at a time as a vector has lanes.
+class SpotPass {
+  public:
+    SpotPass(const FroxelKernelInput& input, SpotBatch& batch) : in_(input), grid_(*input.grid), batch_(batch) {}
+
+    std::size_t run(LitRun* runs) {
+        std::int32_t index[SpotBatch::kPairs + kLanes], open[SpotBatch::kPairs + kLanes];
+        const std::uint32_t count = batch_.count;
+        for (std::uint32_t p = 0; p < count; ++p) index[p] = static_cast<std::int32_t>(p);
+        std::uint32_t left = decide(index, count, open, [](const auto& froxels, const auto& light) HWY_ATTR {
+            return test_spot(froxels, light);
+        });
+        left = decide(open, left, index, [](const auto& froxels, const auto& light) HWY_ATTR {
+            return Portal<FroxelTag>(froxels, light).run(kRounds);
+        });
+        for (std::uint32_t n = 0; n < left; ++n) resolve(static_cast<std::uint32_t>(index[n]));
+        std::size_t written = 0;
+        for (std::uint32_t p = 0; p < count; ++p) {
+            runs[written] = {static_cast<std::uint32_t>(batch_.froxel[p]),
+                             in_.first + static_cast<std::uint32_t>(batch_.light[p]), 1};
+            written += batch_.is_lit[p];
+        }
+        batch_.count = 0;
+        return written;
+    }
+
+  private:
+    // Tests the pairs of `index`, which has room for a vector more, and lists those that stay open.
+    template <class Test>
+    HWY_INLINE std::uint32_t decide(std::int32_t* index, std::uint32_t count, std::int32_t* open, const Test& test) {
+        const FroxelTag d;
+        const IndexTag d_index;
+        std::uint32_t left = 0;
+        for (std::uint32_t l = 0; l < kLanes; ++l) index[count + l] = count > 0 ? index[0] : 0;
+        for (std::uint32_t n = 0; n < count; n += kLanes) {
+            const auto pair = hn::LoadU(d_index, index + n);
+            const FroxelLanes<FroxelTag> froxels(
+                grid_.floats, hn::GatherIndex(d_index, batch_.column, pair), hn::GatherIndex(d_index, batch_.row, pair),
+                hn::GatherIndex(d, batch_.low, pair), hn::GatherIndex(d, batch_.high, pair));
+            const auto light =
+                LightLanes<FroxelTag>::gather(batch_.lights, hn::GatherIndex(d_index, batch_.light, pair));
+            const Lit<FroxelTag> lit = test(froxels, light);
+            const std::uint32_t yes = lanes_of(lit.yes), known = yes | lanes_of(lit.no);
+            for (std::uint32_t l = 0; l < kLanes && n + l < count; ++l) {
+                batch_.is_lit[index[n + l]] = yes >> l & 1;
+                open[left] = index[n + l];
+                left += (known >> l & 1) == 0;
+            }
+        }
+        return left;
+    }
+
+    void resolve(std::uint32_t p) {
+        const std::uint32_t slice = static_cast<std::uint32_t>(batch_.froxel[p]) / (grid_.size[0] * grid_.size[1]);
+        batch_.is_lit[p] =
+            OpenPairs(in_, static_cast<std::uint32_t>(batch_.light[p]))
+                .is_lit(static_cast<std::uint32_t>(batch_.column[p]), static_cast<std::uint32_t>(batch_.row[p]), slice);
+    }
+
+    const FroxelKernelInput& in_;
+    const FroxelKernelGrid& grid_;
+    SpotBatch& batch_;
+};
+
 // One light's way through the grid: slices, rows and columns that it may reach, then froxel by froxel.
 class LightWalk {
   public:
-    LightWalk(const FroxelKernelInput& input, std::uint32_t light, LitRun* runs)
+    LightWalk(const FroxelKernelInput& input, std::uint32_t light, SpotBatch& batch, LitRun* runs)
         : in_(input),
           grid_(*input.grid),
           light_(input.lights[light]),
           number_(light),
           filter_(grid_, light_),
+          batch_(batch),
           runs_(runs) {}
 
     std::size_t run() {
         // Spots reach as far along `forward` as their support says; 2^-24 covers its rounding.
         const double w = light_.at[2], eta = static_cast<double>(filter_.eta) + 0x1p-24 * light_.radius;
-        const double low = w - support(-light_.axis[2]) - eta, high = w + support(light_.axis[2]) + eta;
+        const double low = w - support(light_, -light_.axis[2]) - eta, high = w + support(light_, light_.axis[2]) + eta;
         const double* depth = grid_.doubles.depth;
         const std::uint32_t slices = grid_.size[2];
         if (high < depth[0] || low > depth[slices]) return 0;
@@ -51,24 +172,19 @@ class LightWalk {
             across[axis] = reached(axis);
             if (across[axis].first >= across[axis].last) return 0;
         }
+        if (filter_.is_spot) batch_.lights[number_] = filter_;
         std::uint32_t k = 0;
         while (k + 1 < slices && depth[k + 1] < low) ++k;
         for (; k < slices && depth[k] <= high; ++k) {
             from_ = static_cast<float>(depth[k] > low ? depth[k] : low);
             to_ = static_cast<float>(depth[k + 1] < high ? depth[k + 1] : high);
-            visit_slice(k, across[0], across[1]);
+            if (filter_.is_spot) add_slice(k, across[0], across[1]);
+            if (!filter_.is_spot) visit_slice(k, narrowed(0, across[0]), narrowed(1, across[1]));
         }
         return count_;
     }
 
   private:
-    // How far the light reaches in a direction whose product with the axis is `t`.
-    [[nodiscard]] double support(double t) const {
-        if (!light_.is_spot || t >= light_.cosine) return light_.radius;
-        const double side = light_.cosine * t + light_.sine * std::sqrt(std::max(0.0, 1.0 - t * t));
-        return light_.radius * std::max(0.0, side);
-    }
-
     // Columns or rows that the light may reach: those not beyond a boundary that it lies wholly before. A unit normal's
     // product with the axis t is off by 2^-21; 1 − t² + 2^-19 makes a reach that is too long rather than too short.
     HWY_INLINE Range reached(unsigned axis) const {
@@ -109,7 +225,6 @@ class LightWalk {
 
     // What of columns or rows the ball's part in the slab may reach.
     HWY_INLINE Range narrowed(unsigned axis, Range range) const {
-        if (filter_.is_spot) return range;
         const float gap = std::max(0.0f, std::max(from_ - filter_.at[2], filter_.at[2] - to_));
         const float square = filter_.radius * filter_.radius * (1.0f + 0x1p-18f) - gap * gap * (1.0f - 0x1p-18f);
         const float radius = std::sqrt(std::max(0.0f, square)) + 2.0f * filter_.eta;
@@ -124,81 +239,58 @@ class LightWalk {
         return range;
     }
 
+    // Balls, a row's froxels at a time.
     HWY_INLINE void visit_slice(std::uint32_t k, Range columns, Range rows) {
-        columns = narrowed(0, columns);
-        rows = narrowed(1, rows);
+        const auto light = LightLanes<FroxelTag>::all(filter_);
         for (std::uint32_t j = rows.first; j < rows.last; ++j)
-            for (std::uint32_t i = columns.first; i < columns.last;
-                 i += static_cast<std::uint32_t>(hn::Lanes(FroxelTag()))) {
+            for (std::uint32_t i = columns.first; i < columns.last; i += kLanes) {
                 const FroxelLanes<FroxelTag> froxels(grid_.floats, i, j, from_, to_);
-                const Lit<FroxelTag> lit =
-                    filter_.is_spot ? test_spot(froxels, filter_, kRounds) : test_ball(froxels, filter_);
+                const Lit<FroxelTag> lit = test_ball(froxels, light);
                 const std::uint32_t present =
                     columns.last - i < 32 ? (1u << (columns.last - i)) - 1 : ~std::uint32_t{0};
-                std::uint32_t mask = bits(lit.yes) & present;
-                const std::uint32_t froxel = (k * grid_.size[1] + j) * grid_.size[0] + i;
-                const std::uint32_t open = ~(mask | bits(lit.no)) & present & kAllLanes;
-                if (HWY_UNLIKELY(open != 0)) mask |= resolve(open, i, j, k, froxel);
-                runs_[count_] = {froxel, in_.first + number_, mask};
+                std::uint32_t mask = lanes_of(lit.yes) & present;
+                std::uint32_t open = ~(mask | lanes_of(lit.no)) & present & kAllLanes;
+                for (; HWY_UNLIKELY(open != 0); open &= open - 1) {
+                    const auto l = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
+                    if (OpenPairs(in_, number_).is_lit(i + l, j, k)) mask |= 1u << l;
+                }
+                runs_[count_] = {(k * grid_.size[1] + j) * grid_.size[0] + i, in_.first + number_, mask};
                 count_ += mask != 0;
             }
     }
 
-    static HWY_INLINE std::uint32_t bits(hn::Mask<FroxelTag> mask) {
-        return crofton::simd::HWY_NAMESPACE::mask_bits(FroxelTag(), mask) & kAllLanes;
-    }
-
-    // In doubles, and what these cannot tell either by exact arithmetic.
-    HWY_NOINLINE std::uint32_t resolve(std::uint32_t open, std::uint32_t i, std::uint32_t j, std::uint32_t k,
-                                       std::uint32_t froxel) {
-        const FilterLight<double> light(grid_, light_);
-        const double w = light_.at[2], eta = light.eta + 0x1p-24 * light_.radius;
-        const double low = std::max(grid_.doubles.depth[k], w - support(-light_.axis[2]) - eta),
-                     high = std::min(grid_.doubles.depth[k + 1], w + support(light_.axis[2]) + eta);
-        std::uint32_t result = 0;
-        for (; open; open &= open - 1) {
-            const auto l = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(open));
-            if (low > high) continue;
-            const Answer answer =
-                light.is_spot ? ask_spot(i + l, j, low, high, light.eta) : ask_ball(i + l, j, low, high, light);
-            const bool is_lit =
-                answer == Answer::yes || (answer == Answer::unknown && in_.decide(in_.context, number_, froxel + l));
-            if (is_lit) result |= 1u << l;
-        }
-        return result;
-    }
-
-    [[nodiscard]] Answer ask_ball(std::uint32_t i, std::uint32_t j, double low, double high,
-                                  const FilterLight<double>& light) const {
-        const SingleTag d;
-        const Lit<SingleTag> lit = test_ball(FroxelLanes<SingleTag>(grid_.doubles, i, j, low, high), light);
-        return !hn::AllFalse(d, lit.yes) ? Answer::yes : !hn::AllFalse(d, lit.no) ? Answer::no : Answer::unknown;
-    }
-    [[nodiscard]] Answer ask_spot(std::uint32_t i, std::uint32_t j, double low, double high, double eta) const {
-        FroxelCell cell{{}, {}, low, high};
-        const std::uint32_t at[2] = {i, j};
-        for (unsigned axis = 0; axis < 2; ++axis)
-            for (unsigned side = 0; side < 2; ++side) {
-                cell.slope[axis][side] = grid_.doubles.slope[axis][at[axis] + side];
-                cell.start[axis][side] = grid_.doubles.start[axis][at[axis] + side];
+    // Spots are tested when there are enough of them.
+    HWY_INLINE void add_slice(std::uint32_t k, Range columns, Range rows) {
+        for (std::uint32_t j = rows.first; j < rows.last; ++j)
+            for (std::uint32_t i = columns.first; i < columns.last; ++i) {
+                if (batch_.count == SpotBatch::kPairs) count_ += SpotPass(in_, batch_).run(runs_ + count_);
+                const std::uint32_t p = batch_.count++;
+                batch_.light[p] = static_cast<std::int32_t>(number_);
+                batch_.column[p] = static_cast<std::int32_t>(i);
+                batch_.row[p] = static_cast<std::int32_t>(j);
+                batch_.froxel[p] = static_cast<std::int32_t>((k * grid_.size[1] + j) * grid_.size[0] + i);
+                batch_.low[p] = from_;
+                batch_.high[p] = to_;
             }
-        return filter_spot(light_, cell, eta);
     }
-
-    static constexpr std::uint32_t kAllLanes = (1u << hn::MaxLanes(FroxelTag())) - 1;
 
     const FroxelKernelInput& in_;
     const FroxelKernelGrid& grid_;
     const KernelLight& light_;
     std::uint32_t number_;
     FilterLight<float> filter_;
+    SpotBatch& batch_;
     LitRun* runs_;
     std::size_t count_ = 0;
     float from_ = 0.0f, to_ = 0.0f;
 };
 
-std::size_t run_froxels(const FroxelKernelInput& input, std::uint32_t light, LitRun* runs) {
-    return LightWalk(input, light, runs).run();
+std::size_t run_froxels(const FroxelKernelInput& input, std::uint32_t light, SpotBatch& batch, LitRun* runs) {
+    return LightWalk(input, light, batch, runs).run();
+}
+
+std::size_t run_spots(const FroxelKernelInput& input, SpotBatch& batch, LitRun* runs) {
+    return SpotPass(input, batch).run(runs);
 }
 
 }  // namespace
@@ -209,9 +301,14 @@ HWY_AFTER_NAMESPACE();
 namespace crofton::cull {
 
 HWY_EXPORT(run_froxels);
+HWY_EXPORT(run_spots);
 
-std::size_t run_froxel_kernel(const FroxelKernelInput& input, std::uint32_t light, LitRun* runs) {
-    return HWY_DYNAMIC_DISPATCH(run_froxels)(input, light, runs);
+std::size_t run_froxel_kernel(const FroxelKernelInput& input, std::uint32_t light, SpotBatch& batch, LitRun* runs) {
+    return HWY_DYNAMIC_DISPATCH(run_froxels)(input, light, batch, runs);
+}
+
+std::size_t finish_spots(const FroxelKernelInput& input, SpotBatch& batch, LitRun* runs) {
+    return HWY_DYNAMIC_DISPATCH(run_spots)(input, batch, runs);
 }
 
 }  // namespace crofton::cull

@@ -52,6 +52,9 @@ struct LitRun {
     std::uint32_t froxel, light, mask;
 };
 
+// Lights of one input at most.
+inline constexpr std::uint32_t kLightsAPart = 256;
+
 struct FroxelKernelInput {
     const FroxelKernelGrid* grid;
     const KernelLight* lights;
@@ -61,7 +64,13 @@ struct FroxelKernelInput {
     void* context;
 };
 
-// Handles light `light` of the input, and writes at most as many runs as there are froxels; returns how many.
-std::size_t run_froxel_kernel(const FroxelKernelInput& input, std::uint32_t light, LitRun* runs);
+struct SpotBatch;
+
+// Handles light `light` of the input, and writes at most as many runs as the batch holds pairs and the grid froxels;
+// returns how many. Pairs of a spot stay in the batch until it is full. Lights come in ascending order, points before
+// spots.
+std::size_t run_froxel_kernel(const FroxelKernelInput& input, std::uint32_t light, SpotBatch& batch, LitRun* runs);
+// Decides what is left in the batch.
+std::size_t finish_spots(const FroxelKernelInput& input, SpotBatch& batch, LitRun* runs);
 
 }  // namespace crofton::cull

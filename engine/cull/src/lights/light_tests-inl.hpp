@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights against neighbouring froxels of one row, a froxel a lane. Compiled once per instruction set (Highway).
+// Lights against froxels, a pair of them a lane. Compiled once per instruction set (Highway).
 //
 // Error bounds. L ≥ the largest coordinate of any point of the light, s = spread ≥ 1 + |slope| of columns and of rows,
 // E = start. In the part of the slab that the light reaches, boundaries lie within s L + E. With u the type's rounding,
@@ -7,13 +7,12 @@
 // of slope and start, of product and sums. Moving a point of the exact froxel into the one of the rounded numbers, or
 // back, first along w and then across, takes at most as much along each axis, the shift of a boundary by a shift in w
 // included. In doubles the frame adds its own errors: axes and planes are unit vectors of at most ten roundings, 2^-49
-// (s L + E). So δ = kTiny (s L + E), with kTiny = 2^-21 for floats and 2^-45 for doubles, bounds each of them.
+// (s L + E). So δ = kLightRounding (s L + E), with kLightRounding = 2^-21 for floats and 2^-45 for doubles, bounds each
+// of them.
 #include <hwy/highway.h>
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
+#include <cstdint>
 
-#include "lights/froxel_kernel.hpp"
+#include "lights/filter_light.hpp"
 
 #if defined(CROFTON_CULL_LIGHT_TESTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CROFTON_CULL_LIGHT_TESTS_INL
@@ -27,69 +26,78 @@ namespace crofton::cull::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class T>
-inline constexpr T kTiny = std::is_same_v<T, float> ? T(0x1p-21) : T(0x1p-45);
-template <class T>
-inline constexpr T kTrifle = std::is_same_v<T, float> ? T(0x1p-18) : T(0x1p-40);  // of relative errors
-
-// A light as a filter reads it.
-template <class T>
-struct FilterLight {
-    T at[3], axis[3], radius, cosine, sine;
-    T eta;    // 8 s δ
-    T inner;  // (radius − η)², less a trifle; −1 where that says nothing
-    T outer;  // (R + η)² for an R ≥ radius
-    T keep;   // 1 − κ, κ = s² (kTrifle + 4 δ / R)
-    bool is_spot;
-
-    FilterLight(const FroxelKernelGrid& grid, const KernelLight& light) : is_spot(light.is_spot) {
-        T largest = 0;
-        for (int j = 0; j < 3; ++j) {
-            at[j] = static_cast<T>(light.at[j]);
-            axis[j] = static_cast<T>(light.axis[j]);
-            largest = std::max(largest, std::fabs(at[j]));
-        }
-        radius = static_cast<T>(light.radius);
-        cosine = static_cast<T>(light.cosine);
-        sine = static_cast<T>(light.sine);
-        const T s = static_cast<T>(grid.spread);
-        const T delta = kTiny<T> * (s * (largest + radius) + static_cast<T>(grid.start));
-        eta = 8 * s * delta;
-        const T within = radius - eta, least = std::max(radius, 16 * s * s * delta);
-        inner = within > 0 ? within * within * (1 - kTrifle<T>) : T(-1);
-        outer = (least + eta) * (least + eta) * (1 + kTrifle<T>);
-        keep = 1 - s * s * (kTrifle<T> + 4 * delta / least);
-    }
-};
-
 template <class D>
 struct Lit {
     hn::Mask<D> yes, no;  // for certain
 };
 
-// Froxels of a row from `first` on, and the part [low, high] of their slab that the light reaches.
+// A light in each lane.
+template <class D>
+struct LightLanes {
+    using Light = FilterLight<hn::TFromD<D>>;
+    hn::Vec<D> at[3], axis[3], radius, cosine, sine, eta, inner, outer, keep;
+
+    // `load` makes a vector of a member, which it is given a function for.
+    template <class Load>
+    HWY_INLINE explicit LightLanes(const Load& load) {
+        for (int j = 0; j < 3; ++j) {
+            at[j] = load([j](const Light& light) { return &light.at[j]; });
+            axis[j] = load([j](const Light& light) { return &light.axis[j]; });
+        }
+        radius = load([](const Light& light) { return &light.radius; });
+        cosine = load([](const Light& light) { return &light.cosine; });
+        sine = load([](const Light& light) { return &light.sine; });
+        eta = load([](const Light& light) { return &light.eta; });
+        inner = load([](const Light& light) { return &light.inner; });
+        outer = load([](const Light& light) { return &light.outer; });
+        keep = load([](const Light& light) { return &light.keep; });
+    }
+    // One light in all lanes.
+    static HWY_INLINE LightLanes all(const Light& light) {
+        return LightLanes([&](const auto& member) HWY_ATTR { return hn::Set(D(), *member(light)); });
+    }
+    // Lights by their indices.
+    static HWY_INLINE LightLanes gather(const Light* lights, hn::Vec<hn::RebindToSigned<D>> index) {
+        const hn::RebindToSigned<D> d_index;
+        static_assert(sizeof(Light) % sizeof(hn::TFromD<D>) == 0);
+        const auto offset =
+            hn::Mul(index, hn::Set(d_index, static_cast<std::int32_t>(sizeof(Light) / sizeof(hn::TFromD<D>))));
+        return LightLanes([&](const auto& member) HWY_ATTR { return hn::GatherIndex(D(), member(*lights), offset); });
+    }
+};
+
+// A froxel in each lane, and the part [low, high] of its slab that the light reaches.
 template <class D>
 struct FroxelLanes {
     using T = hn::TFromD<D>;
     using V = hn::Vec<D>;
-    V slope[2], start[2];  // of the left and right boundaries
-    T row_slope[2], row_start[2], low, high;
+    V slope[2][2], start[2][2];  // by axis: columns, rows; by side
+    V low, high;
 
+    // Neighbours of a row, from column `first` on.
     HWY_INLINE FroxelLanes(const FroxelArrays<T>& grid, std::size_t first, std::size_t row, T from, T to)
-        : low(from), high(to) {
+        : low(hn::Set(D(), from)), high(hn::Set(D(), to)) {
         const D d;
         for (std::size_t side = 0; side < 2; ++side) {
-            slope[side] = hn::LoadU(d, grid.slope[0] + first + side);
-            start[side] = hn::LoadU(d, grid.start[0] + first + side);
-            row_slope[side] = grid.slope[1][row + side];
-            row_start[side] = grid.start[1][row + side];
+            slope[0][side] = hn::LoadU(d, grid.slope[0] + first + side);
+            start[0][side] = hn::LoadU(d, grid.start[0] + first + side);
+            slope[1][side] = hn::Set(d, grid.slope[1][row + side]);
+            start[1][side] = hn::Set(d, grid.start[1][row + side]);
         }
     }
-    HWY_INLINE V column(std::size_t side, V w) const { return hn::MulAdd(slope[side], w, start[side]); }
-    HWY_INLINE V row(std::size_t side, V w) const {
+    // By their columns and rows.
+    template <class I>
+    HWY_INLINE FroxelLanes(const FroxelArrays<T>& grid, I column, I row, V from, V to) : low(from), high(to) {
         const D d;
-        return hn::MulAdd(hn::Set(d, row_slope[side]), w, hn::Set(d, row_start[side]));
+        for (std::size_t side = 0; side < 2; ++side) {
+            slope[0][side] = hn::GatherIndex(d, grid.slope[0] + side, column);
+            start[0][side] = hn::GatherIndex(d, grid.start[0] + side, column);
+            slope[1][side] = hn::GatherIndex(d, grid.slope[1] + side, row);
+            start[1][side] = hn::GatherIndex(d, grid.start[1] + side, row);
+        }
     }
+    HWY_INLINE V column(std::size_t side, V w) const { return hn::MulAdd(slope[0][side], w, start[0][side]); }
+    HWY_INLINE V row(std::size_t side, V w) const { return hn::MulAdd(slope[1][side], w, start[1][side]); }
 };
 
 // The nearest point of the froxels at depth w, how far it is, and half the slope of the distance's square along w.
@@ -103,8 +111,8 @@ struct NearestAt {
         u = hn::Max(froxels.column(0, w), hn::Min(froxels.column(1, w), u0));
         v = hn::Max(froxels.row(0, w), hn::Min(froxels.row(1, w), v0));
         const V du = hn::Sub(u, u0), dv = hn::Sub(v, v0), dw = hn::Sub(w, w0);
-        const V across = pick(du, froxels.slope[0], froxels.slope[1]),
-                upward = pick(dv, hn::Set(d, froxels.row_slope[0]), hn::Set(d, froxels.row_slope[1]));
+        const V across = pick(du, froxels.slope[0][0], froxels.slope[0][1]),
+                upward = pick(dv, froxels.slope[1][0], froxels.slope[1][1]);
         square = hn::MulAdd(du, du, hn::MulAdd(dv, dv, hn::Mul(dw, dw)));
         slope = hn::MulAdd(du, across, hn::MulAdd(dv, upward, dw));
         curvature = hn::MulAdd(across, across, hn::MulAdd(upward, upward, hn::Set(d, hn::TFromD<D>(1))));
@@ -123,15 +131,14 @@ struct NearestAt {
 
 // The square of the distance to the froxel's section at depth w, F(w), is convex, F − w² too. So for any w no point of
 // the slab is nearer than F(w) − (F'(w)/2)², or than F(w) where the slope leads out of the slab; and one at F(w) there
-// is. F and F'²/4 ≤ s² F are off by 2 s² √F (δ + kTrifle √F) in all: where F ≥ R² that is below κ F, which the first
-// term of the bound gives up; where F < R² nothing is claimed. The slope's sign may be wrong where it is below s δ,
-// which η² covers.
+// is. F and F'²/4 ≤ s² F are off by 2 s² √F (δ + kLightTrifle √F) in all: where F ≥ R² that is below κ F, which the
+// first term of the bound gives up; where F < R² nothing is claimed. The slope's sign may be wrong where it is below s
+// δ, which η² covers.
 template <class D>
-HWY_INLINE Lit<D> test_ball(const FroxelLanes<D>& froxels, const FilterLight<hn::TFromD<D>>& light) {
+HWY_INLINE Lit<D> test_ball(const FroxelLanes<D>& froxels, const LightLanes<D>& light) {
     const D d;
     using V = hn::Vec<D>;
-    const V u0 = hn::Set(d, light.at[0]), v0 = hn::Set(d, light.at[1]), w0 = hn::Set(d, light.at[2]);
-    const V low = hn::Set(d, froxels.low), high = hn::Set(d, froxels.high);
+    const V u0 = light.at[0], v0 = light.at[1], w0 = light.at[2], low = froxels.low, high = froxels.high;
     Lit<D> lit{hn::FirstN(d, 0), hn::FirstN(d, 0)};
     V w = hn::Max(low, hn::Min(high, w0));
     for (int round = 0;; ++round) {
@@ -139,139 +146,11 @@ HWY_INLINE Lit<D> test_ball(const FroxelLanes<D>& froxels, const FilterLight<hn:
         const auto ends = hn::Or(hn::And(hn::Ge(at.slope, hn::Zero(d)), hn::Le(w, low)),
                                  hn::And(hn::Le(at.slope, hn::Zero(d)), hn::Ge(w, high)));
         const V slope = hn::IfThenZeroElse(ends, at.slope);
-        const V bound = hn::NegMulAdd(slope, slope, hn::Mul(at.square, hn::Set(d, light.keep)));
-        lit.yes = hn::Or(lit.yes, hn::Lt(at.square, hn::Set(d, light.inner)));
-        lit.no = hn::Or(lit.no, hn::Gt(bound, hn::Set(d, light.outer)));
+        const V bound = hn::NegMulAdd(slope, slope, hn::Mul(at.square, light.keep));
+        lit.yes = hn::Or(lit.yes, hn::Lt(at.square, light.inner));
+        lit.no = hn::Or(lit.no, hn::Gt(bound, light.outer));
         if (round == 3 || hn::AllTrue(d, hn::Or(lit.yes, lit.no))) return lit;
         w = at.next(low, high);
-    }
-}
-
-// A point or a direction in each lane.
-template <class D>
-struct Vectors {
-    hn::Vec<D> u, v, w;
-
-    HWY_INLINE hn::Vec<D> dot(const Vectors& o) const {
-        return hn::MulAdd(u, o.u, hn::MulAdd(v, o.v, hn::Mul(w, o.w)));
-    }
-    HWY_INLINE Vectors plus(const Vectors& o, hn::Vec<D> times) const {
-        return {hn::MulAdd(o.u, times, u), hn::MulAdd(o.v, times, v), hn::MulAdd(o.w, times, w)};
-    }
-};
-
-// A spot light's cone with its cap, in coordinates relative to its apex.
-template <class D>
-struct Sector {
-    using V = hn::Vec<D>;
-    Vectors<D> axis;
-    V cosine, sine, range, eta;
-
-    HWY_INLINE explicit Sector(const FilterLight<hn::TFromD<D>>& light) {
-        const D d;
-        axis = {hn::Set(d, light.axis[0]), hn::Set(d, light.axis[1]), hn::Set(d, light.axis[2])};
-        cosine = hn::Set(d, light.cosine);
-        sine = hn::Set(d, light.sine);
-        range = hn::Set(d, light.radius);
-        eta = hn::Set(d, light.eta);
-    }
-
-    // What is along the axis, and what is left of it.
-    struct Split {
-        V along, across;
-        Vectors<D> rest;
-    };
-    HWY_INLINE Split split(const Vectors<D>& y) const {
-        const V along = y.dot(axis);
-        const Vectors<D> rest = y.plus(axis, hn::Neg(along));
-        return {along, hn::Sqrt(rest.dot(rest)), rest};
-    }
-
-    // A ball of radius η around y lies within.
-    HWY_INLINE hn::Mask<D> contains(const Vectors<D>& y, const Split& of) const {
-        const V margin = hn::Sub(range, eta);
-        const V to_side = hn::Sub(hn::Mul(of.along, sine), hn::Mul(of.across, cosine));
-        const auto in_range = hn::And(hn::Gt(margin, hn::Zero(D())), hn::Lt(y.dot(y), hn::Mul(margin, margin)));
-        return hn::And(in_range, hn::Gt(to_side, eta));
-    }
-
-    // The point nearest to y.
-    HWY_INLINE Vectors<D> nearest(const Vectors<D>& y, const Split& of) const {
-        const D d;
-        const V zero = hn::Zero(d), least = hn::Set(d, hn::TFromD<D>(1e-30));
-        const auto in_cone = hn::Le(hn::Mul(of.across, cosine), hn::Mul(of.along, sine));
-        const V length = hn::Sqrt(hn::Max(y.dot(y), hn::Mul(least, least)));
-        const V shrink = hn::Min(hn::Set(d, hn::TFromD<D>(1)), hn::Div(range, hn::Max(length, least)));
-        const V on_side = hn::Max(zero, hn::Min(range, hn::MulAdd(of.along, cosine, hn::Mul(of.across, sine))));
-        const V of_axis = hn::Mul(on_side, cosine),
-                of_rest = hn::Div(hn::Mul(on_side, sine), hn::Max(of.across, least));
-        const auto component = [&](V whole, V axial, V rest) HWY_ATTR {
-            return hn::IfThenElse(in_cone, hn::Mul(whole, shrink), hn::MulAdd(axial, of_axis, hn::Mul(rest, of_rest)));
-        };
-        return {component(y.u, axis.u, of.rest.u), component(y.v, axis.v, of.rest.v),
-                component(y.w, axis.w, of.rest.w)};
-    }
-
-    // The largest m · y within.
-    HWY_INLINE V reach(const Vectors<D>& m) const {
-        const Split of = split(m);
-        const auto in_cone = hn::Le(hn::Mul(of.across, cosine), hn::Mul(of.along, sine));
-        const V side = hn::Max(hn::Zero(D()), hn::MulAdd(of.along, cosine, hn::Mul(of.across, sine)));
-        return hn::Mul(range, hn::IfThenElse(in_cone, hn::Sqrt(m.dot(m)), side));
-    }
-};
-
-// The least m · (x − apex) of the froxels: at each end of the slab at one of the section's corners.
-template <class D>
-HWY_INLINE hn::Vec<D> least_along(const FroxelLanes<D>& froxels, const Vectors<D>& apex, const Vectors<D>& m) {
-    const D d;
-    const auto at = [&](hn::Vec<D> w) HWY_ATTR {
-        const auto u = hn::Min(hn::Mul(m.u, hn::Sub(froxels.column(0, w), apex.u)),
-                               hn::Mul(m.u, hn::Sub(froxels.column(1, w), apex.u)));
-        const auto v =
-            hn::Min(hn::Mul(m.v, hn::Sub(froxels.row(0, w), apex.v)), hn::Mul(m.v, hn::Sub(froxels.row(1, w), apex.v)));
-        return hn::Add(hn::MulAdd(m.w, hn::Sub(w, apex.w), u), v);
-    };
-    return hn::Min(at(hn::Set(d, froxels.low)), at(hn::Set(d, froxels.high)));
-}
-
-// By projecting onto froxel and sector in turn, and a little beyond the sector's surface. A point of the froxel that is
-// well inside the sector proves one answer. A direction m that the whole froxel is further along than the sector proves
-// the other: both sides, along three axes, are off by less than 4 δ |m|, and η ≥ 8 δ.
-template <class D>
-HWY_INLINE Lit<D> test_spot(const FroxelLanes<D>& froxels, const FilterLight<hn::TFromD<D>>& light, int rounds) {
-    using V = hn::Vec<D>;
-    const D d;
-    const Sector<D> sector(light);
-    const Vectors<D> apex{hn::Set(d, light.at[0]), hn::Set(d, light.at[1]), hn::Set(d, light.at[2])};
-    const V low = hn::Set(d, froxels.low), high = hn::Set(d, froxels.high), half = hn::Set(d, hn::TFromD<D>(0.5));
-    // A point well inside: that of the largest ball.
-    const V inside = hn::Div(sector.range, hn::Add(hn::Set(d, hn::TFromD<D>(1)), sector.sine));
-    const Vectors<D> center{hn::Mul(sector.axis.u, inside), hn::Mul(sector.axis.v, inside),
-                            hn::Mul(sector.axis.w, inside)};
-    Lit<D> lit = test_ball(froxels, light);
-    lit.yes = hn::FirstN(d, 0);  // of the ball of its range
-    if (hn::AllTrue(d, lit.no)) return lit;
-    const V middle = hn::Mul(half, hn::Add(low, high));
-    Vectors<D> x{hn::Mul(half, hn::Add(froxels.column(0, middle), froxels.column(1, middle))),
-                 hn::Mul(half, hn::Add(froxels.row(0, middle), froxels.row(1, middle))), middle};
-    for (int round = 0;; ++round) {
-        V w = hn::Max(low, hn::Min(high, x.w));
-        w = NearestAt<D>(froxels, x.u, x.v, x.w, w).next(low, high);
-        w = NearestAt<D>(froxels, x.u, x.v, x.w, w).next(low, high);
-        const NearestAt<D> p(froxels, x.u, x.v, x.w, w);
-        const Vectors<D> y{hn::Sub(p.u, apex.u), hn::Sub(p.v, apex.v), hn::Sub(p.w, apex.w)};
-        const auto split = sector.split(y);
-        lit.yes = hn::Or(lit.yes, sector.contains(y, split));
-        const Vectors<D> q = sector.nearest(y, split), m = y.plus(q, hn::Set(d, hn::TFromD<D>(-1)));
-        const V gap = hn::Sub(least_along(froxels, apex, m), sector.reach(m));
-        lit.no = hn::Or(lit.no, hn::Gt(gap, hn::Mul(sector.eta, hn::Sqrt(m.dot(m)))));
-        if (round == rounds || hn::AllTrue(d, hn::Or(lit.yes, lit.no))) return lit;
-        // Beyond the surface, in every second round towards the middle by less and less.
-        const hn::TFromD<D> share = round & 1 ? hn::TFromD<D>(0.5) / hn::TFromD<D>(1 + round % 32) : 0;
-        const Vectors<D> inward = center.plus(q, hn::Set(d, hn::TFromD<D>(-1)));
-        const Vectors<D> target = q.plus(m, hn::Set(d, hn::TFromD<D>(-0.6))).plus(inward, hn::Set(d, share));
-        x = apex.plus(target, hn::Set(d, hn::TFromD<D>(1)));
     }
 }
 

@@ -43,7 +43,9 @@ glm::dvec3 spot_support(const KernelLight& spot, const glm::dvec3& m) {
     const double across = glm::length(rest);
     if (across * spot.cosine <= along * spot.sine) return spot.radius / std::max(glm::length(m), 1e-300) * m;
     if (along * spot.cosine + across * spot.sine <= 0.0) return glm::dvec3(0.0);
-    return spot.radius * (spot.cosine * axis + spot.sine / across * rest);
+    // Where little of m is across the axis, the first difference leaves rounding in all directions.
+    const glm::dvec3 side = rest - glm::dot(rest, axis) * axis;
+    return spot.radius * (spot.cosine * axis + spot.sine / std::max(glm::length(side), 1e-300) * side);
 }
 
 // How deep within the tetrahedron the origin lies; negative outside.
