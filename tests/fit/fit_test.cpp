@@ -227,6 +227,35 @@ TEST_SUITE("fit/fit") {
         }
     }
 
+    TEST_CASE("a tight box is never worse than a fast one, few points and many, by every criterion") {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        const measure::Criterion criteria[] = {measure::minimal_volume(), measure::minimal_area(),
+                                               measure::minimal_perimeter()};
+        int better = 0;
+        for (int trial = 0; trial < 600; ++trial) {
+            constexpr std::size_t kCounts[] = {5, 12, 40, 64, 200, 300, 1000};
+            const glm::dvec3 size(1.0, std::abs(unit(random)), trial % 5 == 0 ? 1e-5 : std::abs(unit(random)));
+            std::vector<glm::dvec3> points(kCounts[trial % 7]);
+            for (glm::dvec3& p : points) {
+                p = glm::dvec3(unit(random), unit(random), unit(random));
+                if (trial % 3 == 1) p = glm::normalize(p);
+                p = size * p;
+            }
+            for (const measure::Criterion& criterion : criteria) {
+                const auto value = [&](Quality quality) {
+                    return criterion(
+                        measure::intrinsic_volumes_of_box(*fit::fit_obb(view(points), {criterion, quality})));
+                };
+                const double fast = value(Quality::fast), tight = value(Quality::tight);
+                CAPTURE(trial);
+                CHECK(tight <= fast);
+                better += tight < fast;
+            }
+        }
+        CHECK(better > 600);
+    }
+
     TEST_CASE("fit_oriented keeps the axes and holds every point with no more than rounding to spare") {
         std::mt19937 random(13);
         std::normal_distribution<double> normal;

@@ -17,7 +17,7 @@ struct FloatBox {
         const char* const axes = reinterpret_cast<const char*>(&box) + offsetof(Obb, axes);
         transpose(load4(axes), load4(axes + 12), load4(axes + 24), axis[0], axis[1], axis[2]);
         const Lanes4 end = load4(axes + 32);
-        half = __builtin_shufflevector(end, end, 1, 2, 3, 3);
+        half = shuffled<1, 2, 3, 3>(end, end);
     }
     Lanes4 axis[3];
     Lanes4 half;

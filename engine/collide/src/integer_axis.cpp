@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <crofton/core/int128.hpp>
 #include <crofton/geometry/expansion.hpp>
 #include <cstddef>
 
@@ -12,11 +13,7 @@
 
 namespace crofton::collide {
 
-#if defined(__SIZEOF_INT128__)
 namespace {
-
-__extension__ typedef __int128 Int128;
-__extension__ typedef unsigned __int128 Uint128;
 
 constexpr int kAxisBits = 48, kSizeBits = 61;
 
@@ -33,14 +30,14 @@ Int192 operator+(const Int192& a, const Int192& b) {
 
 Int192 product(Int128 a, std::int64_t b) {
     const auto low = static_cast<std::uint64_t>(a);
-    const auto high = static_cast<std::int64_t>(a >> 64);
+    const std::int64_t high = high_word(a);
     const Uint128 part = Uint128{low} * static_cast<std::uint64_t>(b);  // of b + 2^64 where b is negative
-    const Int128 carry = static_cast<Int128>(part >> 64) - (b < 0 ? Int128{low} : Int128{0});
+    const Int128 carry = Int128{high_word(part)} - (b < 0 ? Int128{low} : Int128{0});
     return {static_cast<std::uint64_t>(part), Int128{high} * b + carry};
 }
 
 Int192 absolute(const Int192& a) {
-    if (a.high >= 0) return a;
+    if (high_word(a.high) >= 0) return a;
     const std::uint64_t low = ~a.low + 1;
     return {low, ~a.high + (low == 0 ? 1 : 0)};
 }
@@ -54,9 +51,9 @@ struct Int256 {
 // Of a that is not negative.
 Int256 scaled(const Int192& a, std::uint64_t factor) {
     const Uint128 low = Uint128{a.low} * factor;
-    const Uint128 middle = Uint128{static_cast<std::uint64_t>(a.high)} * factor + (low >> 64);
-    const Uint128 high = static_cast<Uint128>(static_cast<std::uint64_t>(a.high >> 64)) * factor + (middle >> 64);
-    return {middle << 64 | static_cast<std::uint64_t>(low), static_cast<Int128>(high)};
+    const Uint128 middle = Uint128{static_cast<std::uint64_t>(a.high)} * factor + high_word(low);
+    const Uint128 high = Uint128{static_cast<std::uint64_t>(high_word(a.high))} * factor + high_word(middle);
+    return {of_words(static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(middle)), static_cast<Int128>(high)};
 }
 
 Int256 operator+(const Int256& a, const Int256& b) {
@@ -143,7 +140,7 @@ bool Integers::separates(int p, int q) const {
     Int256 reach;
     for (int k = 0; k < 6; ++k)
         if (first[k] != first[p] && first[k] != first[q]) reach = reach + scaled(absolute(dot(n, edge[k])), half[k]);
-    return distance.high > reach.high || (distance.high == reach.high && distance.low > reach.low);
+    return reach.high < distance.high || (distance.high == reach.high && reach.low < distance.low);
 }
 
 }  // namespace
@@ -164,13 +161,5 @@ int first_separating(const Obb& a, const Obb& b, const PairColumns& columns, std
     }
     return kNotSeparated;
 }
-
-#else
-
-int first_separating(const Obb&, const Obb&, const PairColumns&, std::uint32_t) {
-    return kTooWide;
-}
-
-#endif
 
 }  // namespace crofton::collide

@@ -72,7 +72,7 @@ bool all_finite(const PairColumns& pair) {
     Lanes4 sum = {};
     for (const float* column :
          {pair.a[0], pair.a[1], pair.a[2], pair.b[0], pair.b[1], pair.b[2], pair.half_a, pair.half_b})
-        sum += magnitude(load4(reinterpret_cast<const char*>(column)));
+        sum = sum + magnitude(load4(reinterpret_cast<const char*>(column)));
     const double offset = std::abs(pair.offset[0]) + std::abs(pair.offset[1]) + std::abs(pair.offset[2]);
     return lanes_where(sum < all_lanes(std::numeric_limits<float>::infinity())) == 7u &&
            offset < std::numeric_limits<double>::infinity();

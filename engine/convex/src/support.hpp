@@ -3,13 +3,35 @@
 #pragma once
 #include <cmath>
 #include <crofton/convex/body.hpp>
+#include <crofton/core/extensions.hpp>
 #include <cstring>
 #include <glm/geometric.hpp>
 
 namespace crofton::convex {
 
+#if defined(CROFTON_COMPILER_VECTORS)
 // The compilers' own vectors: operations are single roundings on every machine.
 using Lanes2 = double __attribute__((vector_size(16)));
+
+// b where either is NaN.
+[[nodiscard]] inline Lanes2 larger(Lanes2 a, Lanes2 b) {
+    return a > b ? a : b;
+}
+#else
+struct Lanes2 {
+    double lane[2];
+    double operator[](int i) const { return lane[i]; }
+    friend Lanes2 operator+(const Lanes2& a, const Lanes2& b) {
+        return {{a.lane[0] + b.lane[0], a.lane[1] + b.lane[1]}};
+    }
+    friend Lanes2 operator*(const Lanes2& a, const Lanes2& b) {
+        return {{a.lane[0] * b.lane[0], a.lane[1] * b.lane[1]}};
+    }
+};
+[[nodiscard]] inline Lanes2 larger(const Lanes2& a, const Lanes2& b) {
+    return {{a.lane[0] > b.lane[0] ? a.lane[0] : b.lane[0], a.lane[1] > b.lane[1] ? a.lane[1] : b.lane[1]}};
+}
+#endif
 
 // From numbers that are aligned as such alone: clang loads a vector type of a lesser alignment as an aligned one.
 [[nodiscard]] inline Lanes2 load2(const double* from) {
@@ -38,10 +60,10 @@ struct Support {
     Lanes2 high = value(0), high2 = value(2);
     for (int i = 4; i < count; i += 4) {
         const Lanes2 v = value(i), w = value(i + 2);
-        high = v > high ? v : high;
-        high2 = w > high2 ? w : high2;
+        high = larger(v, high);
+        high2 = larger(w, high2);
     }
-    high = high2 > high ? high2 : high;
+    high = larger(high2, high);
     most = high[1] > high[0] ? high[1] : high[0];
     for (int i = 0; i < count; ++i)
         if (along[i] == most) return i;

@@ -32,6 +32,18 @@ constexpr double kThin = 1e-3;
 
 constexpr SmallSetEffort kFastSmallSet{1, 6, 2}, kTightSmallSet{2, 9, 4}, kTightSmallSetByVolume{3, 9, 4};
 constexpr Effort kFast{kFastSmallSet, 4, 2, 5}, kTight{{4, 9, 4}, 5, 40, 40};
+const Candidate kNone{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
+
+bool is_volume_alone(const Weights& weights) {
+    return weights.pairs + weights.sum == 0.0;
+}
+
+// Of a flat set no box has a volume but by rounding: the area decides.
+const Obb& better_of(const Obb& first, const Obb& second, const measure::Criterion& criterion, bool flat) {
+    const measure::Criterion by = flat ? measure::minimal_area() : criterion;
+    return by(measure::intrinsic_volumes_of_box(second)) < by(measure::intrinsic_volumes_of_box(first)) ? second
+                                                                                                        : first;
+}
 
 class Deadline {
   public:
@@ -67,31 +79,40 @@ Candidate Fitter::best_tetrahedral_frame(const Weights& weights) {
 }
 
 Weights Fitter::search_weights(const Weights& weights) {
-    if (weights.pairs + weights.sum > 0.0) return weights;
+    if (!is_volume_alone(weights)) return weights;
     gather_extremes(5);
     return best_tetrahedral_frame(weights).value <= kFlat ? kArea : weights;
+}
+
+SmallSetSearch::Found Fitter::finished(const Weights& weights, const SmallSetSearch::Found& found) {
+    const glm::dvec3 extent = found.extent;
+    if (std::min({extent.x, extent.y, extent.z}) >= kThin * std::max({extent.x, extent.y, extent.z})) return found;
+    Candidate candidate{found.axes, found.value};
+    descend(weights, subset_, candidate, buffers_);
+    polish(weights, subset_, candidate, buffers_, kCoarseSteps);
+    return {candidate.axes, widths(subset_, candidate.axes), candidate.value};
 }
 
 SmallSetSearch::Found Fitter::search_subset(const Weights& weights, const SmallSetEffort& effort,
                                             const glm::dmat3* near) {
     small_set_search_.assign(subset_);
-    SmallSetSearch::Found found =
-        near == nullptr ? small_set_search_.search(weights, effort) : small_set_search_.improve(weights, effort, *near);
-    const glm::dvec3 extent = found.extent;
-    if (std::min({extent.x, extent.y, extent.z}) < kThin * std::max({extent.x, extent.y, extent.z})) {
-        Candidate candidate{found.axes, found.value};
-        descend(weights, subset_, candidate, buffers_);
-        polish(weights, subset_, candidate, buffers_, kCoarseSteps);
-        found = {candidate.axes, widths(subset_, candidate.axes), candidate.value};
-    }
+    return finished(weights, near == nullptr ? small_set_search_.search(weights, effort)
+                                             : small_set_search_.improve(weights, effort, *near));
+}
+
+Fitter::Pair Fitter::search_pair(const Weights& weights, const SmallSetEffort& effort) {
+    small_set_search_.assign(subset_);
+    Pair found;
+    found.tight = small_set_search_.search_further(weights, effort, kFastSmallSet, found.fast);
+    const bool same = found.tight.axes == found.fast.axes;
+    found.fast = finished(weights, found.fast);
+    found.tight = same ? found.fast : finished(weights, found.tight);
     return found;
 }
 
 // The value of a frame for the subset is a lower bound of its value for all points. The search ends when both agree, or
 // when the subset has all support points.
-Candidate Fitter::local_search(const Weights& weights, const Effort& effort) {
-    gather_extremes(effort.triples);
-    Candidate best{glm::dmat3(1.0), std::numeric_limits<double>::infinity()};
+Candidate Fitter::local_search(const Weights& weights, const Effort& effort, Candidate best) {
     for (int query = 0; query < effort.queries; ++query) {
         const bool anew = query < effort.searches;
         const SmallSetSearch::Found found = search_subset(weights, effort.small_set, anew ? nullptr : &best.axes);
@@ -106,15 +127,44 @@ Candidate Fitter::local_search(const Weights& weights, const Effort& effort) {
     return best;
 }
 
-Obb Fitter::fit_small_set(const Weights& weights, const SmallSetEffort& effort) {
+Obb Fitter::fit_small_set_fast(const Weights& weights) {
     cloud_.sorted(subset_);
-    SmallSetSearch::Found found = search_subset(weights, effort, nullptr);
+    SmallSetSearch::Found found = search_subset(weights, kFastSmallSet, nullptr);
     Weights by = weights;
-    if (weights.pairs + weights.sum == 0.0 && found.value <= kFlat) {
+    if (is_volume_alone(weights) && found.value <= kFlat) {
         by = kArea;
-        found = search_subset(by, effort, nullptr);
+        found = search_subset(by, kFastSmallSet, nullptr);
     }
     return enclose_small_set(cloud_, rounded(found.axes, found.extent, by, kAxisTolerance));
+}
+
+Obb Fitter::fit_small_set_tight(const Weights& weights, const measure::Criterion& criterion) {
+    cloud_.sorted(subset_);
+    Pair found = search_pair(weights, weights.product > 0.0 ? kTightSmallSetByVolume : kTightSmallSet);
+    Weights by = weights;
+    const bool flat = is_volume_alone(weights) && std::min(found.fast.value, found.tight.value) <= kFlat;
+    if (flat) {
+        by = kArea;
+        found = search_pair(by, kTightSmallSet);
+    }
+    const auto box = [&](const SmallSetSearch::Found& of) {
+        return enclose_small_set(cloud_, rounded(of.axes, of.extent, by, kAxisTolerance));
+    };
+    const Obb tight = box(found.tight);
+    return found.tight.axes == found.fast.axes ? tight : better_of(tight, box(found.fast), criterion, flat);
+}
+
+Obb Fitter::fit_large_set(const Weights& asked, const FitOptions& options) {
+    const Weights weights = search_weights(asked);
+    gather_extremes(kFast.triples);
+    const Candidate fast = local_search(weights, kFast, kNone);
+    const Obb first = box_of(fast.axes, weights, kAxisTolerance);
+    if (options.quality == Quality::fast) return first;
+    gather_extremes(kTight.triples);
+    const Candidate tight = local_search(weights, kTight, fast);
+    if (tight.axes == fast.axes) return first;
+    return better_of(box_of(tight.axes, weights, kAxisTolerance), first, options.criterion,
+                     is_volume_alone(asked) && !is_volume_alone(weights));
 }
 
 SearchResult Fitter::global_search(const Weights& weights, const SearchLimits& limits) {
@@ -137,13 +187,8 @@ Result<Obb> Fitter::fit(std::span<const Point> points, const FitOptions& options
     if (auto valid = measure::validate(options.criterion); !valid) return tl::unexpected(valid.error());
     if (auto valid = cloud_.assign(points); !valid) return tl::unexpected(valid.error());
     const Weights asked = normalised_weights(options.criterion, cloud_.unit()).weights;
-    const bool fast = options.quality == Quality::fast;
-    if (points.size() <= kSmallSet)
-        return fit_small_set(asked, fast                  ? kFastSmallSet
-                                    : asked.product > 0.0 ? kTightSmallSetByVolume
-                                                          : kTightSmallSet);
-    const Weights weights = search_weights(asked);
-    return box_of(local_search(weights, fast ? kFast : kTight).axes, weights, kAxisTolerance);
+    if (points.size() > kSmallSet) return fit_large_set(asked, options);
+    return options.quality == Quality::fast ? fit_small_set_fast(asked) : fit_small_set_tight(asked, options.criterion);
 }
 
 template Result<Obb> Fitter::fit(std::span<const glm::vec3>, const FitOptions&);

@@ -30,13 +30,22 @@ class Fitter {
     void gather_extremes(std::size_t triples);
     // The best for subset_ of the frames that extreme points of subset_ span.
     [[nodiscard]] Candidate best_tetrahedral_frame(const Weights& weights);
+    // Of a box that is too thin for float, a better frame by a search in double.
+    [[nodiscard]] SmallSetSearch::Found finished(const Weights& weights, const SmallSetSearch::Found& found);
     // A locally best frame for subset_, found from `near` or, if that is null, from all orientations.
     [[nodiscard]] SmallSetSearch::Found search_subset(const Weights& weights, const SmallSetEffort& effort,
                                                       const glm::dmat3* near);
-    // A locally best frame for all points. Searches on subset_ and asks all points for the support points of the frame
-    // found; those that subset_ lacks join it, and the search is repeated.
-    [[nodiscard]] Candidate local_search(const Weights& weights, const Effort& effort);
-    [[nodiscard]] Obb fit_small_set(const Weights& weights, const SmallSetEffort& effort);
+    // A frame for all points that is locally best and no worse than `best`. Searches on subset_ and asks all points for
+    // the support points of the frame found; those that subset_ lacks join it, and the search is repeated.
+    [[nodiscard]] Candidate local_search(const Weights& weights, const Effort& effort, Candidate best);
+    [[nodiscard]] Obb fit_small_set_fast(const Weights& weights);
+    [[nodiscard]] Obb fit_small_set_tight(const Weights& weights, const measure::Criterion& criterion);
+    [[nodiscard]] Obb fit_large_set(const Weights& weights, const FitOptions& options);
+    // What a tight fit of a small set finds, and what a fast one does.
+    struct Pair {
+        SmallSetSearch::Found fast, tight;
+    };
+    [[nodiscard]] Pair search_pair(const Weights& weights, const SmallSetEffort& effort);
     [[nodiscard]] SearchResult global_search(const Weights& weights, const SearchLimits& limits);
     [[nodiscard]] Obb box_of(const glm::dmat3& axes, const Weights& weights, double tolerance);
     // The weights to search by: those asked for, or those of the area where the volume is 0 in many frames.

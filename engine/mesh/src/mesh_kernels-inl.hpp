@@ -8,6 +8,7 @@
 #endif
 
 #include <hwy/highway.h>
+#include <cmath>
 
 #include "mesh_pair.hpp"
 
@@ -179,7 +180,7 @@ HWY_INLINE float along(const float* a, const float* b) {
 HWY_INLINE void direction_between(const float* from, const float* to, float* way) {
     float squared = 0.0f;
     for (int i = 0; i < 3; ++i) squared += (to[i] - from[i]) * (to[i] - from[i]);
-    const float per_length = squared > 1e-30f ? 1.0f / __builtin_sqrtf(squared) : 0.0f;
+    const float per_length = squared > 1e-30f ? 1.0f / std::sqrt(squared) : 0.0f;
     for (int i = 0; i < 3; ++i) way[i] = (to[i] - from[i]) * per_length;
 }
 

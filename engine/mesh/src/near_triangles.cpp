@@ -5,6 +5,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>
+#include <cmath>
 #include <crofton/mesh/near_triangles.hpp>
 
 #include "mesh_kernels-inl.hpp"
@@ -81,7 +82,7 @@ void VisitNearestTo(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox
         if (static_cast<double>(next.bound) > squared) continue;
         if (next.child & kMeshLeaf) {
             const MeshLeaf& leaf = leaves[next.child & ~kMeshLeaf];
-            const double far = squared < 1e30 ? __builtin_sqrt(squared) : 1e15;
+            const double far = squared < 1e30 ? std::sqrt(squared) : 1e15;
             for (std::uint32_t lanes = near_triangles(leaf, q, static_cast<float>(far * 1.000001) + slop); lanes != 0;
                  lanes &= lanes - 1)
                 if (visit(leaf, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes)))) return;

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "trace_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <bit>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::radiosity::detail::HWY_NAMESPACE {
@@ -350,7 +351,7 @@ std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t c
                 unsigned bits = triangles(d, leaf, ray, values, &front);
                 if (used + kLanes > capacity) return r;
                 for (; bits != 0; bits &= bits - 1) {
-                    const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));
+                    const unsigned lane = static_cast<unsigned>(std::countr_zero(bits));
                     const FlatHit hit{values[lane], leaf.triangle[lane] | ((front >> lane & 1u) ? kFront : 0u)};
                     put_in_order(hits, first, used, hit, tree.tie);
                     ++used;
@@ -359,7 +360,7 @@ std::size_t trace_all(const TracerView& tree, const FlatRay* rays, std::size_t c
             }
             const mesh::BoxNode& node = tree.nodes[item];
             for (unsigned bits = children(d, node, ray, -kFar, kFar, values); bits != 0; bits &= bits - 1)
-                stack[top++] = node.child[static_cast<unsigned>(__builtin_ctz(bits))];
+                stack[top++] = node.child[static_cast<unsigned>(std::countr_zero(bits))];
         }
         ends[r] = static_cast<std::uint32_t>(used);
     }
@@ -387,7 +388,7 @@ void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count,
                 const TracerLeaf& leaf = tree.leaves[entry.item & ~kLeaf];
                 unsigned front;
                 for (unsigned bits = triangles(d, leaf, ray, values, &front); bits != 0; bits &= bits - 1) {
-                    const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));
+                    const unsigned lane = static_cast<unsigned>(std::countr_zero(bits));
                     if (!(values[lane] > tree.tie) || leaf.triangle[lane] == rays[r].skip) continue;
                     const FlatHit hit{values[lane], leaf.triangle[lane] | ((front >> lane & 1u) ? kFront : 0u)};
                     const float key = sort_key(hit, tree.tie);
@@ -401,7 +402,7 @@ void trace_first(const TracerView& tree, const FlatRay* rays, std::size_t count,
             const mesh::BoxNode& node = tree.nodes[entry.item];
             const std::size_t base = top;
             for (unsigned bits = children(d, node, ray, 0.0f, best_key, values); bits != 0; bits &= bits - 1) {
-                const unsigned lane = static_cast<unsigned>(__builtin_ctz(bits));
+                const unsigned lane = static_cast<unsigned>(std::countr_zero(bits));
                 const Entry child{node.child[lane], values[lane]};
                 std::size_t at = top++;  // the nearest on top
                 for (; at > base && stack[at - 1].enter < child.enter; --at) stack[at] = stack[at - 1];

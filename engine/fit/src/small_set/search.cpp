@@ -249,6 +249,17 @@ bool SmallSetSearch::slide(Candidate& candidate) {
 
 SmallSetSearch::Found SmallSetSearch::search(const Weights& weights, const SmallSetEffort& effort) {
     set(weights);
+    return search_starts(effort, nullptr, nullptr);
+}
+
+SmallSetSearch::Found SmallSetSearch::search_further(const Weights& weights, const SmallSetEffort& effort,
+                                                     const SmallSetEffort& little, Found& first) {
+    set(weights);
+    return search_starts(effort, &little, &first);
+}
+
+SmallSetSearch::Found SmallSetSearch::search_starts(const SmallSetEffort& effort, const SmallSetEffort* little,
+                                                    Found* first) {
     gather_extremes();
     find_starts();
     Found best{glm::dmat3(1.0), glm::dvec3(0.0), kNoValue};
@@ -265,7 +276,12 @@ SmallSetSearch::Found SmallSetSearch::search(const Weights& weights, const Small
         if (std::any_of(tried.begin(), tried.begin() + tries, [&](const glm::dmat3& a) { return alike(a, frame); }))
             continue;
         tried[tries++] = frame;
-        const Found found = descend(effort, {frame, static_cast<double>(starts_.values[next])});
+        Candidate start{frame, static_cast<double>(starts_.values[next])};
+        if (tries == 1 && little != nullptr) {
+            *first = best = descend(*little, start);
+            start = {best.axes, best.value};
+        }
+        const Found found = descend(effort, start);
         if (found.value < best.value) best = found;
     }
     return best;

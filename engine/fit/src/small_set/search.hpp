@@ -28,6 +28,10 @@ class SmallSetSearch {
     void assign(std::span<const glm::dvec3> points);
     // The best frame found.
     [[nodiscard]] Found search(const Weights& weights, const SmallSetEffort& effort);
+    // As search with `effort`, begun with what a search with `little` effort of one finalist finds, which goes to
+    // `first`: never worse than that.
+    [[nodiscard]] Found search_further(const Weights& weights, const SmallSetEffort& effort,
+                                       const SmallSetEffort& little, Found& first);
     // The best frame found from a given one.
     [[nodiscard]] Found improve(const Weights& weights, const SmallSetEffort& effort, const glm::dmat3& frame);
 
@@ -42,6 +46,7 @@ class SmallSetSearch {
     void gather_extremes();
     void find_starts();
     void set(const Weights& weights);
+    [[nodiscard]] Found search_starts(const SmallSetEffort& effort, const SmallSetEffort* little, Found* first);
     [[nodiscard]] Found descend(const SmallSetEffort& effort, Candidate candidate);
     [[nodiscard]] Found evaluate(const glm::dmat3& frame);
     void turn_until_idle(Candidate& candidate, int turns);

@@ -16,6 +16,12 @@
 #endif
 #undef CROFTON_CPLUSPLUS
 
+// 32-bit x86 computes in its old unit with 64 bits of mantissa unless told otherwise: answers would differ, and exact
+// ones be wrong.
+#if defined(__FLT_EVAL_METHOD__) && (__FLT_EVAL_METHOD__ == 1 || __FLT_EVAL_METHOD__ == 2 || __FLT_EVAL_METHOD__ < 0)
+#error "Crofton needs float and double computed as such: compile with -msse2 -mfpmath=sse"
+#endif
+
 // The library is compiled with quaternions stored as x, y, z, w: with another order objects turn the wrong way.
 // Macros of GLM that pad its types are caught in geometry/box.hpp. All others change nothing that crosses the API.
 #if defined(GLM_FORCE_QUAT_DATA_WXYZ)
