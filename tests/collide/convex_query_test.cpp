@@ -380,7 +380,7 @@ TEST_SUITE("collide/convex_query") {
     TEST_CASE(
         "a needle of 632,832 by 0.75 by 1 that a box overlaps is hit at once, and from outside before it is reached") {
         Obb needle;
-        needle.center = {4.25, 0.0, 5.125};
+        needle.center = {4.25, -1.7462298274040222e-10, 5.125};
         needle.axes = {{0.470588237f, 0.41522491f, -0.778546691f},
                        {-0.286168516f, 0.906480849f, 0.310483485f},
                        {0.834658206f, 0.0766856819f, 0.54540354f}};
