@@ -7,6 +7,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <vector>
 
 #include "temporary_file.hpp"
@@ -67,5 +71,33 @@ TEST_SUITE("bake/mapped_file") {
             CHECK(error_of(waiting).message.find("not a regular file") != std::string::npos);
         }
         std::filesystem::remove(pipe);
+    }
+
+    TEST_CASE("a mapping ends with its owner") {
+        const std::vector<std::byte> contents(100'000, std::byte{7});
+        const crofton::bake_test::TemporaryFile file(contents);
+        const auto is_mapped = [&] {
+            std::ifstream maps("/proc/self/maps");
+            const std::string all(std::istreambuf_iterator<char>(maps), {});
+            return all.find(std::filesystem::path(file.path()).filename().string()) != std::string::npos;
+        };
+        if (!std::filesystem::exists("/proc/self/maps")) return;
+        {
+            const auto mapped = MappedFile::open(file.path());
+            REQUIRE(mapped);
+            CHECK(is_mapped());
+        }
+        CHECK_FALSE(is_mapped());
+    }
+
+    // Files of the kernel say that they have 4096 bytes, and end earlier.
+    TEST_CASE("a file that ends before its size is said to have been cut") {
+        const char* const name = "/sys/kernel/uevent_seqnum";
+        std::error_code none;
+        if (std::filesystem::file_size(name, none) < 100 || none) return;
+        const auto read = MappedFile::open(name, {.access = crofton::bake::FileAccess::read});
+        REQUIRE_FALSE(read);
+        CHECK(error_of(read).code == crofton::ErrorCode::io);
+        CHECK(error_of(read).message.find("was cut while it was read") != std::string::npos);
     }
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <algorithm>
+#include <cmath>
 #include <crofton/convex/query.hpp>
 #include <limits>
 #include <set>
+#include <vector>
 
 #include "counting_memory.hpp"
 #include "random_bodies.hpp"
@@ -154,6 +156,34 @@ TEST_SUITE("convex/manifold") {
             }
         }
         CHECK(kept >= frames * 95 / 100);
+    }
+
+    // The face of the frame before tells of a gap, 2e-6 of the size, where other points meet.
+    TEST_CASE("round bodies that meet by little have a point, whatever face the frame before had") {
+        const std::vector<glm::vec3> points{{7.75f, 0.0859069824f, -11.125f}, {-6.78479385f, 14.875f, 12.375f},
+                                            {0.25f, -11.625f, -9.875f},       {12.75f, 5.75f, 0.625f},
+                                            {-12.5f, 0.75f, 1.15012884f},     {0.0f, -12.375f, 3.03466797f},
+                                            {14.125f, 1.24355674f, 0.0f}};
+        const Hull hull = Hull::build(points).value();
+        const Body a = Body::hull(hull), b = Body::rounded(Body::box(glm::vec3(1.5f)).value(), 2.125f).value();
+        const RigidTransform pose_a{{{-0.95819209039547992, 0.15819209039548021, -0.23841807909604518},
+                                     {-0.072316384180790949, 0.67231638418079109, 0.7367231638418078},
+                                     {0.2768361581920904, 0.72316384180790949, -0.63276836158192085}},
+                                    {0.94829255342483521, 0.125, -15.125}};
+        const RigidTransform pose_b{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}},
+                                    {-12.753576550384418, -9.2189960879518615, -12.068284181183571}};
+        REQUIRE(intersects({a, pose_a}, {b, pose_b}));
+        int tried = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double sign : {-1.0, 1.0})
+                for (int exponent = 0; exponent < 60; ++exponent) {
+                    RigidTransform before = pose_b;
+                    before.translation[axis] += std::ldexp(sign, -exponent);
+                    PairCache cache;
+                    tried += contact_manifold({a, pose_a}, {b, before}, {}, &cache).count > 0;
+                    CHECK(contact_manifold({a, pose_a}, {b, pose_b}, {}, &cache).count > 0);
+                }
+        CHECK(tried > 100);
     }
 
     TEST_CASE("a face that is no longer the least deep is given up") {

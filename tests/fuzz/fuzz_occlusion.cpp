@@ -54,6 +54,16 @@ bool is_on_a_line_of_pixels(const occlude::OcclusionBuffer& buffer, const Obb& b
     return false;
 }
 
+bool comes_before_near(const occlude::OcclusionView& view, double near_distance, const Obb& box) {
+    for (const glm::dvec3& corner : corners(box)) {
+        const glm::dvec3 y = corner - view.origin;
+        const auto& row = view.rows[view.perspective ? 2 : 3];
+        const double t = row[0] * y.x + row[1] * y.y + row[2] * y.z + row[3];
+        if ((view.perspective ? t : -t) < near_distance * (1.0 + 1e-9)) return true;
+    }
+    return false;
+}
+
 void check_hidden(fuzz::Shapes& in, const Camera& camera, const occlude::OcclusionBuffer& buffer, const Obb& box,
                   const std::vector<Obb>& occluders) {
     // Points of a witness are rounded, so they are taken a little inside.
@@ -69,6 +79,7 @@ void check_hidden(fuzz::Shapes& in, const Camera& camera, const occlude::Occlusi
     Vector<occlude::OccluderId> ids;
     buffer.hidden_by(box, ids);
     demand(!ids.empty(), "nothing hides a hidden box");
+    if (comes_before_near(buffer.view(), camera.near_distance, box)) return;  // the proof knows no near plane
     if (is_on_a_line_of_pixels(buffer, box)) return;  // the proof asks for both sides of the line
     const oracle::HiddenCertificate certificate(buffer.view(), camera.near_distance, buffer.size().width,
                                                 buffer.size().height);

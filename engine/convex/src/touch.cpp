@@ -150,7 +150,8 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
         depth -= std::max(0.0, least);
     }
     touch.depth = depth + rounding;
-    return touch.depth >= -margin ? Warm::touching : Warm::apart;
+    // Other points than those of the face may be nearer to each other: no proof that the bodies are apart.
+    return touch.depth >= -margin ? Warm::touching : Warm::unknown;
 }
 
 }  // namespace crofton::convex

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// Inputs that use up one error bound of culling each: normals that round as far as they can, centres half a quantum
+// off, centres that rounding alone puts inside.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/cull/bound_set.hpp>
+#include <crofton/cull/cull.hpp>
+#include <oracle/exact_frustum.hpp>
+#include <oracle/near_misses.hpp>
+#include <vector>
+
+using namespace crofton;
+
+namespace {
+
+template <class Bound>
+void check_verdicts(const std::vector<Bound>& bounds, const Frustum& frustum) {
+    cull::BoundSet<Bound> set;
+    set.assign(bounds);
+    cull::VerdictBits bits;
+    cull::find_visible(set, bounds, {frustum}, bits);
+    for (std::size_t i = 0; i < bounds.size(); ++i) REQUIRE(bits.verdict(i) == cull::classify(frustum, bounds[i]));
+}
+
+// About a unit vector; each component is a whole number and `fraction` more, up or down, in units of 2^-14.
+glm::dvec3 quantised_direction(oracle::NearMisses& random, double fraction) {
+    glm::dvec3 n = random.direction();
+    for (int j = 0; j < 3; ++j) n[j] = (std::round(n[j] * 0x1p14) + (random.index(2) ? fraction : -fraction)) * 0x1p-14;
+    return n;
+}
+
+Frustum half_space(const glm::dvec3& normal, const glm::dvec3& through) {
+    Frustum frustum;
+    frustum.plane_count = 1;
+    frustum.planes[0].normal = normal;
+    frustum.planes[0].offset = -glm::dot(normal, through);
+    return frustum;
+}
+
+// Points around a place of a plane, up to three quanta off it, in a chunk that reaches to ±size.
+std::vector<Sphere> points_near(oracle::NearMisses& random, const glm::dvec3& normal, const glm::dvec3& place,
+                                double size) {
+    std::vector<Sphere> points;
+    for (int i = 0; i < 8; ++i)
+        points.push_back({size * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1), 0.0});
+    for (int i = 0; i < 52; ++i) {
+        glm::dvec3 p = place;
+        for (int j = 0; j < 3; ++j) p[j] *= random.number(0.97, 1.0);
+        p += (random.number(-3.0, 3.0) * size * 0x1p-14 - glm::dot(normal, p - place)) * normal;
+        points.push_back({p, 0.0});
+    }
+    return points;
+}
+
+void check_rows(oracle::NearMisses& random, double fraction) {
+    for (int trial = 0; trial < 400; ++trial) {
+        const glm::dvec3 n = quantised_direction(random, fraction);
+        // Where the components' roundings add up.
+        glm::dvec3 place;
+        const double size = std::exp(random.number(-3.0, 5.0));
+        for (int j = 0; j < 3; ++j) {
+            const double scaled = n[j] * 0x1p14, rounding = scaled - std::round(scaled);
+            place[j] = 0.98 * (rounding > 0.0 ? size : -size);
+        }
+        if (trial % 2) place = -place;
+        check_verdicts(points_near(random, n, place, size), half_space(n, place));
+    }
+}
+
+}  // namespace
+
+TEST_SUITE("cull/rounding edges") {
+    TEST_CASE("normals that round to 14 bits as badly as can be, at the ends of a chunk") {
+        oracle::NearMisses random(41);
+        check_rows(random, 0.49);
+    }
+
+    TEST_CASE("normals of 14 bits exactly: what is left is the rounding of the centres") {
+        oracle::NearMisses random(42);
+        check_rows(random, 0.0);
+    }
+
+    TEST_CASE("aligned boxes of a few roundings, far from the world's origin and beside the view's") {
+        oracle::NearMisses random(43);
+        for (int trial = 0; trial < 400; ++trial) {
+            const glm::dvec3 place = 1e9 * random.direction();
+            Frustum frustum = half_space(random.direction(), {});
+            frustum.origin = place;
+            frustum.planes[0].offset = random.number(-2e-6, 2e-6);
+            std::vector<Aabb> boxes(60);
+            for (Aabb& box : boxes)
+                for (int j = 0; j < 3; ++j) {
+                    const double step = std::ldexp(1.0, std::ilogb(place[j]) - 52);
+                    box.min[j] = place[j] + step * random.number(-9.0, 9.0);
+                    box.max[j] = box.min[j] + step * (1 + 2 * random.index(4));
+                }
+            check_verdicts(boxes, frustum);
+        }
+    }
+
+    TEST_CASE("segments at an edge of two planes, whose centres are inside by rounding alone") {
+        oracle::NearMisses random(44);
+        int outside = 0;
+        for (int trial = 0; trial < 6000; ++trial) {
+            const glm::dvec3 p = (random.index(2) ? 1.0 : 1e3) * random.direction();
+            Frustum frustum = half_space(random.direction(), p);
+            frustum.planes[frustum.plane_count++] = half_space(random.direction(), p).planes[0];
+            for (int i = 0; i < 2; ++i)
+                frustum.planes[i].offset += (double(random.index(7)) - 3.0) * glm::length(p) * 0x1p-54;
+            const glm::dvec3 a = frustum.planes[0].normal, b = frustum.planes[1].normal;
+            Obb segment;
+            segment.center = p;
+            const glm::dvec3 x = glm::normalize(a - b), y = glm::normalize(glm::cross(x, random.direction()));
+            segment.axes = glm::mat3(glm::dmat3(x, y, glm::cross(x, y)));
+            segment.half_extents = {float(random.number(0.1, 1.0)), 0.0f, 0.0f};
+            if (!validate(segment)) continue;
+            const cull::Verdict expected = oracle::classify(frustum, segment);
+            REQUIRE(cull::classify(frustum, segment) == expected);
+            outside += expected == cull::Verdict::outside;
+        }
+        CHECK(outside > 100);
+    }
+
+    TEST_CASE("planes twice as long as unit vectors, along the axes, in a tree") {
+        oracle::NearMisses random(45);
+        std::vector<Obb> boxes(2000);
+        for (Obb& box : boxes) {
+            box.center = 20.0 * random.direction() * random.number(0.0, 1.0);
+            box.half_extents = glm::vec3(0.2f);
+        }
+        const auto tree = boxtree::BoxTree::build(boxes);
+        REQUIRE(tree.has_value());
+        for (const double length : {2.0, 1.5, 0.01}) {
+            Frustum frustum;
+            frustum.plane_count = 6;
+            for (int i = 0; i < 6; ++i) {
+                frustum.planes[i].normal[i / 2] = i % 2 ? length : -length;
+                frustum.planes[i].offset = 7.0 * length;
+            }
+            cull::VisibleSet visible;
+            cull::find_visible(*tree, {frustum}, visible);
+            std::vector<cull::ItemId> expected;
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                if (cull::classify(frustum, boxes[i]) != cull::Verdict::outside)
+                    expected.push_back(static_cast<cull::ItemId>(i));
+            CHECK(std::ranges::equal(visible.ids(), expected));
+            CHECK(expected.size() > 20);
+        }
+    }
+}
