@@ -10,8 +10,8 @@
 
 namespace crofton::bench {
 
-// The scene that all benchmarks use: --scene=crowd, city or debris. Takes the option out of the arguments; false, with
-// a message, if there is no such scene.
+// The scene that all benchmarks use: --scene=crowd, city, debris or, where files are read, shared. Takes the option out
+// of the arguments; false, with a message, if there is no such scene.
 [[nodiscard]] bool take_scene_option(int& argc, char** argv);
 [[nodiscard]] const char* scene_in_use();
 
