@@ -27,6 +27,9 @@ void report(benchmark::State& state, std::size_t visible);
 // Reads and writes more memory than caches hold: what a game does between two queries.
 void leave_caches_cold();
 
+// Of a benchmark with cold caches: making them cold takes far longer than what is timed.
+inline constexpr int kColdIterations = 12;
+
 // Times `ask` alone, as UseManualTime() wants it, with cold caches before each.
 template <class Ask>
 void time_cold(benchmark::State& state, const Ask& ask) {
