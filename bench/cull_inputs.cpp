@@ -8,11 +8,19 @@
 #include <map>
 #include <string_view>
 
+#if defined(CROFTON_BENCH_ASSETS)
+#include "shared_scenes.hpp"
+#endif
+
 namespace crofton::bench {
 namespace {
 
-enum class Scene { crowd, city, debris };
+enum class Scene { crowd, city, debris, shared };
+#if defined(CROFTON_BENCH_ASSETS)
+constexpr const char* kScenes[] = {"crowd", "city", "debris", "shared"};
+#else
 constexpr const char* kScenes[] = {"crowd", "city", "debris"};
+#endif
 Scene scene = Scene::crowd;
 
 // `box` turned at random, about the vertical only or about any axis.
@@ -72,6 +80,9 @@ std::vector<Obb> debris(std::size_t count) {
 }
 
 std::vector<Obb> make_boxes(std::size_t count) {
+#if defined(CROFTON_BENCH_ASSETS)
+    if (scene == Scene::shared) return shared_boxes(count);
+#endif
     return scene == Scene::city ? city(count) : scene == Scene::debris ? debris(count) : crowd(count);
 }
 
@@ -85,7 +96,9 @@ bool take_scene_option(int& argc, char** argv) {
         const auto found = std::ranges::find(kScenes, argument.substr(kOption.size()),
                                              [](const char* name) { return std::string_view(name); });
         if (found == std::end(kScenes)) {
-            std::fprintf(stderr, "%s: there are crowd, city and debris\n", argv[i]);
+            std::fprintf(stderr, "%s: no such scene; there are:", argv[i]);
+            for (const char* name : kScenes) std::fprintf(stderr, " %s", name);
+            std::fputc('\n', stderr);
             return false;
         }
         scene = static_cast<Scene>(found - kScenes);

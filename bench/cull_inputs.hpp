@@ -10,8 +10,8 @@
 
 namespace crofton::bench {
 
-// The scene that all benchmarks use: --scene=crowd, city or debris. Takes the option out of the arguments; false, with
-// a message, if there is no such scene.
+// The scene that all benchmarks use: --scene=crowd, city, debris or, where files are read, shared. Takes the option out
+// of the arguments; false, with a message, if there is no such scene.
 [[nodiscard]] bool take_scene_option(int& argc, char** argv);
 [[nodiscard]] const char* scene_in_use();
 
@@ -26,6 +26,9 @@ void report(benchmark::State& state, std::size_t visible);
 
 // Reads and writes more memory than caches hold: what a game does between two queries.
 void leave_caches_cold();
+
+// Of a benchmark with cold caches: making them cold takes far longer than what is timed.
+inline constexpr int kColdIterations = 12;
 
 // Times `ask` alone, as UseManualTime() wants it, with cold caches before each.
 template <class Ask>

@@ -43,7 +43,7 @@ void flat_cull_cold(benchmark::State& state) {
     bench::time_cold(state, [&] { cull::find_visible(set, boxes, view, verdicts); });
     report(state, 0);
 }
-BENCHMARK(flat_cull_cold)->Arg(10000)->Arg(1000000)->UseManualTime();
+BENCHMARK(flat_cull_cold)->Arg(10000)->Arg(1000000)->UseManualTime()->Iterations(bench::kColdIterations);
 
 // What a list must read, and nothing else: eight bytes a box, summed.
 void read_rows(benchmark::State& state) {
@@ -103,6 +103,15 @@ void few_boxes_list(benchmark::State& state) {
     }
     report(state, 0);
 }
+void few_boxes_list_cold(benchmark::State& state) {
+    const auto& boxes = boxes_of(state.range(0));
+    const cull::View view = bench::view_of_share(boxes, 0.2);
+    cull::BoxSet set;
+    set.assign(boxes);
+    cull::VerdictBits verdicts;
+    bench::time_cold(state, [&] { cull::find_visible(set, boxes, view, verdicts); });
+    report(state, 0);
+}
 void few_boxes_tree(benchmark::State& state) {
     const boxtree::BoxTree& tree = bench::tree_of(state.range(0));
     const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
@@ -114,7 +123,14 @@ void few_boxes_tree(benchmark::State& state) {
     report(state, visible.size());
 }
 BENCHMARK(few_boxes)->Arg(20)->Arg(100)->Arg(1000)->Arg(100000);
-BENCHMARK(few_boxes_cold)->Arg(20)->Arg(1000)->Arg(100000)->UseManualTime();
+BENCHMARK(few_boxes_cold)
+    ->Arg(20)
+    ->Arg(100)
+    ->Arg(1000)
+    ->Arg(100000)
+    ->UseManualTime()
+    ->Iterations(bench::kColdIterations);
+BENCHMARK(few_boxes_list_cold)->Arg(20)->Arg(100)->Arg(1000)->UseManualTime()->Iterations(bench::kColdIterations);
 BENCHMARK(few_boxes_list)->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(few_boxes_tree)->Arg(20)->Arg(100)->Arg(1000);
 

@@ -42,9 +42,19 @@ void tree_cull_cold(benchmark::State& state, cull::ResultOrder order, double sha
     bench::time_cold(state, [&] { cull::find_visible(tree, view, visible, {cull::CullMode::exact, order}); });
     report(state, visible.size());
 }
-BENCHMARK_CAPTURE(tree_cull_cold, exact, cull::ResultOrder::tree, 0.2)->Arg(10000)->Arg(1000000)->UseManualTime();
-BENCHMARK_CAPTURE(tree_cull_cold, exact_ascending, cull::ResultOrder::ascending, 0.2)->Arg(1000000)->UseManualTime();
-BENCHMARK_CAPTURE(tree_cull_cold, exact_1_percent, cull::ResultOrder::tree, 0.01)->Arg(1000000)->UseManualTime();
+BENCHMARK_CAPTURE(tree_cull_cold, exact, cull::ResultOrder::tree, 0.2)
+    ->Arg(10000)
+    ->Arg(1000000)
+    ->UseManualTime()
+    ->Iterations(bench::kColdIterations);
+BENCHMARK_CAPTURE(tree_cull_cold, exact_ascending, cull::ResultOrder::ascending, 0.2)
+    ->Arg(1000000)
+    ->UseManualTime()
+    ->Iterations(bench::kColdIterations);
+BENCHMARK_CAPTURE(tree_cull_cold, exact_1_percent, cull::ResultOrder::tree, 0.01)
+    ->Arg(1000000)
+    ->UseManualTime()
+    ->Iterations(bench::kColdIterations);
 
 void tree_cull_numbered(benchmark::State& state, cull::ResultOrder order) {
     const auto& boxes = boxes_in_tree_order(state.range(0));

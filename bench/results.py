@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Measurements as CSV in bench/results/<processor>/, and the docs' tables made from them.
 
-  bench/results.py measure BENCH [--targets AVX2,AVX3_DL] [--build build/bench] [benchmark options …]
-      runs bench_<BENCH> once for each instruction set and writes bench/results/<processor>/<BENCH>.csv; "best" means the
-      processor's own. Benchmarks that a table names are run, where no --benchmark_filter is given.
+  bench/results.py measure BENCH [--targets AVX2,AVX3_DL] [--build build/bench] [--name NAME] [benchmark options …]
+      runs bench_<BENCH> once for each instruction set and writes bench/results/<processor>/<NAME>.csv, NAME being BENCH
+      unless given; "best" means the processor's own. Where no --benchmark_filter is given, those benchmarks are run that
+      a table takes from that CSV.
   bench/results.py tables
       writes each table of bench/results/tables.json into its page, between the markers
       <!-- table NAME --> and <!-- end -->.
-      A table with "plain": true shows its CSV's own rows, which another command has written.
+      A table with "plain": true shows its CSV's own rows, which another command has written. One with "columns" has a
+      CSV and an instruction set for each column; "cold": true takes each row's benchmark with cold caches. A row's "scene"
+      is added to the name of the CSV: cull_city.csv.
   bench/results.py check
       as tables, but writes nothing and exits with 1 where a page would change: the test of the docs.
 
@@ -44,9 +47,20 @@ def specifications():
     return json.loads((RESULTS / "tables.json").read_text(encoding="utf-8"))
 
 
-def names_in(table):
-    """All benchmarks that a table needs."""
-    return {name for row in table.get("rows", []) for name in (row["benchmark"], row.get("beside")) if name}
+def csv_of(table, row, column=None):
+    """The name of the CSV that a row's benchmark is in."""
+    name = (column or {}).get("csv", table["csv"])
+    return f"{name}_{row['scene']}" if "scene" in row else name
+
+
+def names_in(table, csv_name):
+    """All benchmarks that a table needs of a CSV."""
+    names = set()
+    for row in table.get("rows", []):
+        for column in table.get("columns", [{}]):
+            if csv_of(table, row, column) == csv_name:
+                names |= {row.get("cold")} if column.get("cold") else {row["benchmark"], row.get("beside")}
+    return names - {None}
 
 
 def times_of(report):
@@ -60,18 +74,20 @@ def times_of(report):
 
 
 def measure(bench, arguments):
-    targets, build, options = ["AVX2", "best"], "build/bench", []
+    targets, build, name, options, given = ["AVX2", "best"], "build/bench", bench, [], " ".join(arguments)
     while arguments:
         argument = arguments.pop(0)
-        if argument == "--targets":
+        if argument == "--name":
+            name = arguments.pop(0)
+        elif argument == "--targets":
             targets = arguments.pop(0).split(",")
         elif argument == "--build":
             build = arguments.pop(0)
         else:
             options.append(argument)
     if not any(option.startswith("--benchmark_filter") for option in options):
-        wanted = {name for table in specifications().values() if table["csv"] == bench for name in names_in(table)}
-        options.append("--benchmark_filter=^(" + "|".join(sorted(re.escape(name) for name in wanted)) + ")$")
+        wanted = {one for table in specifications().values() for one in names_in(table, name)}
+        options.append("--benchmark_filter=^(" + "|".join(sorted(re.escape(one) for one in wanted)) + ")(/iterations:.*)?$")
     if not any(option.startswith("--benchmark_repetitions") for option in options):
         options.append("--benchmark_repetitions=5")
     rows = []
@@ -83,13 +99,13 @@ def measure(bench, arguments):
             subprocess.run(command, check=True, stdout=sys.stderr)
             report = json.loads(out.read_text(encoding="utf-8"))
         used = report["context"].get("instruction_set", target)
-        for name, times in sorted(times_of(report).items()):
-            rows.append([name, NAMES.get(used, used), f"{min(times):.6g}", f"{statistics.median(times):.6g}", len(times)])
+        for benchmark, times in sorted(times_of(report).items()):
+            rows.append([benchmark, NAMES.get(used, used), f"{min(times):.6g}", f"{statistics.median(times):.6g}", len(times)])
     commit = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True, check=False)
-    path = RESULTS / processor() / f"{bench}.csv"
+    path = RESULTS / processor() / f"{name}.csv"
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"# command: bench/results.py measure {bench} --targets {','.join(targets)}\n")
+        file.write(f"# command: bench/results.py measure {bench} {given}".rstrip() + "\n")
         file.write(f"# commit: {commit.stdout.strip() or 'unknown'}\n")
         file.write(f"# date: {datetime.date.today().isoformat()}\n")
         writer = csv.writer(file, lineterminator="\n")
@@ -140,13 +156,35 @@ def table_of(table, times):
     return lines
 
 
+def columns_table(table, folder):
+    """The lines of a table that has a CSV and an instruction set for each column."""
+    heads = [table["title"]] + [column["head"] for column in table["columns"]]
+    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
+    files = {}
+    for row in table["rows"]:
+        cells = [row["text"]]
+        for column in table["columns"]:
+            name = row.get("cold") if column.get("cold") else row["benchmark"]
+            path = folder / f"{csv_of(table, row, column)}.csv"
+            if path not in files:
+                files[path] = read(path) if path.exists() else {}
+            found = files[path].get((name, column["instruction_set"]))
+            cells.append(span(*(time / row["divide_by"] for time in found)) if found else "")
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
 def write_tables(check):
     changed = []
     for name, table in specifications().items():
         path = ROOT / table["page"]
         page = path.read_text(encoding="utf-8")
-        path_of_csv = RESULTS / table["processor"] / f"{table['csv']}.csv"
-        lines = plain_table(path_of_csv) if table.get("plain") else table_of(table, read(path_of_csv))
+        folder = RESULTS / table["processor"]
+        path_of_csv = folder / f"{table['csv']}.csv"
+        if "columns" in table:
+            lines = columns_table(table, folder)
+        else:
+            lines = plain_table(path_of_csv) if table.get("plain") else table_of(table, read(path_of_csv))
         marked = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.S)
         if len(marked.findall(page)) != 1:
             sys.exit(f"{table['page']} must have the markers of the table {name} once")

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <algorithm>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/cull.hpp>
 #include <error_of.hpp>
 #include <map>
@@ -39,6 +40,35 @@ TEST_SUITE("cull/many_views") {
         const auto expected = one_by_one(*tree, views, cull::CullMode::exact);
         CHECK(visible.size() == expected.size());
         for (std::size_t i = 0; i < visible.size(); ++i) CHECK(expected.at(visible.ids()[i]) == visible.view_mask(i));
+    }
+
+    TEST_CASE("a list for each view is what the view sees alone, with more threads than views and with fewer") {
+        const oracle::Crowd crowd = oracle::random_crowd(3000, 0.0, 5);
+        const auto tree = boxtree::BoxTree::build(crowd.boxes, crowd.layers);
+        REQUIRE(tree.has_value());
+        oracle::NearMisses random(3, 0.0);
+        std::vector<cull::View> views;
+        for (unsigned v = 0; v < 40; ++v) views.push_back({*frustum_of(random.camera()), v % 3 ? ~0u : 1u << (v % 5)});
+        views[7].frustum.planes[0].offset = std::nan("");
+        ThreadPool pool(3);
+        std::vector<cull::VisibleSet> lists(views.size());
+        cull::VisibleSet alone;
+        std::size_t seen = 0;
+        for (const std::size_t used : {40u, 2u, 0u})
+            for (Executor* executor : {static_cast<Executor*>(&pool), &serial_executor()})
+                for (const cull::ResultOrder order : {cull::ResultOrder::ascending, cull::ResultOrder::tree}) {
+                    const auto some = std::span<const cull::View>(views).first(used);
+                    const cull::CullOptions options{.order = order};
+                    cull::find_visible(*tree, some, std::span(lists).first(used), options, *executor);
+                    for (std::size_t v = 0; v < used; ++v) {
+                        cull::find_visible(*tree, views[v], alone, options);
+                        CHECK(std::ranges::equal(lists[v].ids(), alone.ids()));
+                        CHECK(std::ranges::equal(lists[v].verdicts(), alone.verdicts()));
+                        CHECK(lists[v].inside_count() == alone.inside_count());
+                        seen += alone.size();
+                    }
+                }
+        CHECK(seen > 1000);
     }
 
     TEST_CASE("32 views in one pass see what each sees alone: cameras, open volumes, shadow volumes, layers") {

@@ -83,7 +83,14 @@ void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& vi
 void find_visible(std::span<const Obb> boxes, std::span<const std::uint32_t> layer_masks, const View& view,
                   VisibleSet& visible, const CullOptions& options = {}, Executor& executor = serial_executor());
 
-// Shadow cascades, cube faces, two eyes: up to 32 views in one walk through the tree.
+// Shadow cascades, cube faces: a list for each view, visible[v] as find_visible() for views[v] alone. Any number of
+// views. They are shared among threads where there are as many views as threads; else the threads share each. Where
+// lists are wanted this is faster than masks (ManyVisible). Requires visible.size() ==
+// views.size().
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, std::span<VisibleSet> visible,
+                  const CullOptions& options = {}, Executor& executor = serial_executor());
+
+// Two eyes, cascades that draw together: up to 32 views in one walk through the tree, and a mask of views an item.
 
 class ManyVisible {
   public:
