@@ -11,12 +11,17 @@ namespace crofton::bench {
 class EmbreeScene {
   public:
     static bool available();
-    explicit EmbreeScene(const TriangleMesh& mesh);
+    // `crossings`: all_hits() will be asked.
+    explicit EmbreeScene(const TriangleMesh& mesh, bool crossings = false);
     ~EmbreeScene();
 
     // As LineTracer::first_hits, sixteen rays at a time, one thread; `skip` is replaced by a start 10^-6 of the scene's
     // size away.
     void first_hits(std::span<const radiosity::FirstHitQuery> rays, std::span<radiosity::Hit> result) const;
+
+    // As LineTracer::all_hits, for lines that start outside of the scene: sixteen rays at a time, every crossing kept
+    // by a filter, then sorted.
+    void all_hits(std::span<const Line> lines, radiosity::LineHits& result) const;
 
   private:
     struct Data;

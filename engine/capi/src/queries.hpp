@@ -10,6 +10,7 @@
 
 #include "call.hpp"
 #include "convert.hpp"
+#include "growing.hpp"
 
 namespace crofton::capi {
 
@@ -25,17 +26,27 @@ namespace crofton::capi {
     return check_frustum(&view->frustum, function);
 }
 
+[[nodiscard]] inline crofton_status check_options(const crofton_cull_options* options, const char* function) {
+    if (!options) return CROFTON_OK;
+    crofton_cull_options given;
+    CROFTON_CHECK(read_growing(options, function, given));
+    return check_array(given.among, given.among_words, function);
+}
+
 [[nodiscard]] inline crofton_status check_query(const crofton_view* view, const crofton_cull_options* options,
                                                 const crofton_jobs* jobs, const char* function) {
     CROFTON_CHECK(check_view(view, function));
-    CROFTON_CHECK(check_optional(options, function));
+    CROFTON_CHECK(check_options(options, function));
     return check_jobs(jobs, function);
 }
 
+// Requires options that have been checked.
 [[nodiscard]] inline cull::CullOptions to_options(const crofton_cull_options* options) {
-    if (!options) return {};
-    return {options->conservative ? cull::CullMode::conservative : cull::CullMode::exact,
-            options->tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending};
+    crofton_cull_options given;
+    if (!options || read_growing(options, __func__, given) != CROFTON_OK) return {};
+    return {.mode = given.conservative ? cull::CullMode::conservative : cull::CullMode::exact,
+            .order = given.tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending,
+            .among = std::span(given.among, given.among ? given.among_words : 0)};
 }
 
 // Requires a view that has been checked.

@@ -73,7 +73,7 @@ crofton_status to_asked(const crofton_draw_limits* limits, const crofton_occlusi
                         const crofton_cull_options* options, const crofton_jobs* jobs, const char* function,
                         Asked& asked) {
     CROFTON_CHECK(to_occlusion(occlusion, function, asked.occlusion));
-    CROFTON_CHECK(check_optional(options, function));
+    CROFTON_CHECK(check_options(options, function));
     CROFTON_CHECK(check_jobs(jobs, function));
     asked.options = capi::to_options(options);
     if (!limits) return CROFTON_OK;

@@ -57,7 +57,7 @@ crofton_status crofton_world_view_camera(const crofton_world* world, const croft
     const ExclusiveUse use(visible, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_camera(camera, __func__));
-    CROFTON_CHECK(check_optional(options, __func__));
+    CROFTON_CHECK(check_options(options, __func__));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
     CROFTON_CHECK(
@@ -112,7 +112,7 @@ crofton_status crofton_world_views(const crofton_world* world, const crofton_vie
     CROFTON_CHECK(check_array(views, count, __func__));
     if (count > cull::kMaxViews) return report(CROFTON_OUT_OF_RANGE, __func__, "more than 32 views");
     for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(check_view(&views[i], __func__));
-    CROFTON_CHECK(check_optional(options, __func__));
+    CROFTON_CHECK(check_options(options, __func__));
     for (std::size_t i = 0; i < count; ++i) copy_view(views[i], visible->views[i]);
     world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible,
                       to_options(options).mode);

@@ -60,7 +60,8 @@ class VisibleQuery {
             const std::size_t size = std::min<std::size_t>(64, boxes.size() - first);
             for (std::uint64_t rest = not_hidden(&boxes[first], nullptr, size); rest != 0; rest &= rest - 1) {
                 const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
-                if (layer_masks.empty() || (layer_masks[i] & options_.layer_mask))
+                if ((layer_masks.empty() || (layer_masks[i] & options_.layer_mask)) &&
+                    cull::is_among(options_.among, static_cast<ItemId>(i)))
                     visible_.candidates_.push_back(static_cast<ItemId>(i));
             }
         }
@@ -114,9 +115,10 @@ class VisibleQuery {
         const boxtree::Leaf& lanes = structure.leaves()[leaf];
         ItemId items[boxtree::kWidth];
         std::size_t count = 0;
-        for (std::uint32_t l = 0; l < lanes.count; ++l)
-            if (lanes.layers[l] & options_.layer_mask)
-                items[count++] = structure.slot_items()[leaf * boxtree::kWidth + l];
+        for (std::uint32_t l = 0; l < lanes.count; ++l) {
+            const ItemId item = structure.slot_items()[leaf * boxtree::kWidth + l];
+            if ((lanes.layers[l] & options_.layer_mask) && cull::is_among(options_.among, item)) items[count++] = item;
+        }
         if (count == 0) return;
         for (std::uint64_t rest = not_hidden(tree.boxes().data(), items, count); rest != 0; rest &= rest - 1)
             visible_.candidates_.push_back(items[std::countr_zero(rest)]);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pair_coder.hpp"
 
-#include <array>
+#include <algorithm>
+#include <bit>
 
 namespace crofton::pvs {
 namespace {
@@ -19,10 +20,17 @@ struct Interval {
     void shift() { low <<= 8, high = high << 8 | 0xffu; }
 };
 
-// Of a 1, in 1/65536; learns from what it sees. Stays within [31, 65505].
+// Of a 1, in 1/65536: the share of ones so far, then of the last few hundred. Stays within [32, 65504].
 struct Probability {
-    std::uint32_t of_one = 32768;
-    void learn(bool bit) { bit ? of_one += (65536 - of_one) >> 5 : of_one -= of_one >> 5; }
+    static constexpr std::uint16_t kSlowest = 250;
+    std::uint16_t of_one = 32768, seen = 0;
+
+    void learn(bool bit) {
+        const std::int64_t error = (bit ? 65536 : 0) - static_cast<std::int32_t>(of_one);
+        const std::int64_t step = error * (131072 / (2 * seen + 3)) / 65536;
+        of_one = static_cast<std::uint16_t>(std::clamp<std::int64_t>(of_one + step, 32, 65504));
+        seen = static_cast<std::uint16_t>(seen + (seen < kSlowest));
+    }
 };
 
 class Encoder {
@@ -64,40 +72,136 @@ class Decoder {
     std::uint32_t code_ = 0;
 };
 
-// Two decisions a pair, each with the probabilities of its surroundings: the object's states in the three cells before,
-// and that of the object before in the same cell; 3 stands for none.
+// The two likest of an object among those before it: how far back each is, 0 for none.
+struct Likest {
+    std::uint32_t back[2] = {};
+};
+constexpr unsigned kLikestBits = 9;
+constexpr std::uint32_t kFarthest = (1u << kLikestBits) - 1;
+
+// An object's states as two bits a cell, and where they differ from those of the cells before along x or z: there the
+// neighbours say little, and the likest objects shall agree.
+class Columns {
+  public:
+    explicit Columns(const PairStates& pairs) : words_(pairs.states.size() / pairs.objects / 64 + 1) {
+        columns_.assign(pairs.objects * 3 * words_, 0);
+        const std::size_t cells = pairs.states.size() / pairs.objects;
+        const std::size_t along_z = std::size_t{pairs.counts.x} * pairs.counts.y;
+        for (std::size_t c = 0; c < cells; ++c)
+            for (std::uint32_t o = 0; o < pairs.objects; ++o) {
+                const std::uint8_t state = pairs.states[c * pairs.objects + o];
+                std::uint64_t* word = columns_.data() + std::size_t{o} * 3 * words_ + c / 64;
+                const auto before = [&](std::size_t cells_back) {
+                    return c < cells_back ? std::uint8_t{0} : pairs.states[(c - cells_back) * pairs.objects + o];
+                };
+                word[0] |= std::uint64_t{state == 2} << (c % 64);
+                word[words_] |= std::uint64_t{state == 1} << (c % 64);
+                word[2 * words_] |= std::uint64_t{state != before(1) || state != before(along_z)} << (c % 64);
+            }
+    }
+
+    [[nodiscard]] Likest likest(std::uint32_t object) const {
+        const std::uint64_t* own = column(object);
+        std::uint64_t most[2] = {};
+        Likest best;
+        for (std::uint32_t back = 1; back <= (std::min)(object, kFarthest); ++back) {
+            const std::uint64_t* other = column(object - back);
+            std::uint64_t agree = 0;
+            for (std::size_t w = 0; w < words_; ++w)
+                agree += static_cast<std::uint64_t>(
+                    std::popcount(own[2 * words_ + w] & ~(own[w] ^ other[w]) & ~(own[words_ + w] ^ other[words_ + w])));
+            if (agree > most[0]) {
+                most[1] = most[0], best.back[1] = best.back[0];
+                most[0] = agree, best.back[0] = back;
+            } else if (agree > most[1]) {
+                most[1] = agree, best.back[1] = back;
+            }
+        }
+        return best;
+    }
+
+  private:
+    [[nodiscard]] const std::uint64_t* column(std::uint32_t object) const {
+        return columns_.data() + std::size_t{object} * 3 * words_;
+    }
+    std::size_t words_;
+    Vector<std::uint64_t> columns_;
+};
+
+// Two decisions a pair, each with the probabilities of its surroundings: what the object's states in the cells before
+// are, and those of its likest objects here and before. A surrounding that is new begins with what a coarser one has
+// learnt.
 class Model {
   public:
-    explicit Model(const PairStates& pairs) : pairs_(pairs) {}
+    Model(const PairStates& pairs, const Vector<Likest>& likest)
+        : pairs_(pairs), likest_(likest), seen_(kFine), unseen_(kFine), coarse_seen_(kCoarse), coarse_unseen_(kCoarse) {
+        const std::size_t layer = std::size_t{pairs.counts.x} * pairs.counts.y;
+        const std::size_t cells[4] = {1, pairs.counts.x, layer, layer + 1};
+        for (int k = 0; k < 4; ++k) back_[k] = static_cast<std::ptrdiff_t>(cells[k] * pairs.objects);
+    }
 
     // decide(bit, probability) gives the bit: what it is told to code, or what it has read.
     template <class Decide>
     std::uint8_t pass(std::size_t cell, std::uint32_t object, std::uint8_t state, Decide&& decide) {
         const std::size_t around = surroundings(cell, object);
-        if (decide(state == 2, seen_[around])) return 2;
-        return decide(state == 1, unseen_[around]) ? 1 : 0;
+        const auto ask = [&](bool bit, Vector<Probability>& fine, Vector<Probability>& coarse) {
+            Probability &narrow = fine[around], &wide = coarse[around % kCoarse];
+            if (narrow.seen == 0) narrow.of_one = wide.of_one;
+            const bool decided = decide(bit, narrow);
+            wide.learn(decided);
+            return decided;
+        };
+        if (ask(state == 2, seen_, coarse_seen_)) return 2;
+        return ask(state == 1, unseen_, coarse_unseen_) ? 1 : 0;
     }
 
   private:
+    static constexpr std::size_t kCoarse = 1 << 10, kFine = 1 << 18;
+
+    // Nine states in base 4, 3 for none; the lower five are the coarse surroundings.
     [[nodiscard]] std::size_t surroundings(std::size_t cell, std::uint32_t object) const {
-        const std::size_t stride[3] = {1, pairs_.counts.x, std::size_t{pairs_.counts.x} * pairs_.counts.y};
-        const std::size_t at[3] = {cell % pairs_.counts.x, cell / stride[1] % pairs_.counts.y, cell / stride[2]};
-        std::size_t result = object == 0 ? 3 : pairs_.states[cell * pairs_.objects + object - 1];
-        for (int k = 0; k < 3; ++k)
-            result = 4 * result + (at[k] == 0 ? 3 : pairs_.states[(cell - stride[k]) * pairs_.objects + object]);
-        return result;
+        const std::size_t x = cell % pairs_.counts.x, rest = cell / pairs_.counts.x;
+        const bool has_x = x > 0, has_y = rest % pairs_.counts.y > 0, has_z = rest / pairs_.counts.y > 0;
+        const std::uint8_t* own = pairs_.states.data() + cell * pairs_.objects + object;
+        const Likest& likest = likest_[object];
+        const std::uint8_t* first = own - likest.back[0];
+        const bool has_first = likest.back[0] > 0;
+        const auto state = [](bool there, const std::uint8_t* at, std::ptrdiff_t back) -> std::size_t {
+            return there ? at[-back] : 3;
+        };
+        const std::size_t coarse = state(has_x, own, back_[0]) | state(has_y, own, back_[1]) << 2 |
+                                   state(has_z, own, back_[2]) << 4 | state(has_x && has_z, own, back_[3]) << 6 |
+                                   state(has_first, first, 0) << 8;
+        const bool has_across = has_z && x + 1 < pairs_.counts.x;
+        return coarse | state(has_across, own, back_[2] - back_[0]) << 10 |
+               state(likest.back[1] > 0, own, static_cast<std::ptrdiff_t>(likest.back[1])) << 12 |
+               state(has_first && has_x, first, back_[0]) << 14 | state(has_first && has_z, first, back_[2]) << 16;
     }
 
     const PairStates& pairs_;
-    std::array<Probability, 256> seen_, unseen_;
+    const Vector<Likest>& likest_;
+    Vector<Probability> seen_, unseen_, coarse_seen_, coarse_unseen_;
+    std::ptrdiff_t back_[4] = {};  // to the cell before along x, y, z, and along both x and z
 };
 
 }  // namespace
 
 Vector<std::byte> encode(const PairStates& pairs) {
     Encoder encoder;
-    Model model(pairs);
     const std::size_t cells = pairs.objects == 0 ? 0 : pairs.states.size() / pairs.objects;
+    Vector<Likest> likest(pairs.objects);
+    if (cells > 0) {
+        const Columns columns(pairs);
+        for (std::uint32_t o = 0; o < pairs.objects; ++o) {
+            likest[o] = columns.likest(o);
+            for (const std::uint32_t back : likest[o].back)
+                for (unsigned bit = kLikestBits; bit-- > 0;) {
+                    Probability even;
+                    encoder.put(back >> bit & 1, even);
+                }
+        }
+    }
+    Model model(pairs, likest);
     for (std::size_t c = 0; c < cells; ++c)
         for (std::uint32_t o = 0; o < pairs.objects; ++o)
             model.pass(c, o, pairs.states[c * pairs.objects + o], [&](bool bit, Probability& p) {
@@ -109,9 +213,18 @@ Vector<std::byte> encode(const PairStates& pairs) {
 
 void decode(std::span<const std::byte> bytes, PairStates& pairs) {
     Decoder decoder(bytes);
-    Model model(pairs);
     const std::size_t cells = std::size_t{pairs.counts.x} * pairs.counts.y * pairs.counts.z;
     pairs.states.assign(cells * pairs.objects, 0);
+    Vector<Likest> likest(pairs.objects);
+    for (std::uint32_t o = 0; o < pairs.objects && cells > 0; ++o)
+        for (std::uint32_t& back : likest[o].back) {
+            for (unsigned bit = kLikestBits; bit-- > 0;) {
+                Probability even;
+                back = 2 * back + decoder.get(even);
+            }
+            back = (std::min)(back, o);  // damaged bytes may say more
+        }
+    Model model(pairs, likest);
     for (std::size_t c = 0; c < cells; ++c)
         for (std::uint32_t o = 0; o < pairs.objects; ++o)
             pairs.states[c * pairs.objects + o] =

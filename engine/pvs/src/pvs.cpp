@@ -96,12 +96,20 @@ std::span<const std::uint64_t> Pvs::visible_from(std::uint32_t cell, Mode mode) 
     return std::span(mode == Mode::conservative ? open_ : seen_).subspan(cell * words(), words());
 }
 
+std::span<const std::uint64_t> Pvs::visible_from(const glm::dvec3& eye, Mode mode) const {
+    const std::uint32_t cell = find_cell(eye);
+    return cell == kNoCell ? std::span<const std::uint64_t>{} : visible_from(cell, mode);
+}
+
 std::uint32_t Pvs::keep_visible(const glm::dvec3& eye, Mode mode, std::span<const std::uint32_t> ids,
                                 Vector<std::uint32_t>& kept) const {
     const std::uint32_t cell = find_cell(eye);
-    kept.assign(ids.begin(), ids.end());
-    if (cell == kNoCell) return cell;
+    if (cell == kNoCell) {
+        kept.assign(ids.begin(), ids.end());
+        return cell;
+    }
     const std::uint64_t* bits = visible_from(cell, mode).data();
+    kept.resize(ids.size());
     std::uint32_t* to = kept.data();
     for (const std::uint32_t id : ids) {
         *to = id;

@@ -88,7 +88,7 @@ Result<void> World::State::find_visible(const OccludingView& view, const Occlusi
     }
     const world::TraceZone part(options.trace, "view: what is not hidden");
     occlude::find_visible(index.tree(), index.moving(), *result.buffer, result.visible,
-                          {.layer_mask = view.layer_mask, .mode = how.mode, .limits = how.limits});
+                          {.layer_mask = view.layer_mask, .mode = how.mode, .limits = how.limits, .among = how.among});
     world::trace_count(options.trace, "objects not hidden", result.visible.size());
     return {};
 }
@@ -133,9 +133,11 @@ Result<void> World::view(std::span<const OccludingView> views, const OcclusionOp
     while (visible.occluded_.size() < views.size()) visible.occluded_.push_back(world::make_occluded_view());
     for (std::size_t v = 0; v < views.size(); ++v)
         if (auto sized = visible.occluded_[v]->resize(occlusion.size); !sized) return sized;
+    cull::CullOptions how = options;
+    how.among = {};  // of one eye
     executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t v = begin; v < end; ++v)
-            world::must(state_->find_visible(views[v], occlusion, options, serial_executor(), *visible.occluded_[v]));
+            world::must(state_->find_visible(views[v], occlusion, how, serial_executor(), *visible.occluded_[v]));
     });
     visible.names_ = &state_->table.names;
     visible.hides_ = true;

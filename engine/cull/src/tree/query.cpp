@@ -83,6 +83,7 @@ void Query::run(std::span<const Obb> boxes, std::span<const std::uint32_t> layer
             std::uint64_t visible = output.visible[w];
             if (!layer_masks.empty()) visible &= layer_bits(layer_masks.subspan(first + 64 * w));
             if (options_.limits) visible = wanted_bits(visible, boxes, layer_masks, first + 64 * w);
+            if (first / 64 + w < options_.among.size()) visible &= options_.among[first / 64 + w];
             seen[first / 64 + w] = visible;
             marked[first / 64 + w] = visible & ~output.inside[w];
         }
@@ -325,7 +326,22 @@ void Query::append_decided(const TreeKernelOutput& output, std::size_t kept, std
     statistics.improper += output.improper;
 }
 
+// Of `count` ids those that CullOptions::among has, in order; returns how many.
+std::size_t Query::keep_among(ItemId* ids, std::size_t count) const {
+    const std::span<const std::uint64_t> set = options_.among;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        ids[kept] = ids[i];
+        kept += is_among(set, ids[i]);
+    }
+    return kept;
+}
+
 void Query::finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor) {
+    if (!options_.among.empty()) {
+        inside = keep_among(visible_.ids_.data(), inside);
+        straddling = keep_among(visible_.straddling_.data(), straddling);
+    }
     if (moving_) add_moving(tree, inside, straddling, executor);
     finish(inside, straddling, tree.boxes().size());
 }

@@ -56,6 +56,7 @@ class Query {
     void add_moving(const boxtree::BoxTree& tree, std::size_t& inside, std::size_t& straddling, Executor& executor);
     void append_moving(const boxtree::BoxTree& tree, std::span<const std::uint64_t> bits, ItemId* to,
                        std::size_t& count);
+    [[nodiscard]] std::size_t keep_among(ItemId* ids, std::size_t count) const;
     void finish(const boxtree::BoxTree& tree, std::size_t inside, std::size_t straddling, Executor& executor);
     void finish(std::size_t inside, std::size_t straddling, std::size_t items);
     [[nodiscard]] std::uint64_t layer_bits(std::span<const std::uint32_t> layer_masks) const;

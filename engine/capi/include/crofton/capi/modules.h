@@ -69,6 +69,10 @@ typedef struct crofton_cull_options {
     size_t size;
     uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the frustum's corners */
     uint32_t tree_order;   /* 0: ids ascending; 1: as the tree lies in memory, in half the time where much is seen */
+    /* Items that may be seen at all, as crofton_pvs_visible gives them: bit i % 64 of among[i / 64] is item i. Those
+     * beyond may, and so may what moves in a world. NULL: all. A caller's smaller struct lacks it: all. */
+    const uint64_t* among;
+    size_t among_words;
 } crofton_cull_options;
 
 typedef struct crofton_cull_statistics {
@@ -581,6 +585,28 @@ CROFTON_API crofton_status crofton_baked_scene_instances(const crofton_baked_sce
                                                          const crofton_baked_instance** instances, size_t* count);
 CROFTON_API crofton_status crofton_baked_scene_nodes(const crofton_baked_scene* baked, const crofton_baked_node** nodes,
                                                      size_t* count);
+
+/* Potentially visible sets, as `crofton pvs --out FILE` has baked them: docs/pvs.md. */
+
+typedef struct crofton_pvs crofton_pvs;
+
+typedef enum crofton_pvs_mode {
+    CROFTON_PVS_CONSERVATIVE = 0, /* all that is not proved hidden */
+    CROFTON_PVS_STATISTICAL = 1   /* what lines have seen */
+} crofton_pvs_mode;
+
+#define CROFTON_PVS_NO_CELL 0xffffffffu
+
+CROFTON_API crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs);
+CROFTON_API crofton_status crofton_pvs_destroy(crofton_pvs* pvs);
+/* Numbers of cells and of objects; either may be NULL. */
+CROFTON_API crofton_status crofton_pvs_counts(const crofton_pvs* pvs, size_t* cells, size_t* objects);
+/* The cell of an eye (three numbers), or CROFTON_PVS_NO_CELL where none holds it, or a solid one. */
+CROFTON_API crofton_status crofton_pvs_find_cell(const crofton_pvs* pvs, const double* eye, uint32_t* cell);
+/* What may be seen by an eye, for crofton_cull_options; `mode` is a crofton_pvs_mode. Without a cell *words is NULL and
+ * *count 0: everything. Holds as long as `pvs` lives; nothing is allocated. */
+CROFTON_API crofton_status crofton_pvs_visible(const crofton_pvs* pvs, const double* eye, uint32_t mode,
+                                               const uint64_t** words, size_t* count);
 
 #ifdef __cplusplus
 }

@@ -70,7 +70,16 @@ struct CullOptions {
     // What is too small or too far is left out. A query without limits costs what it did; one with limits uses no other
     // thread.
     const DrawLimits* limits = nullptr;
+    // Items that may be seen at all: bit i % 64 of word i / 64 is item i; those beyond the span may, and so may all if
+    // it is empty. pvs::Pvs::visible_from() gives such sets. In a query of what rests and what moves it says nothing
+    // about what moves.
+    std::span<const std::uint64_t> among = {};
 };
+
+// Whether a set as CullOptions::among has the item.
+[[nodiscard]] constexpr bool is_among(std::span<const std::uint64_t> set, boxtree::ItemId item) {
+    return item / 64 >= set.size() || (set[item / 64] >> (item % 64) & 1) != 0;
+}
 
 // Finds the items that `view` sees and whose box is not outside; `visible` is overwritten, and once it has grown to the
 // largest answer nothing is allocated. Same answer, bit for bit, from tree and list, with any executor and instruction

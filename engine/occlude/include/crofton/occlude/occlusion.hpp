@@ -240,7 +240,8 @@ class VisibleSet {
 struct VisibleOptions {
     std::uint32_t layer_mask = ~std::uint32_t{0};
     cull::CullMode mode = cull::CullMode::exact;
-    const cull::DrawLimits* limits = nullptr;  // what is too small or too far is left out
+    const cull::DrawLimits* limits = nullptr;   // what is too small or too far is left out
+    std::span<const std::uint64_t> among = {};  // as cull::CullOptions::among
 };
 
 // The items that cull::find_visible() finds in the buffer's view, less those that the buffer hides: an item is

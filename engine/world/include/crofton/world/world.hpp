@@ -132,6 +132,7 @@ class World {
     [[nodiscard]] const boxtree::BoxTree& tree() const;
 
     // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
+    // A single view leaves out what rests and is not in options.among, the objects' indices: baked sets (docs/pvs.md).
     // Errors of the first: as validate(Camera).
     Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
                       Executor& executor = serial_executor()) const;

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <cmath>
+#include <crofton/bake/baked_scene.hpp>
+#include <crofton/crofton.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <filesystem>
+#include <vector>
+
+#include "world_fixture.hpp"
+
+using namespace crofton::capi_test;
+
+namespace {
+
+using SetsHandle = Owned<crofton_pvs, crofton_pvs_destroy>;
+
+// A wall between the eyes' one cell and the second of two boxes; object 3 has no triangles, as it moves.
+const crofton::Aabb kPvsBoxes[] = {{{-60.0, -40.0, -10.5}, {60.0, 40.0, -9.5}},
+                                   {{-0.5, 0.5, -5.5}, {0.5, 1.5, -4.5}},
+                                   {{-0.5, 0.5, -15.5}, {0.5, 1.5, -14.5}},
+                                   {{1.5, 0.5, -15.5}, {2.5, 1.5, -14.5}}};
+
+std::string file_of_sets() {
+    using namespace crofton;
+    pvs::Subject subject;
+    for (std::uint32_t o = 0; o < 4; ++o) {
+        subject.boxes.push_back(obb_of(kPvsBoxes[o]));
+        if (o == 3) continue;
+        const auto first = static_cast<std::uint32_t>(subject.mesh.positions.size());
+        for (const glm::dvec3& p : corners(subject.boxes[o])) subject.mesh.positions.push_back(glm::vec3(p));
+        for (const std::uint32_t i : {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                      2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6})
+            subject.mesh.indices.push_back(first + i);
+        subject.object_of.insert(subject.object_of.end(), 12, o);
+    }
+    const auto cells = pvs::Cells::grid({{-2.0, 0.0, -2.0}, {2.0, 2.0, 2.0}}, {1, 1, 1}).value();
+    auto bake = pvs::Bake::create(subject, cells, {.epsilon = 1e-2}).value();
+    REQUIRE(bake.run().has_value());
+    const auto bytes = pvs::Pvs::finish(bake).value().to_file().value();
+    const std::string path = (std::filesystem::temp_directory_path() / "crofton_capi_pvs.crofton").string();
+    REQUIRE(bake::write_file(path, bytes).has_value());
+    return path;
+}
+
+std::vector<std::uint32_t> ids_in_view(const crofton_visible_objects* visible) {
+    const std::uint32_t* ids = nullptr;
+    std::size_t count = 0;
+    REQUIRE(crofton_visible_objects_ids(visible, &ids, &count, nullptr, nullptr) == CROFTON_OK);
+    return {ids, ids + count};
+}
+
+}  // namespace
+
+TEST_SUITE("capi/pvs") {
+    TEST_CASE("a file of sets is opened, asked for an eye, and leaves out of a world's view what rests behind a wall") {
+        const std::string path = file_of_sets();
+        crofton_pvs* opened = nullptr;
+        REQUIRE(crofton_pvs_open(path.c_str(), &opened) == CROFTON_OK);
+        const SetsHandle sets(opened);
+        std::filesystem::remove(path);
+        std::size_t cells = 0, objects = 0;
+        REQUIRE(crofton_pvs_counts(sets.get(), &cells, &objects) == CROFTON_OK);
+        CHECK(cells == 1);
+        CHECK(objects == 4);
+        const double inside[3] = {0.0, 1.0, 0.0}, outside[3] = {0.0, 1.0, 50.0};
+        std::uint32_t cell = 7;
+        REQUIRE(crofton_pvs_find_cell(sets.get(), inside, &cell) == CROFTON_OK);
+        CHECK(cell == 0);
+        REQUIRE(crofton_pvs_find_cell(sets.get(), outside, &cell) == CROFTON_OK);
+        CHECK(cell == CROFTON_PVS_NO_CELL);
+
+        const WorldHandle world = make_world();
+        for (const crofton::Aabb& box : kPvsBoxes) {
+            crofton_bound bound{};
+            bound.kind = CROFTON_BOUND_ALIGNED_BOX;
+            for (int k = 0; k < 3; ++k) bound.min[k] = box.min[k], bound.max[k] = box.max[k];
+            add_bound(world, bound);
+        }
+        for (int i = 0; i < 40; ++i) update(world);  // what is new counts as moving at first
+        const VisibleObjectsHandle visible = make_visible_objects();
+        crofton_camera camera;
+        camera.size = sizeof camera;
+        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        for (int k = 0; k < 3; ++k) camera.position[k] = inside[k];
+        crofton_cull_options options{};
+        options.size = sizeof options;
+        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 2, 3});
+        REQUIRE(crofton_pvs_visible(sets.get(), inside, CROFTON_PVS_STATISTICAL, &options.among,
+                                    &options.among_words) == CROFTON_OK);
+        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(ids_in_view(visible.get()) == std::vector<std::uint32_t>{0, 1, 3});
+        // A caller compiled before there were sets.
+        options.size = offsetof(crofton_cull_options, among);
+        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(ids_in_view(visible.get()).size() == 4);
+        // Without a cell everything is drawn.
+        options.size = sizeof options;
+        REQUIRE(crofton_pvs_visible(sets.get(), outside, CROFTON_PVS_CONSERVATIVE, &options.among,
+                                    &options.among_words) == CROFTON_OK);
+        CHECK(options.among == nullptr);
+        CHECK(options.among_words == 0);
+        REQUIRE(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) == CROFTON_OK);
+        CHECK(ids_in_view(visible.get()).size() == 4);
+    }
+
+    TEST_CASE("mistakes are reported by name") {
+        crofton_pvs* opened = nullptr;
+        CHECK(crofton_pvs_open("no_such_file.crofton", &opened) != CROFTON_OK);
+        CHECK(crofton_pvs_open(nullptr, &opened) == CROFTON_INVALID_ARGUMENT);
+        const std::string path = file_of_sets();
+        CHECK(crofton_pvs_open(path.c_str(), nullptr) == CROFTON_INVALID_ARGUMENT);
+        REQUIRE(crofton_pvs_open(path.c_str(), &opened) == CROFTON_OK);
+        const SetsHandle sets(opened);
+        std::filesystem::remove(path);
+        const double eye[3] = {0.0, 1.0, 0.0}, nowhere[3] = {0.0, std::nan(""), 0.0};
+        std::uint32_t cell = 0;
+        const std::uint64_t* words = nullptr;
+        std::size_t count = 0;
+        CHECK(crofton_pvs_find_cell(sets.get(), nowhere, &cell) == CROFTON_NON_FINITE);
+        CHECK(crofton_pvs_find_cell(sets.get(), nullptr, &cell) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_pvs_find_cell(sets.get(), eye, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_pvs_visible(sets.get(), eye, 2, &words, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_pvs_visible(sets.get(), eye, 0, nullptr, &count) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_pvs_counts(nullptr, nullptr, nullptr) != CROFTON_OK);
+        const VisibleObjectsHandle visible = make_visible_objects();
+        const WorldHandle world = make_world();
+        crofton_camera camera;
+        camera.size = sizeof camera;
+        REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+        crofton_cull_options options{};
+        options.size = sizeof options;
+        options.among_words = 3;
+        CHECK(crofton_world_view_camera(world.get(), &camera, &options, nullptr, visible.get()) ==
+              CROFTON_INVALID_ARGUMENT);
+    }
+}
