@@ -3,6 +3,7 @@
 // docs/notes/world.md says what the hand-written side does.
 //   bench_world               the table
 //   bench_world --churn       what ten million spawns and despawns leave behind, as CSV; --churn=N: N of them
+//     --live=N                among so many objects, instead of 20,000
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -30,6 +31,7 @@ constexpr Row kRows[] = {
     {"rest/ascending", "100,000 boxes rest, a view, ids ascending", crofton::bench::views_ascending, 100000, 0},
     {"rest/tree", "100,000 boxes rest, a view, tree order", crofton::bench::views_in_tree_order, 100000, 0},
     {"boxes", "100,000 boxes, 5,000 move, a view", crofton::bench::views_in_tree_order, 100000, 5000},
+    {"kept", "the same, by hand too boxes kept and compared", crofton::bench::views_of_kept, 100000, 5000},
     {"structs", "the same, boxes in the game's structs", crofton::bench::views_of_structs, 100000, 5000},
     {"meshes", "100,000 meshes, 5,000 nodes move, a view", crofton::bench::views_of_meshes, 100000, 5000},
     {"own_scene", "the same, bounds, nodes in the engine's scene", crofton::bench::views_of_own_scene, 100000, 5000},
@@ -40,7 +42,7 @@ constexpr Row kRows[] = {
 struct Options {
     int frames = 200, repetitions = 1;
     bool churn = false;
-    std::size_t spawns = 10'000'000;
+    std::size_t spawns = 10'000'000, live = 20'000;
     std::string out;
     std::regex filter{""};
 };
@@ -55,6 +57,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.frames = std::stoi(value);
         else if (key == "--churn")
             options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
+        else if (key == "--live")
+            options.live = std::stoul(value);
         else if (key == "--benchmark_filter")
             options.filter = value;
         else if (key == "--benchmark_repetitions")
@@ -98,8 +102,9 @@ int main(int argc, char** argv) {
     }
     const char* const target = crofton::bench::target_in_use();
     if (options.churn) {
-        std::printf("# command: bench_world --churn=%zu --target=%s\n", options.spawns, target);
-        crofton::bench::churn(20000, options.spawns);
+        std::printf("# command: bench_world --churn=%zu --live=%zu --target=%s\n", options.spawns, options.live,
+                    target);
+        crofton::bench::churn(options.live, options.spawns);
         return 0;
     }
     std::printf("instruction set: %s\n%-48s %10s %10s %8s\n", target, "microseconds a frame", "by hand", "World",

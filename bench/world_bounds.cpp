@@ -6,6 +6,7 @@
 #include <crofton/collide/narrow_phase.hpp>
 #include <crofton/crofton.hpp>
 #include <crofton/cull/bound_set.hpp>
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -50,8 +51,15 @@ struct Game {
     std::vector<Enemy> enemies;
 };
 
-// The parts by hand: the tree of what rests and the list of what moves, whose boxes are read where they are. The list
-// takes boxes side by side: others are copied there.
+// What the hand-written side does with the boxes that come.
+enum class Keeping {
+    none,          // the list reads them where they are
+    with_changes,  // as World: copied, so that the caller's memory is free, and those that differ are listed
+};
+
+// The parts by hand: the tree of what rests and the list of what moves. The list takes boxes side by side: others are
+// copied there.
+template <Keeping keeping>
 class Parts {
   public:
     Parts(const std::vector<Obb>& all, std::size_t moving_count) {
@@ -72,10 +80,26 @@ class Parts {
     [[nodiscard]] std::size_t seen() const { return seen_.size(); }
 
   private:
-    void update(std::span<const Obb> moved) { must(moving_.update(tree_, items_, moved).has_value(), "by hand"); }
+    void update(std::span<const Obb> moved) {
+        if (keeping == Keeping::with_changes) moved = keep(moved);
+        must(moving_.update(tree_, items_, moved).has_value(), "by hand");
+    }
+    // Two sets of copies in turn: the last update's are compared with, and are what the list reads until it has new
+    // ones.
+    std::span<const Obb> keep(std::span<const Obb> moved) {
+        kept_.resize(moved.size());
+        next_.resize(moved.size());
+        changed_.clear();
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            next_[i] = moved[i];
+            if (std::memcmp(&kept_[i], &moved[i], sizeof(Obb)) != 0) changed_.push_back(items_[i]);
+        }
+        std::swap(kept_, next_);
+        return kept_;
+    }
 
-    std::vector<boxtree::ItemId> items_;
-    std::vector<Obb> copies_;
+    std::vector<boxtree::ItemId> items_, changed_;
+    std::vector<Obb> copies_, kept_, next_;
     boxtree::BoxTree tree_ = boxtree::BoxTree::build({}).value();
     cull::MovingBoxes moving_;
     cull::VisibleSet seen_;
@@ -109,12 +133,12 @@ struct Objects {
 constexpr WorldOptions kViewsOnly{.pairs = false, .rebuild_budget = 0};
 
 // Views of boxes of which some move; nothing collides.
-template <class Boxes>
+template <class Boxes, Keeping keeping = Keeping::none>
 FrameTimes views(std::size_t count, std::size_t moving_count, int frames, cull::ResultOrder order) {
     const std::vector<Obb> all = crowd(count);
     const cull::View view = view_of_share(all, 0.2);
     Boxes ours(all, moving_count), worlds(all, moving_count);
-    Parts parts(all, moving_count);
+    Parts<keeping> parts(all, moving_count);
     Objects objects(all, kViewsOnly);
     objects.warm_up(worlds);
     return compare(
@@ -139,6 +163,9 @@ FrameTimes views_ascending(std::size_t count, std::size_t moving, int frames) {
 }
 FrameTimes views_in_tree_order(std::size_t count, std::size_t moving, int frames) {
     return views<Crowd>(count, moving, frames, cull::ResultOrder::tree);
+}
+FrameTimes views_of_kept(std::size_t count, std::size_t moving, int frames) {
+    return views<Crowd, Keeping::with_changes>(count, moving, frames, cull::ResultOrder::tree);
 }
 FrameTimes views_of_structs(std::size_t count, std::size_t moving, int frames) {
     return views<Game>(count, moving, frames, cull::ResultOrder::tree);

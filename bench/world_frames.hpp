@@ -44,6 +44,7 @@ inline void must(bool good, const char* what) {
 // World's objects are bounds (world_bounds.cpp).
 FrameTimes views_ascending(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_in_tree_order(std::size_t count, std::size_t moving, int frames);
+FrameTimes views_of_kept(std::size_t count, std::size_t moving, int frames);
 FrameTimes views_of_structs(std::size_t count, std::size_t moving, int frames);
 FrameTimes contacts(std::size_t count, std::size_t moving, int frames);
 FrameTimes rays(std::size_t count, std::size_t moving, int frames);

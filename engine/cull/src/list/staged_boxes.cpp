@@ -2,6 +2,7 @@
 // Updates of MovingBoxes in pieces.
 #include <algorithm>
 #include <bit>
+#include <crofton/core/consecutive.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/list_layout.hpp>
 
@@ -12,10 +13,7 @@ namespace {
 
 // Sets the entries' bits. Most come in a row.
 void mark(std::span<std::uint64_t> bits, std::span<const std::uint32_t> entries) {
-    std::uint32_t differing = 0;
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        differing |= entries[i] ^ (entries[0] + static_cast<std::uint32_t>(i));
-    if (differing != 0) {
+    if (!are_consecutive(entries)) {
         for (const std::uint32_t entry : entries) bits[entry / 64] |= std::uint64_t{1} << entry % 64;
         return;
     }
