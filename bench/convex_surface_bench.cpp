@@ -46,7 +46,25 @@ float height(double x, double z) {
     return static_cast<float>(4.0 * std::sin(0.031 * x) * std::cos(0.027 * z) + 0.4 * std::sin(0.5 * x + 0.3 * z));
 }
 
-SurfaceScene make_scene(bool field, bool capsule) {
+// Small boxes sunk a little into single raised corners of a flat field, below the middle of their lower faces.
+SurfaceScene make_crests() {
+    SurfaceScene scene;
+    scene.size = 0.4f;
+    scene.body = Body::box(glm::vec3(scene.size)).value();
+    scene.heights.assign(std::size_t{kSide} * kSide, -1.0f);
+    for (int i = 0; i < kBodies; ++i) {
+        const std::size_t x = 10 + 30 * static_cast<std::size_t>(i % 33),
+                          z = 10 + 30 * static_cast<std::size_t>(i / 33);
+        scene.heights[z * kSide + x] = 0.0f;
+        for (int f = 0; f < kFrames; ++f)
+            scene.poses[f].push_back(
+                {glm::dmat3(1.0), glm::dvec3(x, 0.4 - 0.005 * (f + 1), z) + glm::dvec3(0.02, 0, 0.03)});
+    }
+    return scene;
+}
+
+SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
+    if (crests) return make_crests();
     SurfaceScene scene;
     std::mt19937_64 random(3);
     const auto number = [&](double low, double high) {
@@ -110,7 +128,7 @@ void frames(benchmark::State& state, double size, Run run) {
     }
     const double all = static_cast<double>(state.iterations()) * kBodies;
     state.counters["points"] = static_cast<double>(points) / all;
-    state.counters["depth"] = depth / (size * static_cast<double>(touching));
+    state.counters["depth"] = touching > 0 ? depth / (size * static_cast<double>(touching)) : 0.0;
     state.counters["touching"] = static_cast<double>(touching) / all;
     state.counters["ns"] = benchmark::Counter(all * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
@@ -135,8 +153,8 @@ class OwnSurface {
     mesh::MeshTree tree_;
 };
 
-void crofton_rest(benchmark::State& state, bool field, bool capsule) {
-    const SurfaceScene scene = make_scene(field, capsule);
+void crofton_rest(benchmark::State& state, bool field, bool capsule, bool crests = false) {
+    const SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
     const Body surface = own.body(Sides::front);
@@ -155,6 +173,7 @@ void crofton_rest(benchmark::State& state, bool field, bool capsule) {
 BENCHMARK_CAPTURE(crofton_rest, a, false, false)->Name("box on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, b, false, true)->Name("capsule on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
 BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
 
 // Down onto the surface from twice the size above it.
@@ -244,8 +263,8 @@ struct BulletSurface {
     std::vector<std::unique_ptr<btCollisionObject>> objects;
     std::vector<btCollisionAlgorithm*> algorithms;
 };
-void bullet_rest(benchmark::State& state, bool field, bool capsule) {
-    const SurfaceScene scene = make_scene(field, capsule);
+void bullet_rest(benchmark::State& state, bool field, bool capsule, bool crests = false) {
+    const SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const auto peer = std::make_unique<BulletSurface>(scene, field);
     frames(state, scene.size, [&](int f, int i) { return peer->manifold(scene, f, i); });
@@ -253,6 +272,7 @@ void bullet_rest(benchmark::State& state, bool field, bool capsule) {
 BENCHMARK_CAPTURE(bullet_rest, a, false, false)->Name("box on bunny/bullet");
 BENCHMARK_CAPTURE(bullet_rest, b, false, true)->Name("capsule on bunny/bullet");
 BENCHMARK_CAPTURE(bullet_rest, c, true, false)->Name("box on heights 1025^2/bullet");
+BENCHMARK_CAPTURE(bullet_rest, f, true, false, true)->Name("box on a crest/bullet");
 BENCHMARK_CAPTURE(bullet_rest, d, true, true)->Name("capsule on heights 1025^2/bullet");
 #endif
 
@@ -260,8 +280,8 @@ BENCHMARK_CAPTURE(bullet_rest, d, true, true)->Name("capsule on heights 1025^2/b
 float ode_height(void* user, int i, int j) {
     return static_cast<const float*>(user)[static_cast<std::size_t>(j) * kSide + static_cast<std::size_t>(i)];
 }
-void ode_rest(benchmark::State& state, bool field, bool capsule, int room = 64) {
-    SurfaceScene scene = make_scene(field, capsule);
+void ode_rest(benchmark::State& state, bool field, bool capsule, int room = 64, bool crests = false) {
+    SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     dInitODE();
     dTriMeshDataID data = nullptr;
@@ -312,6 +332,7 @@ BENCHMARK_CAPTURE(ode_rest, a, false, false)->Name("box on bunny/ode");
 BENCHMARK_CAPTURE(ode_rest, e, false, false, 4096)->Name("box on bunny/ode all");
 BENCHMARK_CAPTURE(ode_rest, b, false, true)->Name("capsule on bunny/ode");
 BENCHMARK_CAPTURE(ode_rest, c, true, false)->Name("box on heights 1025^2/ode");
+BENCHMARK_CAPTURE(ode_rest, f, true, false, 64, true)->Name("box on a crest/ode");
 BENCHMARK_CAPTURE(ode_rest, d, true, true)->Name("capsule on heights 1025^2/ode");
 #endif
 
