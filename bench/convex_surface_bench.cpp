@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Bodies that rest on surfaces, beside Bullet and ODE: boxes and capsules on the bunny, boxes on a height field of
-// 1025 x 1025 corners. Manifolds are asked for, frame after frame, with poses that tremble.
+// 1025 x 1025 corners. Manifolds are asked for, frame after frame, with poses that tremble. `depth` is the mean of the
+// deepest point, in sizes of the body. ODE stops at as many contacts as its caller has room for: 64, or `all`.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <crofton/convex/query.hpp>
 #include <crofton/mesh/mesh_tree.hpp>
@@ -44,7 +46,25 @@ float height(double x, double z) {
     return static_cast<float>(4.0 * std::sin(0.031 * x) * std::cos(0.027 * z) + 0.4 * std::sin(0.5 * x + 0.3 * z));
 }
 
-SurfaceScene make_scene(bool field, bool capsule) {
+// Small boxes sunk a little into single raised corners of a flat field, below the middle of their lower faces.
+SurfaceScene make_crests() {
+    SurfaceScene scene;
+    scene.size = 0.4f;
+    scene.body = Body::box(glm::vec3(scene.size)).value();
+    scene.heights.assign(std::size_t{kSide} * kSide, -1.0f);
+    for (int i = 0; i < kBodies; ++i) {
+        const std::size_t x = 10 + 30 * static_cast<std::size_t>(i % 33),
+                          z = 10 + 30 * static_cast<std::size_t>(i / 33);
+        scene.heights[z * kSide + x] = 0.0f;
+        for (int f = 0; f < kFrames; ++f)
+            scene.poses[f].push_back(
+                {glm::dmat3(1.0), glm::dvec3(x, 0.4 - 0.005 * (f + 1), z) + glm::dvec3(0.02, 0, 0.03)});
+    }
+    return scene;
+}
+
+SurfaceScene make_scene(bool field, bool capsule, bool crests = false) {
+    if (crests) return make_crests();
     SurfaceScene scene;
     std::mt19937_64 random(3);
     const auto number = [&](double low, double high) {
@@ -87,20 +107,28 @@ SurfaceScene make_scene(bool field, bool capsule) {
     return scene;
 }
 
+struct Told {
+    int points = 0;
+    double depth = 0.0;
+};
+
 template <class Run>
-void frames(benchmark::State& state, Run run) {
+void frames(benchmark::State& state, double size, Run run) {
     int f = 0;
     std::uint64_t points = 0, touching = 0;
+    double depth = 0.0;
     for (auto _ : state) {
         for (int i = 0; i < kBodies; ++i) {
-            const int count = run(f, i);
-            points += static_cast<std::uint64_t>(count);
-            touching += count > 0 ? 1 : 0;
+            const Told told = run(f, i);
+            points += static_cast<std::uint64_t>(told.points);
+            touching += told.points > 0 ? 1 : 0;
+            depth += told.points > 0 ? told.depth : 0.0;
         }
         f = (f + 1) % kFrames;
     }
     const double all = static_cast<double>(state.iterations()) * kBodies;
     state.counters["points"] = static_cast<double>(points) / all;
+    state.counters["depth"] = touching > 0 ? depth / (size * static_cast<double>(touching)) : 0.0;
     state.counters["touching"] = static_cast<double>(touching) / all;
     state.counters["ns"] = benchmark::Counter(all * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
@@ -125,23 +153,27 @@ class OwnSurface {
     mesh::MeshTree tree_;
 };
 
-void crofton_rest(benchmark::State& state, bool field, bool capsule) {
-    const SurfaceScene scene = make_scene(field, capsule);
+void crofton_rest(benchmark::State& state, bool field, bool capsule, bool crests = false) {
+    const SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const OwnSurface own(scene, field);
     const Body surface = own.body(Sides::front);
     const RigidTransform still;
     Manifolds found;
-    frames(state, [&](int f, int i) {
+    frames(state, scene.size, [&](int f, int i) {
         contact_manifolds({surface, still}, {scene.body, scene.poses[f][i]}, {.margin = 0.02 * scene.size}, found);
-        int points = 0;
-        for (const Manifold& m : found.all()) points += m.count;
-        return points;
+        Told told{0, -HUGE_VAL};
+        for (const Manifold& m : found.all()) {
+            told.points += m.count;
+            told.depth = std::max(told.depth, m.depth);
+        }
+        return told;
     });
 }
 BENCHMARK_CAPTURE(crofton_rest, a, false, false)->Name("box on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, b, false, true)->Name("capsule on bunny/crofton");
 BENCHMARK_CAPTURE(crofton_rest, c, true, false)->Name("box on heights 1025^2/crofton");
+BENCHMARK_CAPTURE(crofton_rest, f, true, false, true)->Name("box on a crest/crofton");
 BENCHMARK_CAPTURE(crofton_rest, d, true, true)->Name("capsule on heights 1025^2/crofton");
 
 // Down onto the surface from twice the size above it.
@@ -151,14 +183,13 @@ void crofton_drop(benchmark::State& state, bool field) {
     const OwnSurface own(scene, field);
     const Body surface = own.body(Sides::both);
     const RigidTransform still;
-    frames(state, [&](int f, int i) {
+    frames(state, scene.size, [&](int f, int i) {
         RigidTransform from = scene.poses[f][i];
         const glm::dvec3 n = from.rotation[1];
         from.translation += 2.0 * scene.size * n;
-        return cast({scene.body, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4})
-                           ->result == CastResult::hit
-                   ? 1
-                   : 0;
+        const auto impact =
+            cast({scene.body, from}, {-4.0 * scene.size * n, {}, {}}, {surface, still}, {}, {.tolerance = 1e-4});
+        return Told{impact->result == CastResult::hit ? 1 : 0};
     });
 }
 BENCHMARK_CAPTURE(crofton_drop, a, false)->Name("cast of a box, bunny/crofton");
@@ -205,7 +236,7 @@ struct BulletSurface {
         }
         return t;
     }
-    int manifold(const SurfaceScene& scene, int f, int i) {
+    Told manifold(const SurfaceScene& scene, int f, int i) {
         const btTransform t = transform_of(scene.poses[f][i]);
         objects[i]->setWorldTransform(t);
         btCollisionObjectWrapper a(nullptr, shape.get(), objects[i].get(), t, -1, -1);
@@ -215,7 +246,11 @@ struct BulletSurface {
         algorithms[i]->processCollision(&a, &b, info, &result);
         btManifoldArray manifolds;
         algorithms[i]->getAllContactManifolds(manifolds);
-        return manifolds.size() > 0 ? manifolds[0]->getNumContacts() : 0;
+        if (manifolds.size() == 0) return {};
+        Told told{manifolds[0]->getNumContacts(), -HUGE_VAL};
+        for (int k = 0; k < told.points; ++k)
+            told.depth = std::max(told.depth, -double(manifolds[0]->getContactPoint(k).getDistance()));
+        return told;
     }
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher;
@@ -228,15 +263,16 @@ struct BulletSurface {
     std::vector<std::unique_ptr<btCollisionObject>> objects;
     std::vector<btCollisionAlgorithm*> algorithms;
 };
-void bullet_rest(benchmark::State& state, bool field, bool capsule) {
-    const SurfaceScene scene = make_scene(field, capsule);
+void bullet_rest(benchmark::State& state, bool field, bool capsule, bool crests = false) {
+    const SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     const auto peer = std::make_unique<BulletSurface>(scene, field);
-    frames(state, [&](int f, int i) { return peer->manifold(scene, f, i); });
+    frames(state, scene.size, [&](int f, int i) { return peer->manifold(scene, f, i); });
 }
 BENCHMARK_CAPTURE(bullet_rest, a, false, false)->Name("box on bunny/bullet");
 BENCHMARK_CAPTURE(bullet_rest, b, false, true)->Name("capsule on bunny/bullet");
 BENCHMARK_CAPTURE(bullet_rest, c, true, false)->Name("box on heights 1025^2/bullet");
+BENCHMARK_CAPTURE(bullet_rest, f, true, false, true)->Name("box on a crest/bullet");
 BENCHMARK_CAPTURE(bullet_rest, d, true, true)->Name("capsule on heights 1025^2/bullet");
 #endif
 
@@ -244,8 +280,8 @@ BENCHMARK_CAPTURE(bullet_rest, d, true, true)->Name("capsule on heights 1025^2/b
 float ode_height(void* user, int i, int j) {
     return static_cast<const float*>(user)[static_cast<std::size_t>(j) * kSide + static_cast<std::size_t>(i)];
 }
-void ode_rest(benchmark::State& state, bool field, bool capsule) {
-    SurfaceScene scene = make_scene(field, capsule);
+void ode_rest(benchmark::State& state, bool field, bool capsule, int room = 64, bool crests = false) {
+    SurfaceScene scene = make_scene(field, capsule, crests);
     if (!field && scene.mesh.indices.empty()) return state.SkipWithError("no shared meshes");
     dInitODE();
     dTriMeshDataID data = nullptr;
@@ -267,7 +303,8 @@ void ode_rest(benchmark::State& state, bool field, bool capsule) {
     const dReal s = scene.size;
     const dGeomID geom =
         capsule ? dCreateCapsule(nullptr, dReal(0.5) * s, dReal(1.2) * s) : dCreateBox(nullptr, 2 * s, 2 * s, 2 * s);
-    frames(state, [&](int f, int i) {
+    std::vector<dContactGeom> contact(static_cast<std::size_t>(room));
+    frames(state, scene.size, [&](int f, int i) {
         const RigidTransform& pose = scene.poses[f][i];
         dMatrix3 r{};
         for (int row = 0; row < 3; ++row)
@@ -280,8 +317,10 @@ void ode_rest(benchmark::State& state, bool field, bool capsule) {
                                                : pose.rotation[c][row]);
         dGeomSetRotation(geom, r);
         dGeomSetPosition(geom, dReal(pose.translation.x), dReal(pose.translation.y), dReal(pose.translation.z));
-        dContactGeom contact[64];
-        return dCollide(geom, surface, 64, contact, sizeof(dContactGeom));
+        Told told{dCollide(geom, surface, room, contact.data(), sizeof(dContactGeom)), -HUGE_VAL};
+        for (int k = 0; k < told.points; ++k)
+            told.depth = std::max(told.depth, double(contact[static_cast<std::size_t>(k)].depth));
+        return told;
     });
     dGeomDestroy(geom);
     dGeomDestroy(surface);
@@ -290,8 +329,10 @@ void ode_rest(benchmark::State& state, bool field, bool capsule) {
     dCloseODE();
 }
 BENCHMARK_CAPTURE(ode_rest, a, false, false)->Name("box on bunny/ode");
+BENCHMARK_CAPTURE(ode_rest, e, false, false, 4096)->Name("box on bunny/ode all");
 BENCHMARK_CAPTURE(ode_rest, b, false, true)->Name("capsule on bunny/ode");
 BENCHMARK_CAPTURE(ode_rest, c, true, false)->Name("box on heights 1025^2/ode");
+BENCHMARK_CAPTURE(ode_rest, f, true, false, 64, true)->Name("box on a crest/ode");
 BENCHMARK_CAPTURE(ode_rest, d, true, true)->Name("capsule on heights 1025^2/ode");
 #endif
 

@@ -2,8 +2,10 @@
 // Every allocation of every operation that builds, loads, bakes, fits or triangulates fails once: an Error, no leak,
 // nothing changed.
 #include <doctest/doctest.h>
+#include <cmath>
 #include <crofton/bake/baked_scene.hpp>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/convex/body.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
@@ -131,6 +133,21 @@ TEST_SUITE("memory/fault") {
         sweep("MeshTree::build", [&] { return outcome_of(mesh::MeshTree::build(mesh)); });
         sweep("MeshTree::build, refittable",
               [&] { return outcome_of(mesh::MeshTree::build(mesh, {.refittable = true, .rays = true})); });
+    }
+
+    TEST_CASE("convex bodies: hulls in full and simplified, height fields, compounds") {
+        const testing::FailingMemory memory;
+        Vector<glm::vec3> points;
+        for (int i = 0; i < 40; ++i)
+            points.emplace_back(std::cos(0.7f * static_cast<float>(i)), std::sin(1.3f * static_cast<float>(i)),
+                                std::cos(2.1f * static_cast<float>(i)));
+        for (const int most : {256, 8})
+            sweep("Hull::build", [&] { return outcome_of(convex::Hull::build(points, {.max_vertices = most})); });
+        const Vector<float> heights(36, 1.0f);
+        sweep("HeightField::build",
+              [&] { return outcome_of(convex::HeightField::build({.columns = 6, .rows = 6, .heights = heights})); });
+        const Vector<convex::CompoundChild> children(9, {convex::Body::ball(1.0f).value(), {}});
+        sweep("Compound::build", [&] { return outcome_of(convex::Compound::build(children)); });
     }
 
     TEST_CASE("triangulations, a Triangulator answers as before after one that failed") {

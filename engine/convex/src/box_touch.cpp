@@ -17,7 +17,9 @@ struct BoxTouch::Axis {
 
 // The triangle in the box's frame.
 struct BoxTouch::Local {
-    glm::dvec3 corner[3], edge[3];
+    glm::dvec3 corner[3], edge[3], normal;  // the normal of any length
+    double longest;                         // edge, squared
+    double reach;                           // of the difference body: at most twice its square
 };
 
 namespace {
@@ -42,7 +44,7 @@ BoxTouch::BoxTouch(const Placed& box, const glm::dvec3& origin, double reach, do
 
 // Faces come first, and another axis must be less deep by more than rounding, so that the choice does not flicker.
 void BoxTouch::try_faces(const Local& t, Axis& least) const {
-    const glm::dvec3 n = glm::cross(t.edge[0], t.edge[1]);
+    const glm::dvec3& n = t.normal;
     const double along = glm::dot(n, t.corner[0]), radius = glm::dot(half_, glm::abs(n)),
                  length = length_of(metric_, n);
     least = {along <= 0.0 ? n : -n, (radius - std::abs(along)) / length, length, 0};
@@ -59,50 +61,34 @@ void BoxTouch::try_faces(const Local& t, Axis& least) const {
 
 // False where an axis is not certain enough.
 bool BoxTouch::try_edges(const Local& t, Axis& least) const {
-    double extent[9], squared[9];
-    bool upward[9];
+    const double uncertain = kUncertain * t.reach, parallel = 1e-20 * size_ * size_, slack = kSameDepth * size_;
+    bool certain = true;
     for (int k = 0; k < 3; ++k) {
         const int u = k == 2 ? 0 : k + 1, v = k == 0 ? 2 : k - 1;
-        const double uu = metric_[u][u], uv = metric_[u][v], vv = metric_[v][v];
+        const double uu = metric_[u][u], uv = 2.0 * metric_[u][v], vv = metric_[v][v];
         for (int j = 0; j < 3; ++j) {
             const glm::dvec3 &e = t.edge[j], &on = t.corner[j], &off = t.corner[j == 0 ? 2 : j - 1];
             const double mu = -e[v], mv = e[u];  // across axis k and the edge
             const double p = mu * on[u] + mv * on[v], q = mu * off[u] + mv * off[v];
             const double radius = half_[u] * std::abs(mu) + half_[v] * std::abs(mv);
             const double above = std::max(p, q) + radius, below = radius - std::min(p, q);
-            upward[3 * k + j] = above <= below;
-            extent[3 * k + j] = std::min(above, below);
-            squared[3 * k + j] = (uu * mu * mu + vv * mv * mv) + 2.0 * uv * mu * mv;
+            const double extent = std::min(above, below), squared = (uu * mu * mu + vv * mv * mv) + uv * mu * mv;
+            const double best = least.extent - slack;
+            // Most axes are deeper, which needs no root to be seen.
+            if (best >= 0.0 && extent >= 0.0 && extent * extent > best * best * squared && squared >= uncertain)
+                continue;
+            if (!(squared >= uncertain)) {
+                certain = certain && squared <= parallel;
+                continue;
+            }
+            const double length = std::sqrt(squared);
+            if (!(extent / length < best)) continue;
+            least = {glm::dvec3(0.0), extent / length, length, 4 + 3 * k + j};
+            least.m[u] = above <= below ? mu : -mu;
+            least.m[v] = above <= below ? mv : -mv;
         }
-    }
-    double reach2 = 0.0, length[9];
-    for (const glm::dvec3& p : t.corner) reach2 = std::max(reach2, glm::dot(p, p));
-    const double uncertain = kUncertain * (reach2 + glm::dot(half_, half_)), parallel = 1e-20 * size_ * size_;
-    for (int i = 0; i < 9; ++i) length[i] = std::sqrt(squared[i]);
-    for (int i = 0; i < 9; ++i) extent[i] /= length[i];
-    const double slack = kSameDepth * size_;
-    bool certain = true;
-    for (int i = 0; i < 9; ++i) {
-        if (!(squared[i] >= uncertain)) {
-            certain = certain && squared[i] <= parallel;
-            continue;
-        }
-        if (!(extent[i] < least.extent - slack)) continue;
-        const int k = i / 3, j = i % 3, u = k == 2 ? 0 : k + 1, v = k == 0 ? 2 : k - 1;
-        least = {glm::dvec3(0.0), extent[i], length[i], 4 + i};
-        least.m[u] = upward[i] ? -t.edge[j][v] : t.edge[j][v];
-        least.m[v] = upward[i] ? t.edge[j][u] : -t.edge[j][u];
     }
     return certain;
-}
-
-// Whether the direction of the triangle's face is as uncertain as that of nearly parallel edges.
-bool BoxTouch::is_sliver(const Local& t) const {
-    const glm::dvec3 n = glm::cross(t.edge[0], t.edge[1]);
-    double longest = 0.0, reach = 0.0;
-    for (const glm::dvec3& e : t.edge) longest = std::max(longest, glm::dot(e, e));
-    for (const glm::dvec3& p : t.corner) reach = std::max(reach, glm::dot(p, p));
-    return !(glm::dot(n, n) >= kUncertain * (reach + glm::dot(half_, half_)) * longest);
 }
 
 int BoxTouch::lowest_corner(const glm::dvec3& m) const {
@@ -120,7 +106,13 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
         if (half_[k] - nearest < limit * unit_[k]) return Warm::apart;
     }
     for (int v = 0; v < 3; ++v) t.edge[v] = t.corner[v == 2 ? 0 : v + 1] - t.corner[v];
-    if (is_sliver(t)) return Warm::unknown;
+    t.normal = glm::cross(t.edge[0], t.edge[1]);
+    t.longest = t.reach = 0.0;
+    for (const glm::dvec3& e : t.edge) t.longest = std::max(t.longest, glm::dot(e, e));
+    for (const glm::dvec3& p : t.corner) t.reach = std::max(t.reach, glm::dot(p, p));
+    t.reach += glm::dot(half_, half_);
+    // The direction of a sliver's face is as uncertain as that of nearly parallel edges.
+    if (!(glm::dot(t.normal, t.normal) >= kUncertain * t.reach * t.longest)) return Warm::unknown;
     Axis least;
     try_faces(t, least);
     if (least.extent < limit) return Warm::apart;
@@ -143,9 +135,9 @@ bool BoxTouch::set_points(const Local& t, const Axis& axis, const PlacedTriangle
         const int corner = lowest_corner(axis.m);
         const glm::dvec3 x((corner & 1) != 0 ? half_.x : -half_.x, (corner & 2) != 0 ? half_.y : -half_.y,
                            (corner & 4) != 0 ? half_.z : -half_.z);
-        const glm::dvec3 foot = x + way, n = glm::cross(t.edge[0], t.edge[1]);
+        const glm::dvec3 foot = x + way;
         for (int j = 0; apart && j < 3; ++j)
-            if (!(glm::dot(glm::cross(t.edge[j], foot - t.corner[j]), n) >= 0.0)) return false;
+            if (!(glm::dot(glm::cross(t.edge[j], foot - t.corner[j]), t.normal) >= 0.0)) return false;
         touch.on_b = box_.pose.rotation * x + offset_;
         touch.on_a = touch.on_b + axis.extent * touch.normal;
         touch.feature_a = {FeatureKind::face, 0};

@@ -16,10 +16,11 @@ struct ClipCorner {
 };
 
 // Returns −1 − the number of corners in `to`, or `count` with nothing written where none is outside.
-int clip_side(const ClipCorner* from, int count, const glm::dvec3& outward, double level, int side, ClipCorner* to) {
+template <class Height>
+int clip_side(const ClipCorner* from, int count, Height height_of, int side, ClipCorner* to) {
     double height[kMaxClipped + 1], most = 0.0;
     for (int i = 0; i < count; ++i) {
-        height[i] = glm::dot(outward, from[i].point) - level;
+        height[i] = height_of(from[i].point);
         most = height[i] > most ? height[i] : most;
     }
     if (most == 0.0) return count;
@@ -53,16 +54,18 @@ Feature incident_feature(const Patch& patch, const ClipCorner& corner, int count
     return edge >= 0 ? Feature{FeatureKind::edge, patch.edge[edge]} : patch.self;
 }
 
-Feature reference_feature(const Patch& patch, const ClipCorner& corner) {
-    if (corner.before >= 0 && corner.after >= 0) return patch.self;
+// `vertex` and `edge` number the features around the face, `self`, of `count` sides.
+Feature reference_feature(const Feature& self, const std::uint16_t* vertex, const std::uint16_t* edge, int count,
+                          const ClipCorner& corner) {
+    if (corner.before >= 0 && corner.after >= 0) return self;
     if (corner.before < 0 && corner.after < 0) {
         const int first = -1 - corner.before, second = -1 - corner.after;
         // The common corner of two sides is where the later begins; of sides apart, the face stands for it.
-        if ((first + 1) % patch.count == second) return {FeatureKind::vertex, patch.vertex[second]};
-        if ((second + 1) % patch.count == first) return {FeatureKind::vertex, patch.vertex[first]};
-        return patch.self;
+        if ((first + 1) % count == second) return {FeatureKind::vertex, vertex[second]};
+        if ((second + 1) % count == first) return {FeatureKind::vertex, vertex[first]};
+        return self;
     }
-    return {FeatureKind::edge, patch.edge[-1 - std::min(corner.before, corner.after)]};
+    return {FeatureKind::edge, edge[-1 - std::min(corner.before, corner.after)]};
 }
 
 }  // namespace
@@ -87,8 +90,10 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
     for (int side = 0; side < sides.count && count > 0; ++side) {
         // Room for two more each time: a convex polygon crosses a line twice.
         if (count + 2 > kMaxClipped) return;
-        const int kept =
-            clip_side(buffers[current], count, sides.outward[side], sides.level[side], side, buffers[1 - current]);
+        const auto height = [&sides, side](const glm::dvec3& p) {
+            return glm::dot(sides.outward[side], p) - sides.level[side];
+        };
+        const int kept = clip_side(buffers[current], count, height, side, buffers[1 - current]);
         if (kept >= 0) continue;
         count = -1 - kept;
         current = 1 - current;
@@ -96,9 +101,84 @@ void clip(const Patch& reference, const Prism& sides, const Patch& incident, con
     for (int i = 0; i < count; ++i) {
         const ClipCorner& corner = buffers[current][i];
         const double height = glm::dot(reference.normal, corner.point - reference.point[0]) / steepness;
-        clipped.point[clipped.count++] = {corner.point - height * direction, corner.point,
-                                          reference_feature(reference, corner),
-                                          incident_feature(incident, corner, incident.count)};
+        clipped.point[clipped.count++] = {
+            corner.point - height * direction, corner.point,
+            reference_feature(reference.self, reference.vertex, reference.edge, reference.count, corner),
+            incident_feature(incident, corner, incident.count)};
+    }
+}
+
+BoxFace::BoxFace(const Placed& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin)
+    : box_(box), to_local_(to_local), offset_(box.pose.translation - origin), face_(face), k_(face / 2) {
+    u_ = k_ == 2 ? 0 : k_ + 1;
+    v_ = k_ == 0 ? 2 : k_ - 1;
+    level_ = (face & 1) != 0 ? box.body.half_extents()[k_] : -box.body.half_extents()[k_];
+    for (int i = 0; i < 4; ++i) {
+        const int from = kBoxFaces[face][i], common = 7 & ~(from ^ kBoxFaces[face][(i + 1) % 4]) & ~(1 << k_);
+        sides_[i] = {common == 1 << u_ ? 0 : 1, (from & common) != 0 ? 1.0 : -1.0};
+    }
+}
+
+double BoxFace::distance_within(const glm::dvec3& point) const {
+    const glm::dvec3 q = to_local_ * (point - offset_), &h = box_.body.half_extents();
+    return std::min(h[u_] - std::abs(q[u_]), h[v_] - std::abs(q[v_]));
+}
+
+// Corners are (x, y, height) while they are clipped: their shadow on the face, and how far they are above it along the
+// direction.
+void BoxFace::clip(const Patch& incident, const glm::dvec3& direction, Clipped& clipped) const {
+    clipped.count = 0;
+    const glm::dvec3 d = to_local_ * direction, &h = box_.body.half_extents();
+    if (!(std::abs(d[k_]) > 0.05) || incident.count + 8 > kMaxClipped) return;
+    ClipCorner buffers[2][kMaxClipped];
+    int count = incident.count, current = 0;
+    bool outside = false;
+    const Feature self{FeatureKind::face, static_cast<std::uint16_t>(face_)};
+    for (int i = 0; i < count; ++i) {
+        const glm::dvec3 q = to_local_ * (incident.point[i] - offset_);
+        const double height = (q[k_] - level_) / d[k_];
+        buffers[0][i] = {{q[u_] - height * d[u_], q[v_] - height * d[v_], height}, i == 0 ? count - 1 : i - 1, i};
+        const glm::dvec3& shadow = buffers[0][i].point;
+        outside = outside || !(std::abs(shadow.x) <= h[u_] && std::abs(shadow.y) <= h[v_]);
+    }
+    if (!outside && count > 2) {  // a small polygon above a large face
+        for (int i = 0; i < count; ++i)
+            clipped.point[clipped.count++] = {incident.point[i] - buffers[0][i].point.z * direction,
+                                              incident.point[i],
+                                              self,
+                                              {FeatureKind::vertex, incident.vertex[i]}};
+        return;
+    }
+    for (int side = 0; side < 4 && count > 0; ++side) {
+        const int axis = sides_[side].axis;
+        const double sign = sides_[side].sign, level = h[axis == 0 ? u_ : v_];
+        const auto height = [axis, sign, level](const glm::dvec3& p) { return sign * p[axis] - level; };
+        const int kept = clip_side(buffers[current], count, height, side, buffers[1 - current]);
+        if (kept >= 0) continue;
+        count = -1 - kept;
+        current = 1 - current;
+    }
+    std::uint16_t vertex[4], edge[4];
+    for (int i = 0; i < 4; ++i) {
+        vertex[i] = static_cast<std::uint16_t>(kBoxFaces[face_][i]);
+        edge[i] = box_edge(vertex[i], kBoxFaces[face_][(i + 1) % 4]);
+    }
+    for (int i = 0; i < count; ++i) {
+        const ClipCorner& corner = buffers[current][i];
+        ClippedPoint& to = clipped.point[clipped.count++];
+        if (corner.before >= 0 && corner.after >= 0) {  // a corner of the incident patch
+            to.on_incident = incident.point[corner.after];
+            to.on_reference = to.on_incident - corner.point.z * direction;
+        } else {
+            glm::dvec3 foot;
+            foot[k_] = level_;
+            foot[u_] = corner.point.x;
+            foot[v_] = corner.point.y;
+            to.on_reference = box_.pose.rotation * foot + offset_;
+            to.on_incident = to.on_reference + corner.point.z * direction;
+        }
+        to.reference = reference_feature(self, vertex, edge, 4, corner);
+        to.incident = incident_feature(incident, corner, incident.count);
     }
 }
 
@@ -186,7 +266,12 @@ void thin_out(Manifold& manifold, const RawPoint* points, int count, int most) {
     manifold.depth = points[kept[0]].depth;
     for (int i = 0; i < chosen; ++i) {
         const RawPoint& p = points[kept[i]];
-        manifold.points[i] = {p.position, p.depth, p.on_a, p.on_b, p.part_a, p.part_b};
+        manifold.points[i] = {p.position,
+                              p.depth,
+                              p.on_a,
+                              p.on_b,
+                              {p.part_a.child, p.part_a.triangle},
+                              {p.part_b.child, p.part_b.triangle}};
         manifold.depth = std::max(manifold.depth, points[kept[i]].depth);
     }
 }

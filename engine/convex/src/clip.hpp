@@ -11,11 +11,14 @@ struct ClippedPoint {
     Feature reference, incident;
 };
 // A contact point, without the defaults that would be written over all of a long array.
+struct RawPart {
+    std::uint32_t child, triangle;
+};
 struct RawPoint {
     glm::dvec3 position;
     double depth;
     Feature on_a, on_b;
-    PartId part_a, part_b;
+    RawPart part_a, part_b;
 };
 inline constexpr int kMaxClipped = 2 * kMaxPatch;
 struct Clipped {
@@ -35,6 +38,28 @@ void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides)
 // reference), and its shadow on the reference's plane. Nothing where that plane is nearly along the direction.
 void clip(const Patch& reference, const Prism& sides, const Patch& incident, const glm::dvec3& direction,
           Clipped& clipped);
+
+// The same where the reference is the face of a box: in the frame of the box, where the sides are its half extents.
+class BoxFace {
+  public:
+    // `to_local` is the inverse of the pose's rotation; points are around `origin`.
+    BoxFace(const Placed& box, int face, const glm::dmat3& to_local, const glm::dvec3& origin);
+    void clip(const Patch& incident, const glm::dvec3& direction, Clipped& clipped) const;
+    // How far a point is within the sides of the prism along the face's own axis: the least distance, negative outside.
+    [[nodiscard]] double distance_within(const glm::dvec3& point) const;
+
+  private:
+    struct Side {
+        int axis;  // of x, y: 0 or 1
+        double sign;
+    };
+    const Placed& box_;
+    const glm::dmat3& to_local_;
+    glm::dvec3 offset_;
+    int face_, k_, u_, v_;  // the face's axis and the two along it
+    double level_;          // of the face along its axis
+    Side sides_[4];         // in the order of the face's edges
+};
 
 // Two segments that are nearly parallel: the ends of their common stretch.
 void clip_segments(const Patch& reference, const Patch& incident, Clipped& clipped);

@@ -9,17 +9,6 @@
 namespace crofton::convex {
 namespace {
 
-// Corner numbers of a box's face 2k + s, counter-clockwise from outside, and the edges between them.
-constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-
-// Edge 4k + j: j numbers the corners with bit k clear, by their other two bits.
-std::uint16_t box_edge(int from, int to) {
-    const int along = from ^ to, k = along == 1 ? 0 : along == 2 ? 1 : 2, low = from & to;
-    const int j = (low >> ((k + 1) % 3) & 1) + 2 * (low >> ((k + 2) % 3) & 1);
-    return static_cast<std::uint16_t>(4 * k + j);
-}
-
 constexpr double kHalf = 0.70710678118654752;
 constexpr double kEighths[8][2] = {{1, 0},  {kHalf, kHalf},   {0, 1},  {-kHalf, kHalf},
                                    {-1, 0}, {-kHalf, -kHalf}, {0, -1}, {kHalf, -kHalf}};

@@ -26,6 +26,17 @@ void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Pat
 // The feature that the given vertices of a core span: a vertex, an edge, a face.
 [[nodiscard]] Feature feature_of(const Body& body, const int* vertices, int count);
 
+// Corner numbers of a box's face 2k + s, counter-clockwise from outside, and the edges between them.
+inline constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+// Edge 4k + j: j numbers the corners with bit k clear, by their other two bits.
+[[nodiscard]] constexpr std::uint16_t box_edge(int from, int to) {
+    const int along = from ^ to, k = along == 1 ? 0 : along == 2 ? 1 : 2, low = from & to;
+    const int j = (low >> ((k + 1) % 3) & 1) + 2 * (low >> ((k + 2) % 3) & 1);
+    return static_cast<std::uint16_t>(4 * k + j);
+}
+
 // The face of a polytope that looks most along a direction of the body's frame; −1 where it has none.
 [[nodiscard]] int face_along(const Body& body, const glm::dvec3& local);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/convex/body.hpp>
+#include <crofton/core/recovery.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 
@@ -106,27 +107,29 @@ double inner_radius_of(const CornerHull& body, const glm::dvec3& center, double 
 
 Result<Hull> Hull::build(std::span<const glm::vec3> points, const HullOptions& options) {
     if (Result<void> good = check(points, options); !good) return tl::unexpected(good.error());
-    Points all(points.begin(), points.end());
-    Result<CornerHull> result = hull_of_corners(all, static_cast<std::size_t>(options.max_vertices));
-    if (!result) return tl::unexpected(result.error());
-    Hull hull;
-    if (result->hull.missing > 0.0) {
-        result = grown(*result, all, hull.excess_);
+    return detail::recover([&]() -> Result<Hull> {
+        Points all(points.begin(), points.end());
+        Result<CornerHull> result = hull_of_corners(all, static_cast<std::size_t>(options.max_vertices));
         if (!result) return tl::unexpected(result.error());
-    }
-    for (const glm::dvec3& p : result->corners) {
-        hull.vertices_.emplace_back(p);
-        hull.radius_ = std::max(hull.radius_, glm::length(p));
-    }
-    for (const auto& t : result->hull.triangles)
-        for (const std::uint32_t v : t) hull.triangles_.push_back(static_cast<std::uint16_t>(v));
-    hull.columns_ = side_by_side(result->corners);
-    hull.find_faces(static_cast<double>(options.face_tolerance));
-    hull.index_edges();
-    hull.mass_ = mass_of_triangles(result->corners, result->hull.triangles);
-    hull.normal_columns_ = side_by_side(hull.normals_);
-    hull.inner_radius_ = inner_radius_of(*result, hull.mass_.center, hull.radius_);
-    return hull;
+        Hull hull;
+        if (result->hull.missing > 0.0) {
+            result = grown(*result, all, hull.excess_);
+            if (!result) return tl::unexpected(result.error());
+        }
+        for (const glm::dvec3& p : result->corners) {
+            hull.vertices_.emplace_back(p);
+            hull.radius_ = std::max(hull.radius_, glm::length(p));
+        }
+        for (const auto& t : result->hull.triangles)
+            for (const std::uint32_t v : t) hull.triangles_.push_back(static_cast<std::uint16_t>(v));
+        hull.columns_ = side_by_side(result->corners);
+        hull.find_faces(static_cast<double>(options.face_tolerance));
+        hull.index_edges();
+        hull.mass_ = mass_of_triangles(result->corners, result->hull.triangles);
+        hull.normal_columns_ = side_by_side(hull.normals_);
+        hull.inner_radius_ = inner_radius_of(*result, hull.mass_.center, hull.radius_);
+        return hull;
+    });
 }
 
 }  // namespace crofton::convex

@@ -103,18 +103,29 @@ SurfaceContacts::Found SurfaceContacts::find_on_half_space(const Body& triangle,
     return m.count > 0 ? Found::points : Found::nothing;
 }
 
+void SurfaceContacts::gather_patches_along(const PlacedTriangle& t, Gatherer& gatherer, const glm::dvec3& normal,
+                                           Patch& on_triangle, Patch& on_body) const {
+    triangle_patch(t, normal, on_triangle);
+    on_body.count = 0;
+    on_body.self = {FeatureKind::vertex, 0};
+    if (body_.body.vertex_count() == 1) return;  // a ball has no patch
+    Clipped clipped;
+    if (box_) {
+        const int face = face_along(body_.body, Pair::local(body_.pose.rotation, -normal));
+        BoxFace(body_, face, box_->to_local(), gathering_.origin).clip(on_triangle, -normal, clipped);
+        gatherer.add(clipped, false);
+        on_body.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
+    } else {
+        patch_along(body_, -normal, gathering_.origin, on_body);
+        (void)gather_patches(on_triangle, on_body, normal, clipped, gatherer);
+    }
+}
+
 void SurfaceContacts::gather(const PlacedTriangle& t, const Body* triangle, Touch& touch, Contact& contact) const {
     contact.normal = touch.normal;
     Gatherer gatherer(gathering_, touch, contact.points);
     Patch on_triangle, on_body;
-    triangle_patch(t, touch.normal, on_triangle);
-    if (body_.body.vertex_count() == 1) {  // a ball has no patch
-        on_body.count = 0;
-    } else {
-        patch_along(body_, -touch.normal, gathering_.origin, on_body);
-        Clipped clipped;
-        (void)gather_patches(on_triangle, on_body, touch.normal, clipped, gatherer);
-    }
+    gather_patches_along(t, gatherer, touch.normal, on_triangle, on_body);
     if (!gatherer.lacks_deepest(1e-9 * size_)) return;
     if (!touch.known && triangle != nullptr) name_features(*triangle, body_.body, on_triangle, on_body, touch);
     gatherer.add_deepest();
@@ -126,12 +137,9 @@ void SurfaceContacts::gather_along_face(const PlacedTriangle& t, bool front, Con
     touch.normal = front ? t.normal : -t.normal;
     touch.depth = HUGE_VAL;
     contact.normal = touch.normal;
-    Patch on_triangle, on_body;
-    triangle_patch(t, touch.normal, on_triangle);
-    patch_along(body_, -touch.normal, gathering_.origin, on_body);
     Gatherer gatherer(gathering_, touch, contact.points);
-    Clipped clipped;
-    (void)gather_patches(on_triangle, on_body, touch.normal, clipped, gatherer);
+    Patch on_triangle, on_body;
+    gather_patches_along(t, gatherer, touch.normal, on_triangle, on_body);
 }
 
 }  // namespace crofton::convex

@@ -27,6 +27,8 @@ class SurfaceContacts {
     enum class Found : std::uint8_t { nothing, touch, points };
     [[nodiscard]] Found find(const PlacedTriangle& t, const Body& triangle, Touch& touch, Contact& contact) const;
     [[nodiscard]] Found find_on_half_space(const Body& triangle, Contact& contact) const;
+    void gather_patches_along(const PlacedTriangle& t, Gatherer& gatherer, const glm::dvec3& normal, Patch& on_triangle,
+                              Patch& on_body) const;
     void gather(const PlacedTriangle& t, const Body* triangle, Touch& touch, Contact& contact) const;
     void gather_along_face(const PlacedTriangle& t, bool front, Contact& contact) const;
 

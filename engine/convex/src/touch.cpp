@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 #include <limits>
 
 #include "core_query.hpp"
@@ -110,7 +111,14 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
     if (!valid || (incident.body.kind() != Kind::box && incident.body.kind() != Kind::hull)) return Warm::unknown;
     if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
     Patch face, other;
-    patch_of_face(reference, cache.face, a.pose.translation, face);
+    const bool on_box = body.kind() == Kind::box;
+    if (on_box) {
+        const glm::dvec3& axis = reference.pose.rotation[cache.face / 2];
+        face.normal = (cache.face & 1) != 0 ? axis : -axis;
+        face.self = {FeatureKind::face, cache.face};
+    } else {
+        patch_of_face(reference, cache.face, a.pose.translation, face);
+    }
     if (face.normal == glm::dvec3(0.0)) return Warm::unknown;  // a triangle without area
     const glm::dvec3 out = face.normal / glm::length(face.normal);
     touch.normal = on_a ? out : -out;
@@ -121,12 +129,20 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
     // Contacts nearer than rounding tells are decided exactly by the other way.
     if (std::abs(depth) <= 4.0 * pair.error) return Warm::unknown;
     patch_along(incident, -out, a.pose.translation, other);
-    Prism sides;
-    find_sides(face, out, sides);
-    clip(face, sides, other, out, clipped);
     // The deepest corner itself above the face, else the common part of the two faces.
     const glm::dvec3 x = on_a ? deepest.on_b : deepest.on_a;
-    double inner = distance_within(sides, x), drop = 0.0;
+    double inner = 0.0, drop = 0.0;
+    if (on_box) {
+        const glm::dmat3 to_local = glm::inverse(reference.pose.rotation);
+        const BoxFace box(reference, cache.face, to_local, a.pose.translation);
+        box.clip(other, out, clipped);
+        inner = box.distance_within(x);
+    } else {
+        Prism sides;
+        find_sides(face, out, sides);
+        clip(face, sides, other, out, clipped);
+        inner = distance_within(sides, x);
+    }
     touch.known = true;
     touch.feature_a = on_a ? face.self : Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.a)};
     touch.feature_b = on_a ? Feature{FeatureKind::vertex, static_cast<std::uint16_t>(deepest.b)} : face.self;

@@ -30,10 +30,12 @@ class BoxTouch {
     // normal is not used.
     [[nodiscard]] Warm ask(const PlacedTriangle& triangle, Touch& touch) const;
 
+    // The box's inverse rotation.
+    [[nodiscard]] const glm::dmat3& to_local() const { return to_local_; }
+
   private:
     struct Axis;
     struct Local;
-    [[nodiscard]] bool is_sliver(const Local& t) const;
     void try_faces(const Local& t, Axis& least) const;
     [[nodiscard]] bool try_edges(const Local& t, Axis& least) const;
     [[nodiscard]] bool set_points(const Local& t, const Axis& axis, const PlacedTriangle& triangle, Touch& touch) const;
