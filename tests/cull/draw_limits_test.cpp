@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <crofton/boxtree/box_tree.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <glm/common.hpp>
 #include <oracle/aged_tree.hpp>
 #include <oracle/random_boxes.hpp>
+#include <type_traits>
 #include <vector>
 
 using namespace crofton;
@@ -199,6 +202,86 @@ TEST_SUITE("cull/draw_limits") {
             }
         }
         CHECK(some > 1000);
+    }
+
+    TEST_CASE("many views in one pass keep what each keeps alone, of what rests and of what moves") {
+        std::size_t some = 0;
+        for (std::uint64_t seed = 0; seed < 24; ++seed) {
+            const LimitedCrowd of(seed, seed % 2 ? 300 : 3000, seed % 4 == 3 ? 1e6 : 0.0);
+            std::vector<cull::ItemId> moving;
+            std::vector<Obb> moving_boxes;
+            for (cull::ItemId i = 0; i < of.crowd.boxes.size(); i += 3) {
+                moving.push_back(i);
+                moving_boxes.push_back(of.crowd.boxes[i]);
+            }
+            const boxtree::BoxTree tree = *boxtree::BoxTree::build(of.crowd.boxes, of.crowd.layers),
+                                   rest =
+                                       *boxtree::BoxTree::build(of.crowd.boxes, of.crowd.layers, {.detached = moving});
+            cull::MovingBoxes list;
+            REQUIRE(list.update(rest, moving, moving_boxes).has_value());
+            std::vector<cull::View> views{of.view, of.view, of.view};
+            views[1].layer_mask = 5u;
+            views[2].frustum.plane_count = 4;  // without near and far
+            cull::VisibleSet one;
+            cull::ManyVisible many[2];
+            cull::find_visible(tree, views, many[0], cull::CullMode::exact, &of.limits);
+            cull::find_visible(rest, list, views, many[1], cull::CullMode::exact, &of.limits);
+            for (std::size_t v = 0; v < views.size(); ++v) {
+                cull::find_visible(tree, views[v], one, {.limits = &of.limits});
+                some += one.size();
+                for (const cull::ManyVisible& all : many) {
+                    std::vector<cull::ItemId> ids;
+                    for (std::size_t i = 0; i < all.size(); ++i) {
+                        REQUIRE(all.view_mask(i) != 0);
+                        if (all.view_mask(i) >> v & 1) ids.push_back(all.ids()[i]);
+                    }
+                    std::ranges::sort(ids);
+                    REQUIRE(std::ranges::equal(ids, one.ids()));
+                }
+            }
+        }
+        CHECK(some > 1000);
+    }
+
+    TEST_CASE("prepared lists keep what the definition keeps: boxes, aligned boxes and balls, with any executor") {
+        std::size_t kept = 0, dropped = 0;
+        ThreadPool three(3);
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            const LimitedCrowd of(seed, seed % 2 ? 300 : 9000, seed % 4 == 3 ? 1e6 : 0.0);
+            std::vector<Aabb> aligned;
+            std::vector<Sphere> balls;
+            std::vector<Obb> of_aligned, of_balls;  // of the same centre and size
+            for (const Obb& box : of.crowd.boxes) {
+                const glm::dvec3 corner = glm::round(box.center * 64.0) / 64.0;
+                const glm::vec3 half = glm::ceil(box.half_extents * 64.0f) / 64.0f;
+                aligned.push_back({corner - glm::dvec3(half), corner + glm::dvec3(half)});
+                balls.push_back({box.center, double(box.half_extents.x)});
+                of_aligned.push_back({.center = corner, .half_extents = half});
+                of_balls.push_back({.center = box.center, .half_extents = {box.half_extents.x, 0.0f, 0.0f}});
+            }
+            const auto check = [&](const auto& bounds, const std::vector<Obb>& alike) {
+                using Bound = typename std::decay_t<decltype(bounds)>::value_type;
+                cull::BoundSet<Bound> set;
+                set.assign(bounds);
+                cull::VerdictBits all, few, same;
+                cull::find_visible(set, bounds, of.view, all);
+                cull::find_visible(set, bounds, of.view, of.limits, few);
+                cull::find_visible(set, bounds, of.view, of.limits, same, cull::CullMode::exact, three);
+                CHECK(std::ranges::equal(few.visible, same.visible));
+                CHECK(std::ranges::equal(few.inside, same.inside));
+                for (std::size_t w = 0; w < few.inside.size(); ++w) CHECK((few.inside[w] & ~few.visible[w]) == 0);
+                for (std::uint32_t i = 0; i < bounds.size(); ++i) {
+                    const bool keeps = oracle_keeps(of.limits, alike[i], i, of.view.layer_mask);
+                    if (all.verdict(i) != cull::Verdict::outside) (keeps ? kept : dropped) += 1;
+                    REQUIRE(few.verdict(i) == (keeps ? all.verdict(i) : cull::Verdict::outside));
+                }
+            };
+            check(of.crowd.boxes, of.crowd.boxes);
+            check(aligned, of_aligned);
+            check(balls, of_balls);
+        }
+        CHECK(kept > 1000);
+        CHECK(dropped > 1000);
     }
 
     TEST_CASE("a view that is not finite keeps to the limits, too") {

@@ -34,6 +34,24 @@ bool exceeds(const glm::dvec3& from, const glm::dvec3& to, double limit, double 
 
 constexpr glm::dvec3 kOne{1.0, 0.0, 0.0};
 
+// The ball around `center` whose radius is the length of `half`.
+bool is_ball_within(const DrawLimits& limits, const glm::dvec3& center, const glm::dvec3& half, boxtree::ItemId item,
+                    double layer_limit) {
+    if (!is_usable(Sphere{limits.eye, 0.0})) return true;
+    const double factor = factor_of(limits, item);
+    const auto is_beyond = [&](double limit, const glm::dvec3& sizes) {
+        return counts(limit) && exceeds(limits.eye, center, std::max(0.0, limit), factor, sizes);
+    };
+    // r < least as least > factor · r: the same test with the sides exchanged.
+    if (counts(limits.least_radius) && limits.least_radius > 0.0 &&
+        exceeds(glm::dvec3(0.0), glm::dvec3(limits.least_radius, 0.0, 0.0), 1.0, factor, half))
+        return false;
+    if (is_beyond(limits.radii, half)) return false;
+    if (item < limits.item_distances.size() && is_beyond(static_cast<double>(limits.item_distances[item]), kOne))
+        return false;
+    return !is_beyond(layer_limit, kOne);
+}
+
 // Squares of floats beyond these say little.
 bool is_moderate_limit(double value) {
     return value == 0.0 || (value >= 1e-18 && value <= 1e18);
@@ -94,22 +112,24 @@ double least_limit_in_layers(const DrawLimits& limits, std::uint32_t common_laye
 bool is_worth_drawing(const DrawLimits& limits, const Obb& box, boxtree::ItemId item, std::uint32_t common_layers) {
     return is_within_limits(limits, box, item, limit_in_layers(limits, common_layers));
 }
+bool is_worth_drawing(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item, std::uint32_t common_layers) {
+    return is_within_limits(limits, box, item, limit_in_layers(limits, common_layers));
+}
+bool is_worth_drawing(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item,
+                      std::uint32_t common_layers) {
+    return is_within_limits(limits, sphere, item, limit_in_layers(limits, common_layers));
+}
 
 bool is_within_limits(const DrawLimits& limits, const Obb& box, boxtree::ItemId item, double layer_limit) {
-    if (!is_usable(box) || !is_usable(Sphere{limits.eye, 0.0})) return true;
-    const double factor = factor_of(limits, item);
-    const glm::dvec3 half(box.half_extents);
-    const auto is_beyond = [&](double limit, const glm::dvec3& sizes) {
-        return counts(limit) && exceeds(limits.eye, box.center, std::max(0.0, limit), factor, sizes);
-    };
-    // r < least as least > factor · r: the same test with the sides exchanged.
-    if (counts(limits.least_radius) && limits.least_radius > 0.0 &&
-        exceeds(glm::dvec3(0.0), glm::dvec3(limits.least_radius, 0.0, 0.0), 1.0, factor, half))
-        return false;
-    if (is_beyond(limits.radii, half)) return false;
-    if (item < limits.item_distances.size() && is_beyond(static_cast<double>(limits.item_distances[item]), kOne))
-        return false;
-    return !is_beyond(layer_limit, kOne);
+    return !is_usable(box) || is_ball_within(limits, box.center, glm::dvec3(box.half_extents), item, layer_limit);
+}
+bool is_within_limits(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item, double layer_limit) {
+    const glm::dvec3 center = 0.5 * (box.min + box.max), half = 0.5 * (box.max - box.min);
+    return !is_usable(box) || is_ball_within(limits, center, half, item, layer_limit);
+}
+bool is_within_limits(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item, double layer_limit) {
+    const glm::dvec3 size(sphere.radius, 0.0, 0.0);
+    return !is_usable(sphere) || is_ball_within(limits, sphere.center, size, item, layer_limit);
 }
 
 Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double pixels) {

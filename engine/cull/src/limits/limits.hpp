@@ -43,6 +43,10 @@ class LayerLimit {
 
 // is_worth_drawing, where the layers' limit is known.
 [[nodiscard]] bool is_within_limits(const DrawLimits& limits, const Obb& box, boxtree::ItemId item, double layer_limit);
+[[nodiscard]] bool is_within_limits(const DrawLimits& limits, const Aabb& box, boxtree::ItemId item,
+                                    double layer_limit);
+[[nodiscard]] bool is_within_limits(const DrawLimits& limits, const Sphere& sphere, boxtree::ItemId item,
+                                    double layer_limit);
 
 // What limits are multiplied by for this item.
 [[nodiscard]] inline double factor_of(const DrawLimits& limits, boxtree::ItemId item) {

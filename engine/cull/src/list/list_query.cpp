@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Queries of lists: chunks through the kernels, and what those leave undecided.
 #include <algorithm>
+#include <bit>
 #include <crofton/core/error.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <mutex>
 
 #include "exact/box_constraints.hpp"
 #include "id_bits_kernel.hpp"
+#include "limits/limits.hpp"
 #include "list/list_kernel.hpp"
 #include "list/list_views_kernel.hpp"
 #include "tree/query.hpp"
@@ -181,6 +183,25 @@ class ListViews {
 }  // namespace
 
 template <class Bound>
+void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
+                  const DrawLimits& limits, VerdictBits& verdicts, CullMode mode, Executor& executor) {
+    find_visible(set, bounds, view, verdicts, mode, executor);
+    const double layer_limit = limit_in_layers(limits, view.layer_mask);
+    executor.parallel_for(verdicts.visible.size(), 64, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t w = begin; w < end; ++w) {
+            std::uint64_t kept = verdicts.visible[w];
+            for (std::uint64_t left = kept; left != 0; left &= left - 1) {
+                const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(left));
+                if (!is_within_limits(limits, bounds[i], static_cast<boxtree::ItemId>(i), layer_limit))
+                    kept &= ~(left & (~left + 1));
+            }
+            verdicts.visible[w] = kept;
+            verdicts.inside[w] &= kept;
+        }
+    });
+}
+
+template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds,
                   std::span<const std::uint32_t> layer_masks, std::span<const View> views,
                   std::span<std::uint32_t> view_masks, CullMode mode, Executor& executor,
@@ -210,6 +231,8 @@ std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids
 #define CROFTON_CULL_LIST_QUERIES(Bound)                                                                          \
     template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&, \
                                VerdictBits&, CullMode, Executor&);                                                \
+    template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>, const View&, \
+                               const DrawLimits&, VerdictBits&, CullMode, Executor&);                             \
     template void find_visible(const BoundSet<Bound>&, std::type_identity_t<std::span<const Bound>>,              \
                                std::span<const std::uint32_t>, std::span<const View>, std::span<std::uint32_t>,   \
                                CullMode, Executor&, std::span<Statistics>);

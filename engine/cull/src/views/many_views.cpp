@@ -16,11 +16,12 @@ namespace crofton::cull {
 
 class ManyViewsQuery {
   public:
-    ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode)
-        : tree_(tree.structure()), views_(views), mode_(mode) {}
+    ManyViewsQuery(const boxtree::BoxTree& tree, std::span<const View> views, CullMode mode, const DrawLimits* limits)
+        : tree_(tree.structure()), views_(views), mode_(mode), limits_(limits) {}
 
     void run(ManyVisible& visible, const MovingBoxes* moving = nullptr) {
         find_resting(visible, moving ? moving->size() : 0);
+        if (limits_) drop_beyond_limits(visible);
         if (moving) add_moving(*moving, visible);
     }
 
@@ -85,8 +86,33 @@ class ManyViewsQuery {
         for (std::size_t k = 0; k < masks.size(); ++k) {
             if (masks[k] == 0) continue;
             const ItemId item = moving.items()[k];
-            append(visible, item, masks[k] & views_with(tree_.items().layer_masks()[item]));
+            const std::uint32_t mask = masks[k] & views_with(tree_.items().layer_masks()[item]);
+            append(visible, item, within_limits(mask, item, moving.boxes()[k]));
         }
+    }
+
+    void drop_beyond_limits(ManyVisible& visible) const {
+        const std::size_t size = visible.size_;
+        visible.size_ = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const ItemId item = visible.ids_[i];
+            append(visible, item, within_limits(visible.view_mask(i), item, tree_.items().boxes()[item]));
+        }
+    }
+
+    // Which of the views in `mask` keep the item. Those that share the same of its layers keep it together.
+    [[nodiscard]] std::uint32_t within_limits(std::uint32_t mask, ItemId item, const Obb& box) const {
+        if (!limits_) return mask;
+        std::uint32_t kept = 0, common = 0;
+        bool is_kept = false;
+        for (std::uint32_t left = mask; left != 0; left &= left - 1) {
+            const auto v = static_cast<std::size_t>(std::countr_zero(left));
+            const std::uint32_t layers = tree_.items().layer_masks()[item] & views_[v].layer_mask;
+            if (left == mask || layers != common) is_kept = is_worth_drawing(*limits_, box, item, layers);
+            common = layers;
+            if (is_kept) kept |= 1u << v;
+        }
+        return kept;
     }
 
     [[nodiscard]] std::uint32_t views_with(std::uint32_t layers) const {
@@ -126,17 +152,19 @@ class ManyViewsQuery {
     const boxtree::Structure& tree_;
     std::span<const View> views_;
     CullMode mode_;
+    const DrawLimits* limits_;
 };
 
-void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, CullMode mode) {
+void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible, CullMode mode,
+                  const DrawLimits* limits) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
-    ManyViewsQuery(tree, views, mode).run(visible);
+    ManyViewsQuery(tree, views, mode, limits).run(visible);
 }
 
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                  ManyVisible& visible, CullMode mode) {
+                  ManyVisible& visible, CullMode mode, const DrawLimits* limits) {
     CROFTON_ASSERT(views.size() <= kMaxViews, "at most 32 views fit one pass");
-    ManyViewsQuery(resting, views, mode).run(visible, &moving);
+    ManyViewsQuery(resting, views, mode, limits).run(visible, &moving);
 }
 
 }  // namespace crofton::cull

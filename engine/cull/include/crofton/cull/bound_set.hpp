@@ -92,6 +92,13 @@ template <class Bound>
 void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
                   VerdictBits& verdicts, CullMode mode = CullMode::exact, Executor& executor = serial_executor());
 
+// As above, without what is not worth drawing: bounds[i] is item i of `limits`, in all layers of the view. Statistics
+// count what the view sees.
+template <class Bound>
+void find_visible(const BoundSet<Bound>& set, std::type_identity_t<std::span<const Bound>> bounds, const View& view,
+                  const DrawLimits& limits, VerdictBits& verdicts, CullMode mode = CullMode::exact,
+                  Executor& executor = serial_executor());
+
 // Up to 32 views in one pass: bit v of view_masks[i] says that views[v] sees bound i. Without layer masks everything is
 // in all layers; layers are looked at last, so that `statistics`, one per view or none, count all bounds. Requires one
 // view mask, and one layer mask or none, per bound. Allocates nothing.
@@ -158,6 +165,6 @@ void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, co
 
 // Up to 32 views in one pass; the items that move come last.
 void find_visible(const boxtree::BoxTree& resting, const MovingBoxes& moving, std::span<const View> views,
-                  ManyVisible& visible, CullMode mode = CullMode::exact);
+                  ManyVisible& visible, CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
 
 }  // namespace crofton::cull

@@ -126,10 +126,11 @@ class ManyVisible {
     std::size_t size_ = 0;
 };
 
-// For each view the items that find_visible() finds for it alone. Requires at most 32 views. Allocates nothing once
-// `visible` has been used for as many views of a tree of this size.
+// For each view the items that find_visible() finds for it alone, within `limits` if there are any: one eye for all
+// views. Requires at most 32 views. Allocates nothing once `visible` has been used for as many views of a tree of this
+// size.
 void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, ManyVisible& visible,
-                  CullMode mode = CullMode::exact);
+                  CullMode mode = CullMode::exact, const DrawLimits* limits = nullptr);
 
 // Visible items as a bit set, or as runs that one draw call takes.
 
