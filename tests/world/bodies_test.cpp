@@ -111,6 +111,37 @@ TEST_SUITE("world/bodies") {
         CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
     }
 
+    TEST_CASE("pairs that rest cost nothing: only those of what moves are computed") {
+        World world;
+        const convex::Body crate = convex::Body::box({0.5f, 0.5f, 0.5f}).value();
+        const auto place = [](int i) {
+            return Obb{{3.0 * (i / 2), 0.99 * (i % 2), 0}, glm::mat3(1.0f), glm::vec3(0.55f)};
+        };
+        std::vector<ObjectHandle> objects;
+        for (int i = 0; i < 2000; ++i) {
+            objects.push_back(world.add({.bound = place(i)}).value());
+            REQUIRE(world.set_body(objects.back(), &crate).has_value());
+        }
+        REQUIRE(world.update().has_value());
+        CHECK(world.body_contacts().size() == 1000);
+        CHECK(world.statistics().body_pairs_computed == 1000);
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().body_pairs_computed == 0);
+        for (int frame = 1; frame < 8; ++frame) {
+            for (const std::size_t i : {std::size_t{7}, std::size_t{801}}) {
+                Obb moved = place(static_cast<int>(i));
+                moved.center.x += 0.01 * frame;
+                REQUIRE(world.set_bound(objects[i], moved).has_value());
+            }
+            REQUIRE(world.update().has_value());
+            CHECK(world.statistics().body_pairs_computed == 2);
+            CHECK(world.body_contacts().size() == 1000);
+        }
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().body_pairs_computed == 0);
+        CHECK(world.body_contacts().size() == 1000);
+    }
+
     TEST_CASE("contacts, overlaps and casts are those of all objects one by one, while they move, come and go") {
         RandomBodies random(1);
         World world;

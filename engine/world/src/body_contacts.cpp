@@ -54,6 +54,7 @@ void BodyContacts::note_moved(const SpatialIndex& index, bool moved_only) {
 
 void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
                           const scene::Scene& scene, double margin, bool moved_only, Executor& executor) {
+    computed_ = 0;
     if (count_ == 0 && states_.empty()) return contacts_.clear();
     note_moved(index, moved_only);
     list(pairs);
@@ -76,6 +77,7 @@ void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& 
             if (!all_moved_ && before != nullptr && moved_[a] == 0 && moved_[b] == 0) {
                 for (convex::TrackedPoint& point : worker.pair_points) point.began = false;
             } else {
+                touch.computed = true;
                 const auto pose_a = pose_of(table.objects[a], index.box(a), scene),
                            pose_b = pose_of(table.objects[b], index.box(b), scene);
                 if (!pose_a || !pose_b) continue;
@@ -108,6 +110,7 @@ void BodyContacts::gather(std::span<const ObjectPair> pairs) {
             if (states_[old].point_count > 0) add(states_[old].pair, ContactPhase::ended, 0, 0);
     };
     for (const Touch& touch : touches_) {
+        computed_ += touch.computed ? 1 : 0;
         const ObjectPair& pair = pairs[touch.pair];
         while (old < states_.size() && (is_before(states_[old].pair, pair) ||
                                         (touch.before == kNoIndex && !is_before(pair, states_[old].pair))))
@@ -129,6 +132,7 @@ void BodyContacts::gather(std::span<const ObjectPair> pairs) {
 }
 
 void BodyContacts::stay() {
+    computed_ = 0;
     std::size_t kept = 0;
     for (BodyContact& contact : contacts_) {
         if (contact.phase == ContactPhase::ended) continue;

@@ -21,6 +21,7 @@ class BodyContacts {
                 const scene::Scene& scene, double margin, bool moved_only, Executor& executor);
     void stay();  // nothing has changed
     [[nodiscard]] std::span<const BodyContact> contacts() const { return contacts_; }
+    [[nodiscard]] std::size_t computed() const { return computed_; }  // pairs, in the last update or stay
 
   private:
     // A pair that touches, with what it remembers.
@@ -34,6 +35,7 @@ class BodyContacts {
         std::uint32_t pair = 0;           // of the pairs given
         std::uint32_t before = kNoIndex;  // its state in the update before
         std::uint32_t worker = 0, first_point = 0, point_count = 0;
+        bool computed = false;
         convex::PairCache cache;
     };
     struct Worker {
@@ -47,7 +49,8 @@ class BodyContacts {
 
     Vector<std::optional<convex::Body>> bodies_;  // by object
     std::size_t count_ = 0;                       // bodies
-    Vector<std::uint8_t> moved_;                  // by object, in this update
+    std::size_t computed_ = 0;
+    Vector<std::uint8_t> moved_;  // by object, in this update
     bool all_moved_ = true;
     Vector<Touch> touches_;
     Vector<Worker> workers_;

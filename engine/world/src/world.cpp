@@ -175,6 +175,7 @@ Result<void> World::update(Executor& executor) {
     s.statistics.tree_built = changes.tree_built;
     s.statistics.box_pairs_tested = changed ? s.finder.broadphase().bound_pairs : 0;
     if (changed) s.statistics.box_tests = s.finder.broadphase().boxes;
+    s.statistics.body_pairs_computed = s.options.pairs && s.options.contacts ? s.body_contacts.computed() : 0;
     s.statistics.contact_pairs_tested = changed ? s.finder.pairs().size() : 0;
     return found;
 }

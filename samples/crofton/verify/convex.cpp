@@ -93,15 +93,18 @@ VerifyRow casts_sampled(const VerifyOptions& options) {
     std::uint64_t wrong = 0, hits = 0, by_axes = 0;
     for (std::uint64_t i = 0; i < casts; ++i) {
         const ConvexPairs::Pair pair = start_of(random);
-        const convex::Motion a{random.direction(), random.number(0.0, 9.0) * random.direction(), glm::dvec3(0.0)};
-        const convex::Motion b{-4.0 * pair.normal, random.number(0.0, 9.0) * random.direction(), glm::dvec3(0.0)};
+        const glm::dvec3 way = random.direction(), axis_a = random.direction(), axis_b = random.direction();
+        const double rate_a = random.number(0.0, 9.0), rate_b = random.number(0.0, 9.0);
+        const convex::Motion a{way, rate_a * axis_a, glm::dvec3(0.0)};
+        const convex::Motion b{-4.0 * pair.normal, rate_b * axis_b, glm::dvec3(0.0)};
         const auto impact = convex::cast(pair.placed_a(), a, pair.placed_b(), b);
         if (!impact || impact->result == convex::CastResult::unresolved) continue;
         const bool hit = impact->result == convex::CastResult::hit;
         hits += hit;
         const double end = hit ? impact->time : 1.0;
         bool met_before = false;
-        for (int k = 0; k < kSamples && !met_before; ++k) {
+        // Bodies that overlap from the start have no time before.
+        for (int k = 0; k < kSamples && end > 0.0 && !met_before; ++k) {
             const double time = end * (k + 0.5) / kSamples;
             const RigidTransform at_a = convex::moved(pair.pose_a, a, time), at_b = convex::moved(pair.pose_b, b, time);
             const convex::Distance d = convex::distance({pair.a, at_a}, {pair.b, at_b});

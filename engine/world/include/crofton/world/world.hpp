@@ -52,8 +52,9 @@ struct WorldStatistics {
     std::uint32_t boxes_changed = 0;                   // in this update
     bool tree_built = false;                           // all at once: much has come to rest, or come and gone
     std::uint64_t box_pairs_tested = 0, contact_pairs_tested = 0;
-    collide::BatchStatistics box_tests;  // how the pairs of boxes were told apart
-    double contacts_us = 0.0;            // microseconds of this update that pairs and contacts took
+    std::uint64_t body_pairs_computed = 0;  // whose contacts of bodies were found anew; what rests has none
+    collide::BatchStatistics box_tests;     // how the pairs of boxes were told apart
+    double contacts_us = 0.0;               // microseconds of this update that pairs and contacts took
     std::uint32_t nodes_updated = 0;
     std::uint32_t out_of_range =
         0;  // objects that the product of transforms has put beyond it: hidden until they return
