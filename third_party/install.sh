@@ -23,7 +23,7 @@ packages=(
 )
 test_packages=(chromium)
 check_packages=(clang libclang-rt-dev clang-format clang-tidy)
-engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)
+engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libbullet-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 

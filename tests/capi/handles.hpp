@@ -25,6 +25,8 @@ using Triangulator = Owned<crofton_triangulator, crofton_triangulator_destroy>;
 using WorldHandle = Owned<crofton_world, crofton_world_destroy>;
 using VisibleObjectsHandle = Owned<crofton_visible_objects, crofton_visible_objects_destroy>;
 using VisibleInViewsHandle = Owned<crofton_visible_in_views, crofton_visible_in_views_destroy>;
+using BodyHandle = Owned<crofton_body, crofton_body_destroy>;
+using BodyContactsHandle = Owned<crofton_body_contacts, crofton_body_contacts_destroy>;
 using Found = Owned<crofton_found, crofton_found_destroy>;
 
 template <class OwnedHandle, class... Arguments>

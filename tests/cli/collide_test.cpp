@@ -166,4 +166,39 @@ TEST_SUITE("cli/collide") {
         CHECK(answer(cube + " " + small + " --pose 1,0,0,1,0,0,0 --mode contain")["contained"] == "none");
         CHECK(answer(cube + " " + small)["hit"] == true);  // in every mode
     }
+
+    TEST_CASE("hulls: distance, depth with bounds, contact points, and a budget of vertices") {
+        const std::string pair = cube_file("hull_a.obj", 1.0) + " " + cube_file("hull_b.obj", 1.0) + " --hulls";
+        const json apart = answer(pair + " --pose 5,0,0,1,0,0,0 --mode distance");
+        CHECK(apart["hit"] == false);
+        CHECK(apart["distance"].get<double>() == doctest::Approx(3.0));
+        CHECK(apart["bounds"][0].get<double>() <= 3.0);
+        CHECK(apart["bounds"][1].get<double>() >= 3.0);
+        const json deep = answer(pair + " --pose 1.75,0,0,1,0,0,0 --mode all");
+        CHECK(deep["hit"] == true);
+        CHECK(deep["depth"].get<double>() == doctest::Approx(0.25));
+        CHECK(deep["normal"][0].get<double>() == doctest::Approx(1.0));
+        CHECK(deep["contacts"].size() == 4);
+        CHECK(deep["hulls"][0]["vertices"] == 8);
+        CHECK(deep["hulls"][1]["volume"].get<double>() == doctest::Approx(8.0));
+        CHECK(answer(pair + " --max-vertices 4 --pose 9,0,0,1,0,0,0")["hulls"][0]["excess"].get<double>() > 0.0);
+        CHECK(run_cli("collide " + pair + " --mode contain").status == 2);
+    }
+
+    TEST_CASE("casts: of meshes and of hulls, with a hit, a proven miss, and what is refused") {
+        const std::string pair = cube_file("cast_a.obj", 1.0) + " " + cube_file("cast_b.obj", 1.0);
+        for (const std::string& bodies : {pair, pair + " --hulls"}) {
+            const std::string from_five = bodies + " --pose 5,0,0,1,0,0,0 --mode cast --velocity ";
+            const json hit = answer(from_five + "-10,0,0");
+            CHECK(hit["result"] == "hit");
+            CHECK(hit["time"].get<double>() == doctest::Approx(0.3).epsilon(1e-5));
+            CHECK(std::abs(hit["normal"][0].get<double>()) == doctest::Approx(1.0));
+            CHECK(answer(from_five + "-10,0,0 --duration 0.25")["result"] == "miss");
+            CHECK(answer(from_five + "10,0,0 --spin 0,30,0")["result"] == "miss");
+        }
+        CHECK(run_cli("collide " + pair + " --mode cast --velocity 1,2").status == 2);
+        CHECK(run_cli("collide " + pair + " --mode cast --velocity 1,nan,2").status == 2);
+        CHECK(run_cli("collide " + pair + " --mode cast --spin 0,1e9,0").status == 2);
+        CHECK(run_cli("collide " + pair + " --mode cast --duration -1").status == 2);
+    }
 }

@@ -62,6 +62,17 @@ TEST_SUITE("convex/cast") {
         CHECK(turn.time == doctest::Approx(std::asin(1.0 / std::hypot(2.0, 0.01)) - std::atan(0.005)).epsilon(1e-5));
     }
 
+    TEST_CASE("a hit has a normal, also where the last step ends with a touch") {
+        const Body box = Body::box({0.5f, 0.5f, 0.5f}).value(), small = Body::box({0.25f, 0.25f, 0.25f}).value();
+        for (const double height : {1.49, 2.0, 1.5, 0.3, 7.77}) {
+            const RigidTransform low = at({0, height, 0}), high = at({0, height + 3.51, 0});
+            const Impact fall = cast({small, high}, flying({0, -10, 0}), {box, low}, {}).value();
+            REQUIRE(fall.result == CastResult::hit);
+            CHECK(fall.time == doctest::Approx((3.51 - 0.75) / 10.0).epsilon(1e-5));
+            CHECK(fall.normal.y == doctest::Approx(-1.0));
+        }
+    }
+
     TEST_CASE("no wall is too thin and no bullet too fast or small") {
         const Body wall = Body::triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}).value();
         const Body bullet = Body::box({1e-4f, 1e-4f, 1e-4f}).value(), point = Body::ball(0).value();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "convert.hpp"
 #include "growing.hpp"
@@ -29,6 +30,7 @@ WorldOptions to_world_options(const crofton_world_options& given) {
     if (given.rebuild_budget != 0) options.rebuild_budget = clamp_to_size(given.rebuild_budget);
     if (given.without_rebuild != 0) options.rebuild_budget = 0;
     if (given.updates_to_rest != 0) options.updates_to_rest = given.updates_to_rest;
+    options.contact_margin = given.contact_margin;
     return options;
 }
 
@@ -164,6 +166,8 @@ crofton_status crofton_world_create(const crofton_world_options* options, crofto
     CROFTON_CHECK(check_pointer(world, __func__));
     crofton_world_options given{};
     if (options) CROFTON_CHECK(read_growing(options, __func__, given));
+    if (!(given.contact_margin >= 0.0 && std::isfinite(given.contact_margin)))
+        return report(CROFTON_INVALID_ARGUMENT, __func__, "contact_margin is negative or not finite");
     const detail::Recovery recovery;
     try {
         return create(world, __func__, World(to_world_options(given)), next_serial());

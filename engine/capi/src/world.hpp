@@ -5,13 +5,15 @@
 
 #include <crofton/world/world.hpp>
 
+#include "bodies.hpp"
 #include "call.hpp"
 
 struct crofton_world {
     static constexpr std::uint32_t kKind = 0x43724f08;
     crofton::capi::Header header;
     crofton::World world;
-    std::uint64_t serial;  // unlike that of any other world of the process, and not 0
+    std::uint64_t serial;                                 // unlike that of any other world of the process, and not 0
+    crofton::Vector<crofton::capi::SharedBody> bodies{};  // by object, so that they live as long as they are used
 };
 
 namespace crofton::capi {

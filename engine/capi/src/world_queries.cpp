@@ -8,19 +8,13 @@
 #include <limits>
 
 #include "collider.hpp"
+#include "found.hpp"
 #include "growing.hpp"
 #include "queries.hpp"
 #include "world.hpp"
 
 using namespace crofton;
 using namespace crofton::capi;
-
-struct crofton_found {
-    static constexpr std::uint32_t kKind = 0x43724f0a;
-    Header header;
-    Vector<ObjectRef> objects{};
-    Vector<ObjectHit> hits{};
-};
 
 static_assert(sizeof(crofton_object_ref) == sizeof(ObjectRef) &&
               offsetof(crofton_object_ref, user) == offsetof(ObjectRef, user));

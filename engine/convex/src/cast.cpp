@@ -168,7 +168,11 @@ Impact advance(const Placed& a, const Motion& motion_a, const Placed& b, const M
         const Placed now_a{a.body, pose_a}, now_b{b.body, pose_b};
         const Distance d = rough_distance(now_a, now_b, options.tolerance, *cache);
         impact.distance = d.distance;
-        impact.normal = d.normal;
+        // A step may end where they just touch: the direction is then the one that parted them.
+        if (d.normal != glm::dvec3(0.0) || impact.time == 0.0)
+            impact.normal = d.normal;
+        else if (impact.steps == 1)
+            impact.normal = penetration(now_a, now_b).normal;
         impact.on_a = d.on_a;
         impact.on_b = d.on_b;
         const double error = path_error(now_a, motion_a, impact.time) + path_error(now_b, motion_b, impact.time);

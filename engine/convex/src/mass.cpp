@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/convex/body.hpp>
+#include <glm/matrix.hpp>
 #include <numbers>
+
+#include "mass_integrals.hpp"
+#include "rounded_mass.hpp"
 
 namespace crofton::convex {
 namespace {
@@ -46,6 +50,27 @@ MassProperties of_box(const glm::dvec3& h) {
     return mass;
 }
 
+Result<MassProperties> of_compound(const Compound& compound) {
+    // About the middle, so that a compound far from its frame's origin loses nothing.
+    const glm::dvec3 origin = compound.bounds().center();
+    Moments sum;
+    for (std::size_t i = 0; i < compound.children().size(); ++i) {
+        const CompoundChild& child = compound.children()[i];
+        const Result<MassProperties> mass = mass_properties(child.body);
+        if (!mass) return fail(mass.error().code, i, mass.error().message);
+        const glm::dmat3& turn = child.pose.rotation;
+        const glm::dvec3 at = turn * mass->center + child.pose.translation - origin;
+        // ∫ x xᵀ about the center is half the trace of the inertia, less the inertia.
+        const glm::dmat3& inertia = mass->inertia;
+        const double half_trace = 0.5 * (inertia[0][0] + inertia[1][1] + inertia[2][2]);
+        const glm::dmat3 central = turn * (half_trace * glm::dmat3(1.0) - inertia) * glm::transpose(turn);
+        sum.volume += mass->volume;
+        sum.first += mass->volume * at;
+        sum.second += central + mass->volume * glm::outerProduct(at, at);
+    }
+    return mass_of(sum, origin);
+}
+
 }  // namespace
 
 Result<MassProperties> mass_properties(const Body& body) {
@@ -61,9 +86,14 @@ Result<MassProperties> mass_properties(const Body& body) {
         default:
             break;
     }
-    if (radius > 0.0)
+    if (body.kind() == Kind::compound) return of_compound(*body.compound());
+    if (!body.is_convex())
         return fail(ErrorCode::unsupported, kNoItem,
-                    "mass_properties: no formula for this rounded body; use its core's");
+                    "mass_properties: a surface has no volume; use the hull of its points or a compound of pieces");
+    if (radius > 0.0) {
+        const bool turns = body.kind() == Kind::cylinder || body.kind() == Kind::cone;
+        return turns ? mass_of_rounded_revolution(body) : mass_of_rounded_polytope(body);
+    }
     if (body.kind() == Kind::cylinder) return of_cylinder(half.y, half.x);
     if (body.kind() == Kind::cone) return of_cone(half.y, half.x);
     if (body.kind() == Kind::box) return of_box(half);

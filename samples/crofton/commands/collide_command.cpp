@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "collide_bodies.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "mesh_file.hpp"
@@ -21,7 +22,10 @@ using Clock = std::chrono::steady_clock;
 
 struct CollideRequest {
     ReadOptions read;
-    std::string a, b, pose, mode = "any", json_path;
+    std::string a, b, pose, mode = "any", json_path, velocity, spin;
+    bool hulls = false;
+    std::uint32_t max_vertices = convex::kMaxHullVertices;
+    double duration = 1.0;
 };
 
 double milliseconds_since(Clock::time_point start) {
@@ -157,9 +161,50 @@ Json document_of(const Answer& answer) {
     return document;
 }
 
+// Of hulls, and casts of hulls or meshes.
+int run_bodies(const CollideRequest& request, const RigidTransform& pose) {
+    if (request.mode == "contain") {
+        std::fputs("crofton: --mode contain asks meshes, without --hulls\n", stderr);
+        return kBadInput;
+    }
+    const auto velocity = vector_of("--velocity", request.velocity), spin = vector_of("--spin", request.spin);
+    if (!velocity) return report_error("", velocity.error());
+    if (!spin) return report_error("", spin.error());
+    const auto a = load_body(request.a, request.hulls, static_cast<int>(request.max_vertices), request.read);
+    if (!a) return report_error("", a.error());
+    const auto b = load_body(request.b, request.hulls, static_cast<int>(request.max_vertices), request.read);
+    if (!b) return report_error("", b.error());
+    if (const auto valid = convex::validate_pose(pose); !valid) return report_error("--pose", valid.error());
+    const convex::Body body_a = a->body(), body_b = b->body();
+    const RigidTransform origin;
+    BodyAnswer answer;
+    if (request.mode == "cast") {
+        auto cast =
+            ask_cast({body_a, origin}, {body_b, pose}, {*velocity, *spin, body_b.bounds().center()}, request.duration);
+        if (!cast) return report_error("", cast.error());
+        answer = std::move(*cast);
+    } else {
+        answer = ask_hulls(request.mode, {body_a, origin}, {body_b, pose});
+    }
+    if (request.hulls) {
+        answer.document["hulls"] = Json::array();
+        for (const FileBody* file : {&*a, &*b})
+            answer.document["hulls"].push_back({{"vertices", file->hull->vertices().size()},
+                                                {"faces", file->hull->face_count()},
+                                                {"excess", file->hull->excess()},
+                                                {"volume", file->hull->mass().volume}});
+    }
+    if (request.json_path != "-") std::printf("%s\n", answer.sentence.c_str());
+    if (request.json_path.empty()) return kSuccess;
+    if (const auto written = write_json(request.json_path, answer.document); !written)
+        return report_error("", written.error());
+    return kSuccess;
+}
+
 int run_collide(const CollideRequest& request) {
     const auto pose = pose_of(request.pose);
     if (!pose) return report_error("", pose.error());
+    if (request.hulls || request.mode == "cast") return run_bodies(request, *pose);
     double build = 0.0;
     const auto a = tree_of(request.a, request.read, build);
     if (!a) return report_error("", a.error());
@@ -197,9 +242,19 @@ void add_collide_command(CommandLine& line) {
     command
         .option("--mode", request->mode,
                 "any: whether they meet; all: which triangles, where and how deep; distance: between the surfaces; "
-                "contain: is one inside the other")
-        .one_of({"any", "all", "distance", "contain"})
+                "contain: is one inside the other; cast: when does B, which moves, first touch A")
+        .one_of({"any", "all", "distance", "contain", "cast"})
         .show_default();
+    command.flag("--hulls", request->hulls, "Ask the convex hulls of the vertices instead of the triangles");
+    command
+        .option("--max-vertices", request->max_vertices,
+                "Of a hull: one with more becomes a larger one, whose excess is reported")
+        .whole_between(4, convex::kMaxHullVertices)
+        .show_default();
+    command.option("--velocity", request->velocity, "Of a cast: x,y,z that B moves by in a time of 1");
+    command.option("--spin", request->spin,
+                   "Of a cast: x,y,z, the axis times the radians that B turns by in a time of 1");
+    command.option("--duration", request->duration, "Of a cast: how long B moves").show_default();
     command.option("--json", request->json_path, "Write the answer as JSON to this file; - for standard output")
         .writable_file();
     command.footer(
@@ -215,7 +270,9 @@ void add_collide_command(CommandLine& line) {
         "Examples:\n"
         "  crofton collide bunny.obj cow.obj\n"
         "  crofton collide bunny.obj bunny.obj --pose 0.05,0,0,1,0,0,0 --mode all --json -\n"
-        "  crofton collide a.obj b.obj --pose pose.txt --mode distance");
+        "  crofton collide a.obj b.obj --pose pose.txt --mode distance\n"
+        "  crofton collide bunny.obj cow.obj --hulls --mode all\n"
+        "  crofton collide bunny.obj cow.obj --pose 5,0,0,1,0,0,0 --mode cast --velocity -10,0,0 --spin 0,9,0");
     add_read_options(command, request->read);
     command.action([request] { return run_collide(*request); });
 }

@@ -7,7 +7,8 @@
 
 namespace crofton::cli {
 
-// Boxes that nearly touch, against exact integers: no wrong answer in any class of gap and angle.
+// Boxes that nearly touch, against exact integers: no wrong answer in any class of gap and angle. The
+// same of convex bodies, with their depths and casts.
 [[nodiscard]] std::vector<VerifyRow> verify_collide(const VerifyOptions& options);
 
 }  // namespace crofton::cli

@@ -49,6 +49,7 @@ typedef struct crofton_world_options {
     uint64_t rebuild_budget;      /* items' worth of work on the tree an update; 0: a 128th of the objects and 512 */
     uint32_t without_rebuild;     /* 1: no such work, and no allocation for it */
     uint32_t updates_to_rest;     /* without moving, until an object counts as resting again; 0: 16 */
+    double contact_margin;        /* gaps up to this between bodies are contacts, as far as the objects' boxes meet */
 } crofton_world_options;
 
 /* As of the last update. */
@@ -159,6 +160,11 @@ CROFTON_API crofton_status crofton_world_set_layers(crofton_world* world, crofto
 CROFTON_API crofton_status crofton_world_set_collides_with(crofton_world* world, crofton_object object,
                                                            uint32_t layers);
 CROFTON_API crofton_status crofton_world_set_user(crofton_world* world, crofton_object object, uint64_t user);
+/* Gives an object a body, or with NULL takes it away, from the next update on. Pairs of objects that both have bodies
+ * are in crofton_world_body_contacts instead of crofton_world_contact. The object's box stands for the body in pairs
+ * and queries: what reaches beyond is missed. CROFTON_UNSUPPORTED: a half-space. */
+CROFTON_API crofton_status crofton_world_set_body(crofton_world* world, crofton_object object,
+                                                  const crofton_body* body);
 
 /* Makes the changes take effect; once a frame. `jobs` or NULL. CROFTON_BUDGET_EXCEEDED: more than max_pairs pairs;
  * then there are none, and all else is as it should be. */
@@ -216,6 +222,28 @@ typedef struct crofton_object_contact {
     const crofton_mesh_contact* triangles; /* of two meshes, or a mesh and a box; likewise */
     size_t point_count, triangle_count;
 } crofton_object_contact;
+
+/* Two objects with bodies that touch, or did in the update before. What ended has no points. */
+typedef struct crofton_body_contact {
+    crofton_object_ref first, second; /* ordered as in crofton_object_pair; the first is body a */
+    uint8_t phase;                    /* a crofton_contact_phase */
+    uint8_t unused[7];
+    crofton_tracked_point* points; /* their memory is yours to write; valid until the next update */
+    uint32_t point_count;
+    uint32_t unused_too;
+} crofton_body_contact;
+
+/* What a moving body meets first. */
+typedef struct crofton_body_hit {
+    size_t size;
+    crofton_object object; /* index CROFTON_NONE: nothing, and time is infinite */
+    uint64_t user;
+    double time;
+    double normal[3];  /* unit, from the body to the object; 0 where they overlap from the start */
+    double point[3];   /* on the object */
+    uint32_t triangle; /* of a surface */
+    uint32_t result;   /* a crofton_cast_result; unresolved: up to `time` nothing is met, later is not known */
+} crofton_body_hit;
 
 CROFTON_API crofton_status crofton_world_object_count(const crofton_world* world, size_t* count);
 /* *contains is 1 or 0. */
@@ -311,6 +339,18 @@ CROFTON_API crofton_status crofton_world_contact_count(const crofton_world* worl
 /* Fills a struct whose `size` is set: contact number `contact`, in order of the pairs. */
 CROFTON_API crofton_status crofton_world_contact(const crofton_world* world, size_t contact,
                                                  crofton_object_contact* result);
+
+/* Of objects that both have bodies, in order; valid until the next update. Pairs of which neither has moved are not
+ * computed again. */
+CROFTON_API crofton_status crofton_world_body_contacts(const crofton_world* world,
+                                                       const crofton_body_contact** contacts, size_t* count);
+/* Finds what a body meets, exactly, by index: objects. Those without bodies are their boxes or balls. */
+CROFTON_API crofton_status crofton_world_overlap_body(const crofton_world* world, const crofton_placed* shape,
+                                                      uint32_t layer_mask, crofton_found* found);
+/* Fills a struct whose `size` is set: the first object that a moving body meets. `options` or NULL. */
+CROFTON_API crofton_status crofton_world_cast(const crofton_world* world, const crofton_placed* shape,
+                                              const crofton_motion* motion, const crofton_cast_options* options,
+                                              uint32_t layer_mask, crofton_body_hit* hit);
 
 /* Views of a World that leave out what is hidden: occluders in, what is seen out. docs/occlude.md is the guide. */
 

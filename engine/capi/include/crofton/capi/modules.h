@@ -224,6 +224,211 @@ CROFTON_API crofton_status crofton_colliders_depth(const crofton_collider* a, co
 CROFTON_API crofton_status crofton_colliders_containment(const crofton_collider* a, const crofton_collider* b,
                                                          const crofton_transform* b_to_a, uint32_t* containment);
 
+/* Bodies, convex or made of convex parts: do they meet, how far, how deep, where, and when? docs/convex.md is the
+ * guide. A pose is a rotation and a translation, without reflection. The structs of this part that begin with `size`
+ * may grow: members that an older, smaller one lacks are 0, the default of every member. */
+
+/* A body never changes. What uses it (a World, a compound, a rounded body) keeps what it needs: destroy it at any time.
+ */
+typedef struct crofton_body crofton_body;
+typedef struct crofton_body_contacts crofton_body_contacts; /* where one pair touches, kept from step to step */
+
+typedef enum crofton_body_kind {
+    CROFTON_BODY_BALL = 0,
+    CROFTON_BODY_CAPSULE = 1,
+    CROFTON_BODY_CYLINDER = 2,
+    CROFTON_BODY_CONE = 3,
+    CROFTON_BODY_BOX = 4,
+    CROFTON_BODY_TRIANGLE = 5,
+    CROFTON_BODY_HULL = 6,
+    CROFTON_BODY_HALF_SPACE = 7, /* up to here convex */
+    CROFTON_BODY_MESH = 8,
+    CROFTON_BODY_HEIGHT_FIELD = 9,
+    CROFTON_BODY_COMPOUND = 10
+} crofton_body_kind;
+
+typedef struct crofton_hull_options {
+    size_t size;
+    uint32_t max_vertices; /* 4 to 256; 0: 256. A hull with more is replaced by one that contains it */
+    float face_tolerance;  /* triangles so close to a plane, relative to the hull's size, are one face; 0: 1e-5 */
+} crofton_hull_options;
+
+#define CROFTON_HOLE 255u /* as a cell's material: nothing is there */
+
+/* Corner (i, j) is at (i * spacing[0], heights[j * columns + i], j * spacing[1]); two triangles a cell. */
+typedef struct crofton_height_field {
+    size_t size;
+    uint32_t columns, rows;   /* corners along x and along z, 2 to 32768 */
+    const float* heights;     /* columns * rows */
+    const uint8_t* materials; /* of the cells, row by row: (columns - 1) * (rows - 1); or NULL: all 0 */
+    double spacing[2];        /* 0: 1 */
+} crofton_height_field;
+
+typedef struct crofton_body_info {
+    size_t size;
+    uint32_t kind;                     /* a crofton_body_kind */
+    uint32_t vertex_count, face_count; /* of a hull, else 0 */
+    uint32_t part_count;               /* of a compound, else 1 */
+    double min[3], max[3];             /* in its frame, rounded outward; infinite for half-spaces */
+    double excess;                     /* how far a hull reaches beyond that of its points at most */
+} crofton_body_info;
+
+/* Of a body of density 1, in its frame; the inertia about the center of mass, symmetric. */
+typedef struct crofton_mass_properties {
+    size_t size;
+    double volume, center[3], inertia[9];
+} crofton_mass_properties;
+
+/* A body where it stands. */
+typedef struct crofton_placed {
+    const crofton_body* body;
+    const crofton_transform* pose;
+} crofton_placed;
+
+/* What a pair remembers: all 0 for a new pair. It belongs to one pair in one order. It makes calls faster and changes
+ * no yes or no. */
+typedef struct crofton_pair_cache {
+    uint64_t opaque[16];
+} crofton_pair_cache;
+
+/* A convex part of a body: a child of a compound, a triangle of a mesh or height field. */
+typedef struct crofton_part {
+    uint32_t child, triangle;
+} crofton_part;
+
+typedef struct crofton_body_distance {
+    size_t size;
+    double distance, lower, upper;      /* proven: the true distance lies between the latter two */
+    double on_a[3], on_b[3], normal[3]; /* nearest points; the unit vector from a to b, 0 of bodies that meet */
+    crofton_part part_a, part_b;
+} crofton_body_distance;
+
+/* Moving b by depth * normal ends the overlap. */
+typedef struct crofton_body_penetration {
+    size_t size;
+    double depth, lower, upper; /* as above; all is 0 where the bodies do not meet */
+    double on_a[3], on_b[3], normal[3];
+    crofton_part part_a, part_b;
+    uint32_t overlapping; /* 1 or 0: as crofton_bodies_meet */
+} crofton_body_penetration;
+
+typedef enum crofton_feature_kind {
+    CROFTON_FEATURE_VERTEX = 0,
+    CROFTON_FEATURE_EDGE = 1,
+    CROFTON_FEATURE_FACE = 2
+} crofton_feature_kind;
+
+typedef struct crofton_feature {
+    uint8_t kind; /* a crofton_feature_kind */
+    uint8_t unused;
+    uint16_t index;
+} crofton_feature;
+
+/* A point that a physics step holds on to. Features and parts are its id: it stays the same while the same features
+ * touch. */
+typedef struct crofton_tracked_point {
+    double position[3]; /* midway between the surfaces, in the world */
+    double depth;       /* along the normal; negative: a gap */
+    crofton_feature on_a, on_b;
+    crofton_part part_a, part_b;
+    double normal[3]; /* unit, from a to b */
+    uint8_t began;    /* 1: its id was not there in the step before */
+    uint8_t unused[3];
+    float memory[4]; /* the caller's, as impulses for a warm start: 0 when the point begins, kept while it stays */
+} crofton_tracked_point;
+
+typedef struct crofton_manifold_options {
+    size_t size;
+    double margin;       /* >= 0: points with a gap of up to this are told, too */
+    uint32_t max_points; /* 1 to 8; 0: 4 */
+} crofton_manifold_options;
+
+/* The body's `pivot`, in its frame, moves by velocity * t, and the body turns about it by |spin| * t radians around
+ * `spin` (world axes). */
+typedef struct crofton_motion {
+    double velocity[3], spin[3], pivot[3];
+} crofton_motion;
+
+typedef struct crofton_cast_options {
+    size_t size;
+    double duration;    /* >= 0 */
+    double tolerance;   /* bodies this close have hit; 0: 1e-6 */
+    uint32_t max_steps; /* 0: 500 */
+} crofton_cast_options;
+
+typedef enum crofton_cast_result {
+    CROFTON_CAST_MISS = 0,      /* proven: the bodies do not touch in that time */
+    CROFTON_CAST_HIT = 1,       /* at `time` they are within the tolerance, and at no time before do they touch */
+    CROFTON_CAST_UNRESOLVED = 2 /* before `time` they do not touch; later is not known */
+} crofton_cast_result;
+
+typedef struct crofton_impact {
+    size_t size;
+    double time, distance;
+    double on_a[3], on_b[3], normal[3]; /* unit, from a to b; 0 where they overlap from the start */
+    crofton_part part_a, part_b;
+    uint32_t result; /* a crofton_cast_result */
+    uint32_t steps;
+} crofton_impact;
+
+/* Solids of revolution stand along y, with the origin half way up. Lengths are >= 0 and at most 1e15. */
+CROFTON_API crofton_status crofton_body_ball(float radius, crofton_body** body);
+CROFTON_API crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body);
+CROFTON_API crofton_status crofton_body_cylinder(float half_height, float radius, crofton_body** body);
+CROFTON_API crofton_status crofton_body_cone(float half_height, float radius, crofton_body** body);
+CROFTON_API crofton_status crofton_body_box(const float half_extents[3], crofton_body** body);
+/* Three corners, x y z each, counter-clockwise seen from the front. */
+CROFTON_API crofton_status crofton_body_triangle(const float corners[9], crofton_body** body);
+/* The normal, of any length but 0, points into the solid. */
+CROFTON_API crofton_status crofton_body_half_space(const crofton_plane* plane, crofton_body** body);
+/* The hull of `count` points, x y z each; `options` or NULL. */
+CROFTON_API crofton_status crofton_body_hull(const float* points, size_t count, const crofton_hull_options* options,
+                                             crofton_body** body);
+/* All points within `radius` of a convex body other than a half-space. */
+CROFTON_API crofton_status crofton_body_rounded(const crofton_body* core, float radius, crofton_body** body);
+/* The triangles, as a surface; front_only 1: contacts push to the front, and casts from behind pass. */
+CROFTON_API crofton_status crofton_body_mesh(const crofton_mesh* mesh, uint32_t front_only, crofton_body** body);
+/* `both_sides` 0: contacts push up alone. */
+CROFTON_API crofton_status crofton_body_height_field(const crofton_height_field* field, uint32_t both_sides,
+                                                     crofton_body** body);
+/* children[i] stands at poses[i] in the compound's frame. */
+CROFTON_API crofton_status crofton_body_compound(const crofton_body* const* children, const crofton_transform* poses,
+                                                 size_t count, crofton_body** body);
+CROFTON_API crofton_status crofton_body_destroy(crofton_body* body);
+
+/* Both fill a struct whose `size` is set. Surfaces have no mass: CROFTON_UNSUPPORTED. */
+CROFTON_API crofton_status crofton_body_get_info(const crofton_body* body, crofton_body_info* info);
+CROFTON_API crofton_status crofton_body_get_mass(const crofton_body* body, crofton_mass_properties* mass);
+/* For drawing: a hull's vertices, x y z each, and its triangles; valid while the body lives. */
+CROFTON_API crofton_status crofton_body_hull_surface(const crofton_body* body, const float** vertices,
+                                                     size_t* vertex_count, const uint16_t** indices,
+                                                     size_t* index_count);
+
+/* *meet is 1 where the bodies share a point, else 0. `cache` or NULL. */
+CROFTON_API crofton_status crofton_bodies_meet(const crofton_placed* a, const crofton_placed* b,
+                                               crofton_pair_cache* cache, int* meet);
+/* These fill a struct whose `size` is set. `cache` or NULL. */
+CROFTON_API crofton_status crofton_bodies_distance(const crofton_placed* a, const crofton_placed* b,
+                                                   crofton_pair_cache* cache, crofton_body_distance* distance);
+CROFTON_API crofton_status crofton_bodies_penetration(const crofton_placed* a, const crofton_placed* b,
+                                                      crofton_pair_cache* cache, crofton_body_penetration* penetration);
+CROFTON_API crofton_status crofton_body_closest_point(const crofton_placed* body, const double point[3],
+                                                      crofton_body_distance* distance);
+/* When will they first touch? `options` or NULL: within a time of 1. A motion or NULL: that body rests. */
+CROFTON_API crofton_status crofton_bodies_cast(const crofton_placed* a, const crofton_motion* motion_a,
+                                               const crofton_placed* b, const crofton_motion* motion_b,
+                                               const crofton_cast_options* options, crofton_impact* impact);
+
+CROFTON_API crofton_status crofton_body_contacts_create(crofton_body_contacts** contacts);
+CROFTON_API crofton_status crofton_body_contacts_destroy(crofton_body_contacts* contacts);
+/* Once a step, of one pair in one order: where it touches now. `options` or NULL. */
+CROFTON_API crofton_status crofton_body_contacts_update(crofton_body_contacts* contacts, const crofton_placed* a,
+                                                        const crofton_placed* b,
+                                                        const crofton_manifold_options* options);
+/* The points, whose memory is yours to write, and how many have ended (or NULL); valid until the next update. */
+CROFTON_API crofton_status crofton_body_contacts_points(crofton_body_contacts* contacts, crofton_tracked_point** points,
+                                                        size_t* count, size_t* ended);
+
 /* What does a ray hit first, and what lies within a body? */
 
 /* The points origin + t direction, 0 <= t <= max_t, which may be infinite. A segment from p to q is {p, q - p, 1}. */

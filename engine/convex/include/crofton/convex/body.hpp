@@ -307,8 +307,9 @@ class Compound {
     int depth_ = 0;
 };
 
-// Exact formulas, rounded, for every kind but half-spaces, surfaces, compounds and roundings of boxes, triangles,
-// hulls, cylinders, cones: there `unsupported`. A triangle has volume 0.
+// Exact formulas, rounded. A triangle has volume 0. Of compounds the sum over the children: what lies in two counts
+// twice. Errors: half-spaces, meshes and height fields, which have no volume (`unsupported`; of a compound's child the
+// item is the child).
 [[nodiscard]] Result<MassProperties> mass_properties(const Body& body);
 
 // The farthest point of the body along `direction` (finite; any length but 0), in its frame. Of convex bodies but

@@ -3,6 +3,7 @@
 #pragma once
 #include <compare>
 #include <crofton/convex/body.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <cstdint>
 #include <memory>
@@ -160,6 +161,15 @@ struct TrackedPoint {
 // Replaces `points`, of the step before, by those of the manifolds; of the same id they keep their memory. Returns how
 // many have ended. Allocates nothing once `points` has room for two steps.
 std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& points);
+
+// For debug drawing: told of lines, in the world.
+using LineVisitor = FunctionRef<void(const glm::dvec3& from, const glm::dvec3& to)>;
+// The edges of a body and of its parts; circles of what is round, in pieces of a 24th; of a rounded polytope the faces
+// where they are, `radius` out; of a half-space a square of 20 around the point nearest to its frame's origin, and its
+// normal. Surfaces and compounds allocate.
+void outline(const Placed& body, LineVisitor line);
+// At each point its normal from surface to surface, with a cross of size `size` across it.
+void outline(std::span<const TrackedPoint> points, double size, LineVisitor line);
 
 // When will two moving bodies first touch?
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Crofton's bodies of Bullet's shapes.
+#pragma once
+#include <btBulletDynamicsCommon.h>
+
+#include <crofton/convex/body.hpp>
+#include <memory>
+#include <optional>
+#include <unordered_map>
+
+namespace crofton::bullet {
+
+// A body with what it is a view of.
+struct ShapeBody {
+    std::optional<convex::Hull> hull;
+    std::optional<convex::Body> body;
+    std::size_t fingerprint = 0;  // of the shape's numbers when it was made
+};
+
+// Whether `get` has a body for shapes of this type: boxes, hulls, balls.
+[[nodiscard]] bool has_body(int shape_type);
+
+// Bodies are made once a shape, and again where its numbers have changed.
+class ShapeBodies {
+  public:
+    // Nothing where Crofton refuses the shape, as points in one plane.
+    [[nodiscard]] std::shared_ptr<const ShapeBody> get(const btCollisionShape& shape);
+
+  private:
+    std::unordered_map<const btCollisionShape*, std::shared_ptr<const ShapeBody>> bodies_;
+};
+
+}  // namespace crofton::bullet

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// A character's capsule that walks through a World: it slides along walls, climbs steps, and stands on slopes.
+#pragma once
+#include <crofton/convex/query.hpp>
+#include <crofton/crofton.hpp>
+#include <optional>
+
+namespace crofton::sample {
+
+struct CharacterOptions {
+    float radius = 0.4f, half_height = 0.5f;  // of the capsule's segment; metres
+    double step_height = 0.35;                // what it climbs without a jump
+    double skin = 0.01;                       // kept between the capsule and all else
+    double least_up = 0.7;                    // of a normal: steeper ground is a wall (0.7: 45 degrees)
+    std::uint32_t layers = ~0u;               // what it meets: a contact filter
+};
+
+// y is up. `position` is the capsule's middle.
+class Character {
+  public:
+    Character(const glm::dvec3& position, const CharacterOptions& options = {});
+
+    // Walks by `way`, whose y counts too (a jump, a fall), as far as nothing is there. Never into anything.
+    void move(const World& world, const glm::dvec3& way);
+
+    [[nodiscard]] const glm::dvec3& position() const { return position_; }
+    [[nodiscard]] double feet() const;  // the height of its lowest point
+    [[nodiscard]] bool is_on_ground() const { return on_ground_; }
+
+  private:
+    struct Hit {
+        double share;       // of the way that is free
+        glm::dvec3 normal;  // away from what was hit
+    };
+    std::optional<Hit> sweep(const World& world, const glm::dvec3& way);
+    glm::dvec3 slide(const World& world, glm::dvec3 way, bool walls_are_upright);
+    void step(const World& world, const glm::dvec3& start, const glm::dvec3& across);
+
+    CharacterOptions options_;
+    convex::Body body_;
+    glm::dvec3 position_;
+    bool on_ground_ = false;
+};
+
+}  // namespace crofton::sample

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// crofton collide of convex hulls, and casts: questions of crofton::convex.
+#pragma once
+#include <crofton/convex/query.hpp>
+#include <crofton/mesh/mesh_tree.hpp>
+#include <optional>
+#include <string>
+
+#include "json/json.hpp"
+#include "read_options.hpp"
+
+namespace crofton::cli {
+
+// What a file is made into: the hull of its vertices, or its triangles.
+struct FileBody {
+    std::optional<convex::Hull> hull;
+    std::optional<mesh::MeshTree> mesh;
+    [[nodiscard]] convex::Body body() const {
+        return hull ? convex::Body::hull(*hull) : convex::Body::mesh(*mesh).value();
+    }
+};
+[[nodiscard]] Result<FileBody> load_body(const std::string& path, bool as_hull, int max_vertices,
+                                         const ReadOptions& options);
+
+// "x,y,z"; empty: none. The option's name is for the error.
+[[nodiscard]] Result<glm::dvec3> vector_of(const std::string& option, const std::string& text);
+
+struct BodyAnswer {
+    std::string sentence;
+    Json document;
+};
+// `mode` is any, all or distance.
+[[nodiscard]] BodyAnswer ask_hulls(const std::string& mode, const convex::Placed& a, const convex::Placed& b);
+// B moves. Errors: of convex::cast.
+[[nodiscard]] Result<BodyAnswer> ask_cast(const convex::Placed& a, const convex::Placed& b,
+                                          const convex::Motion& motion, double duration);
+
+}  // namespace crofton::cli

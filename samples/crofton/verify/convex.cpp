@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// Convex bodies: yes or no, depth and casts, against numbers that are never rounded.
+#include "convex.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "convex_pairs.hpp"
+#include "exact_bodies.hpp"
+
+namespace crofton::cli {
+namespace {
+
+using convex::Placed;
+
+VerifyRow none_wrong(std::string claim, const char* source, std::uint64_t cases, std::uint64_t wrong) {
+    VerifyRow row = computed_row(std::move(claim), source, 0.0, static_cast<double>(wrong), 0.0);
+    row.cases = cases;
+    return row;
+}
+
+bool truly_meet(const Placed& a, const Placed& b, const glm::dvec3& normal, std::uint64_t& by_axes) {
+    // Guesses are made near a's origin, where coordinates are small.
+    const RigidTransform near_a{a.pose.rotation, glm::dvec3(0.0)};
+    const RigidTransform near_b{b.pose.rotation, b.pose.translation - a.pose.translation};
+    const convex::Distance d = convex::distance({a.body, near_a}, {b.body, near_b});
+    const convex::Penetration p = convex::penetration({a.body, near_a}, {b.body, near_b});
+    const std::array normals{normal, d.normal, convex::distance(a, b).normal};
+    const std::array points{0.5 * (p.on_a + p.on_b), 0.5 * (d.on_a + d.on_b)};
+    return meet_exactly(ExactBody(a), ExactBody(b), normals, a.pose.translation, points, by_axes);
+}
+
+// Cold, and with what a neighbouring pose has left.
+VerifyRow yes_or_no(int decade, double offset, const VerifyOptions& options) {
+    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 2000);
+    ConvexPairs random(options.seed * 1000 + static_cast<std::uint64_t>(decade) * 10 + (offset > 0.0 ? 1 : 0) +
+                       (offset > 1e5 ? 1 : 0));
+    std::uint64_t wrong = 0, meeting = 0, by_axes = 0;
+    for (std::uint64_t i = 0; i < pairs; ++i) {
+        const double gap = std::pow(10.0, -decade) * random.number(0.1, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
+        const ConvexPairs::Pair pair = random.next(12, gap, offset);
+        const Placed a = pair.placed_a(), b = pair.placed_b();
+        convex::PairCache cache;
+        RigidTransform earlier = pair.pose_b;
+        earlier.translation += 0.01 * random.direction();
+        (void)convex::intersects(a, {pair.b, earlier}, &cache);
+        const bool cold = convex::intersects(a, b), warm = convex::intersects(a, b, &cache);
+        const bool truth = truly_meet(a, b, pair.normal, by_axes);
+        wrong += (cold != truth) + (warm != truth) + ((convex::distance(a, b).distance == 0.0) != truth);
+        meeting += truth;
+    }
+    char claim[200];
+    std::snprintf(
+        claim, sizeof claim,
+        "convex bodies at %g m, gaps and overlaps of 1e-%d: %llu pairs, %llu meet, %llu by all axes; none wrong",
+        offset, decade, static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(meeting),
+        static_cast<unsigned long long>(by_axes));
+    return none_wrong(claim, "planes, common points and separating axes in exact numbers", pairs, wrong);
+}
+
+VerifyRow depths(const VerifyOptions& options) {
+    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 2000);
+    ConvexPairs random(options.seed + 77);
+    std::uint64_t wrong = 0, met = 0;
+    for (std::uint64_t i = 0; i < pairs; ++i) {
+        const double overlap = i % 3 == 0 ? 0.3 : std::pow(10.0, random.number(-12.0, -1.0));
+        const ConvexPairs::Pair pair = random.next(6, -overlap, i % 5 == 0 ? 1e5 : 0.0);
+        const Placed a = pair.placed_a(), b = pair.placed_b();
+        const convex::Penetration p = convex::penetration(a, b);
+        if (!p.overlapping) continue;
+        ++met;
+        const double size =
+            pair.a.reach() + pair.b.reach() + glm::length(pair.pose_b.translation - pair.pose_a.translation);
+        wrong += !depth_lies_between(ExactBody(a), ExactBody(b), p.lower, p.upper) || p.upper - p.lower > 1e-9 * size;
+    }
+    return none_wrong("depths of overlaps of 0.3 and 1e-1 to 1e-12: " + std::to_string(met) +
+                          " lie between their bounds, which differ by at most 1e-9 of the size",
+                      "all faces of the Minkowski sum, in exact numbers", met, wrong);
+}
+
+ConvexPairs::Pair start_of(ConvexPairs& random) {
+    ConvexPairs::Pair pair = random.next(8, random.number(0.2, 2.0), 0.0);
+    pair.pose_b.translation += 0.3 * random.direction();
+    return pair;
+}
+
+// No sample before the impact, or of a miss at all, has the bodies meet.
+VerifyRow casts_sampled(const VerifyOptions& options) {
+    constexpr int kSamples = 10'000;
+    const std::uint64_t casts = std::max<std::uint64_t>(4, options.trials / 50'000);
+    ConvexPairs random(options.seed + 78);
+    std::uint64_t wrong = 0, hits = 0, by_axes = 0;
+    for (std::uint64_t i = 0; i < casts; ++i) {
+        const ConvexPairs::Pair pair = start_of(random);
+        const convex::Motion a{random.direction(), random.number(0.0, 9.0) * random.direction(), glm::dvec3(0.0)};
+        const convex::Motion b{-4.0 * pair.normal, random.number(0.0, 9.0) * random.direction(), glm::dvec3(0.0)};
+        const auto impact = convex::cast(pair.placed_a(), a, pair.placed_b(), b);
+        if (!impact || impact->result == convex::CastResult::unresolved) continue;
+        const bool hit = impact->result == convex::CastResult::hit;
+        hits += hit;
+        const double end = hit ? impact->time : 1.0;
+        bool met_before = false;
+        for (int k = 0; k < kSamples && !met_before; ++k) {
+            const double time = end * (k + 0.5) / kSamples;
+            const RigidTransform at_a = convex::moved(pair.pose_a, a, time), at_b = convex::moved(pair.pose_b, b, time);
+            const convex::Distance d = convex::distance({pair.a, at_a}, {pair.b, at_b});
+            const std::array normals{d.normal};
+            met_before = meet_exactly(ExactBody({pair.a, at_a}), ExactBody({pair.b, at_b}), normals, glm::dvec3(0.0),
+                                      {}, by_axes);
+        }
+        const RigidTransform at_a = convex::moved(pair.pose_a, a, end), at_b = convex::moved(pair.pose_b, b, end);
+        const bool far = hit && convex::distance({pair.a, at_a}, {pair.b, at_b}).lower > 1e-6;
+        wrong += met_before || far;
+    }
+    return none_wrong(std::to_string(casts) + " casts of turning bodies, " + std::to_string(hits) +
+                          " hits: at none of 10,000 moments before do they meet, and then they are within 1e-6",
+                      "separating planes in exact numbers", casts * kSamples, wrong);
+}
+
+// Of translations: the first moment at which the bodies meet, by bisection between the impact and a moment when they
+// do.
+VerifyRow casts_bisected(const VerifyOptions& options) {
+    const std::uint64_t casts = std::max<std::uint64_t>(20, options.trials / 5000);
+    ConvexPairs random(options.seed + 79);
+    std::uint64_t wrong = 0, compared = 0, by_axes = 0;
+    for (std::uint64_t i = 0; i < casts; ++i) {
+        const ConvexPairs::Pair pair = start_of(random);
+        const convex::Motion motion{-4.0 * pair.normal + 0.3 * random.direction(), glm::dvec3(0.0), glm::dvec3(0.0)};
+        const auto impact = convex::cast(pair.placed_a(), {}, pair.placed_b(), motion);
+        if (!impact) continue;
+        const auto meet_at = [&](double time) {
+            RigidTransform there = pair.pose_b;
+            there.translation += time * motion.velocity;
+            return truly_meet(pair.placed_a(), {pair.b, there}, pair.normal, by_axes);
+        };
+        double early = 0.0, late = -1.0;
+        for (int k = 0; k <= 64 && late < 0.0; ++k)
+            if (meet_at(k / 64.0)) late = k / 64.0;
+        if (late < 0.0) continue;  // a hit may be a near miss: within the tolerance
+        ++compared;
+        for (int step = 0; step < 45; ++step) {
+            const double middle = 0.5 * (early + late);
+            (meet_at(middle) ? late : early) = middle;
+        }
+        wrong += impact->result != convex::CastResult::hit || impact->time > late + 1e-12;
+    }
+    return none_wrong(std::to_string(compared) + " casts of translations: none tells a later impact than bisection",
+                      "bisection in exact numbers", compared, wrong);
+}
+
+}  // namespace
+
+std::vector<VerifyRow> verify_convex(const VerifyOptions& options) {
+    std::vector<VerifyRow> rows;
+    for (const double offset : {0.0, 1e3, 1e7})
+        for (int decade = 1; decade <= 12; ++decade) rows.push_back(yes_or_no(decade, offset, options));
+    rows.push_back(depths(options));
+    rows.push_back(casts_sampled(options));
+    rows.push_back(casts_bisected(options));
+    return rows;
+}
+
+}  // namespace crofton::cli

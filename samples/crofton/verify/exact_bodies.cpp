@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "exact_bodies.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace crofton::cli {
+namespace {
+
+ExactVector exact(const glm::dvec3& v) {
+    return {Dyadic(v.x), Dyadic(v.y), Dyadic(v.z)};
+}
+ExactVector operator-(const ExactVector& a, const ExactVector& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+ExactVector negative(const ExactVector& a) {
+    return {-a[0], -a[1], -a[2]};
+}
+Dyadic dot_of(const ExactVector& a, const ExactVector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+ExactVector cross_of(const ExactVector& a, const ExactVector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+glm::dvec3 rounded(const ExactVector& a) {
+    const auto value = [](const Dyadic& x) {
+        return x.sign() == 0 ? 0.0 : std::ldexp(x.scaled(x.exponent()), x.exponent());
+    };
+    return {value(a[0]), value(a[1]), value(a[2])};
+}
+
+// Whether all of b lies beyond all of a along n.
+bool parts(const ExactBody& a, const ExactBody& b, const ExactVector& n) {
+    Dyadic most = dot_of(n, a.points[0]);
+    for (const ExactVector& p : a.points)
+        if (const Dyadic v = dot_of(n, p); (v - most).sign() > 0) most = v;
+    for (const ExactVector& p : b.points)
+        if ((dot_of(n, p) - most).sign() <= 0) return false;
+    return true;
+}
+
+ExactVector normal_of(const ExactBody& body, const std::array<std::size_t, 3>& t) {
+    const ExactVector& p = body.points[t[0]];
+    return cross_of(body.points[t[1]] - p, body.points[t[2]] - p);
+}
+
+bool contains(const ExactBody& body, const ExactVector& x) {
+    for (const auto& t : body.triangles)
+        if (dot_of(normal_of(body, t), x - body.points[t[0]]).sign() > 0) return false;
+    return true;
+}
+
+// The separating-axis theorem: normals of faces, products of edges.
+bool meet_by_axes(const ExactBody& a, const ExactBody& b) {
+    for (const auto& t : a.triangles)
+        if (parts(a, b, normal_of(a, t))) return false;
+    for (const auto& t : b.triangles)
+        if (parts(a, b, negative(normal_of(b, t)))) return false;
+    for (const auto& s : a.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (s[i] > s[(i + 1) % 3]) continue;
+            const ExactVector u = a.points[s[(i + 1) % 3]] - a.points[s[i]];
+            for (const auto& t : b.triangles)
+                for (std::size_t j = 0; j < 3; ++j) {
+                    if (t[j] > t[(j + 1) % 3]) continue;
+                    const ExactVector n = cross_of(u, b.points[t[(j + 1) % 3]] - b.points[t[j]]);
+                    if (parts(a, b, n) || parts(a, b, negative(n))) return false;
+                }
+        }
+    return true;
+}
+
+std::vector<std::array<std::size_t, 3>> triangles_of(const convex::Body& body) {
+    if (body.kind() == convex::Kind::box)
+        return {{0, 4, 2}, {4, 6, 2}, {1, 3, 5}, {3, 7, 5}, {0, 1, 4}, {1, 5, 4},
+                {2, 6, 3}, {6, 7, 3}, {0, 2, 1}, {2, 3, 1}, {4, 5, 6}, {5, 7, 6}};
+    if (body.hull() == nullptr) return {{0, 1, 2}, {0, 2, 1}};
+    std::vector<std::array<std::size_t, 3>> result;
+    const auto indices = body.hull()->triangles();
+    for (std::size_t i = 0; i < indices.size(); i += 3) result.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    return result;
+}
+
+// 1 where all points lie on or below the plane through w[i] across n, −1 on or above, 0 on both sides.
+int side_of(const std::vector<ExactVector>& w, std::size_t i, const ExactVector& n) {
+    const Dyadic level = dot_of(n, w[i]);
+    bool above = false, below = false;
+    for (const ExactVector& p : w) {
+        const int side = (dot_of(n, p) - level).sign();
+        above = above || side > 0;
+        below = below || side < 0;
+        if (above && below) return 0;
+    }
+    return above ? -1 : 1;
+}
+
+// Rounded points that are clearly on both sides of the plane through three of them.
+bool is_clearly_inside(const std::vector<glm::dvec3>& w, std::size_t i, const glm::dvec3& n, double slack) {
+    bool above = false, below = false;
+    for (const glm::dvec3& p : w) {
+        const double side = glm::dot(n, p - w[i]);
+        above = above || side > slack;
+        below = below || side < -slack;
+        if (above && below) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+ExactBody::ExactBody(const convex::Placed& placed) : triangles(triangles_of(placed.body)) {
+    const ExactVector columns[3] = {exact(placed.pose.rotation[0]), exact(placed.pose.rotation[1]),
+                                    exact(placed.pose.rotation[2])};
+    const ExactVector at = exact(placed.pose.translation);
+    for (int i = 0; i < placed.body.vertex_count(); ++i) {
+        const ExactVector v = exact(placed.body.vertex(i));
+        ExactVector image;
+        for (std::size_t c = 0; c < 3; ++c)
+            image[c] = columns[0][c] * v[0] + columns[1][c] * v[1] + columns[2][c] * v[2] + at[c];
+        points.push_back(image);
+    }
+}
+
+bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::dvec3> normals, const glm::dvec3& origin,
+                  std::span<const glm::dvec3> points, std::uint64_t& by_axes) {
+    for (const glm::dvec3& n : normals)
+        if (parts(a, b, exact(n))) return false;
+    for (const glm::dvec3& p : points) {
+        ExactVector x = exact(p);
+        const ExactVector from = exact(origin);
+        for (std::size_t k = 0; k < 3; ++k) x[k] = x[k] + from[k];
+        if (contains(a, x) && contains(b, x)) return true;
+    }
+    ++by_axes;
+    return meet_by_axes(a, b);
+}
+
+bool depth_lies_between(const ExactBody& a, const ExactBody& b, double lower, double upper) {
+    std::vector<ExactVector> w;
+    std::vector<glm::dvec3> about;
+    for (const ExactVector& p : a.points)
+        for (const ExactVector& q : b.points) about.push_back(rounded(w.emplace_back(p - q)));
+    double size = 0.0;
+    for (const glm::dvec3& p : about) size = std::max(size, glm::length(p));
+    const Dyadic low = Dyadic(lower) * Dyadic(lower), high = Dyadic(upper) * Dyadic(upper);
+    bool reached = false;
+    for (std::size_t i = 0; i < w.size(); ++i)
+        for (std::size_t j = i + 1; j < w.size(); ++j)
+            for (std::size_t k = j + 1; k < w.size(); ++k) {
+                const glm::dvec3 guess = glm::cross(about[j] - about[i], about[k] - about[i]);
+                if (is_clearly_inside(about, i, guess, 1e-12 * size * size * size)) continue;
+                const ExactVector n = cross_of(w[j] - w[i], w[k] - w[i]);
+                if ((n[0].sign() | n[1].sign() | n[2].sign()) == 0 || side_of(w, i, n) == 0) continue;
+                // The face's distance from the origin, squared, is level² / |n|².
+                const Dyadic level = dot_of(n, w[i]), squared = dot_of(n, n);
+                if ((low * squared - level * level).sign() > 0) return false;
+                reached = reached || (level * level - high * squared).sign() <= 0;
+            }
+    return reached;
+}
+
+}  // namespace crofton::cli

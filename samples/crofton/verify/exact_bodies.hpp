@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Polytopes where they stand, in numbers that are never rounded: proofs that two of them meet or not, and how deep.
+#pragma once
+#include <array>
+#include <crofton/convex/query.hpp>
+#include <crofton/geometry/dyadic.hpp>
+#include <span>
+#include <vector>
+
+namespace crofton::cli {
+
+using ExactVector = std::array<Dyadic, 3>;
+
+// The images of a body's stored corners under its stored pose. Of hulls, boxes and triangles.
+struct ExactBody {
+    std::vector<ExactVector> points;
+    std::vector<std::array<std::size_t, 3>> triangles;  // counter-clockwise seen from outside
+    explicit ExactBody(const convex::Placed& placed);
+};
+
+// By a plane across one of the `normals` (from a to b), or a common point: `origin` plus one of the `points`. Where
+// neither is a proof, by all separating axes, which takes long; *by_axes is raised by one then.
+[[nodiscard]] bool meet_exactly(const ExactBody& a, const ExactBody& b, std::span<const glm::dvec3> normals,
+                                const glm::dvec3& origin, std::span<const glm::dvec3> points, std::uint64_t& by_axes);
+
+// Whether the depth of two bodies that meet lies in [lower, upper]: by all faces of the difference body, found among
+// all triples of its points. For bodies of few corners.
+[[nodiscard]] bool depth_lies_between(const ExactBody& a, const ExactBody& b, double lower, double upper);
+
+}  // namespace crofton::cli

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+// Bodies in C: what they are, their answers beside those of C++, and what is refused.
+#include <cmath>
+#include <crofton/convex/query.hpp>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "handles.hpp"
+
+using namespace crofton;
+using namespace crofton::capi_test;
+
+namespace {
+
+const float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+BodyHandle box_body(float x, float y, float z) {
+    const float half[3] = {x, y, z};
+    crofton_body* body = nullptr;
+    REQUIRE(crofton_body_box(half, &body) == CROFTON_OK);
+    return BodyHandle(body);
+}
+
+std::vector<float> octahedron() {
+    return {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0.1f, 0.1f, 0.1f};
+}
+
+BodyHandle hull_body() {
+    const std::vector<float> points = octahedron();
+    crofton_body* body = nullptr;
+    REQUIRE(crofton_body_hull(points.data(), points.size() / 3, nullptr, &body) == CROFTON_OK);
+    return BodyHandle(body);
+}
+
+// One of each kind. The compound is the last.
+std::vector<BodyHandle> all_kinds() {
+    std::vector<BodyHandle> bodies;
+    const auto keep = [&](crofton_status status, crofton_body* body) {
+        REQUIRE(status == CROFTON_OK);
+        bodies.emplace_back(body);
+    };
+    crofton_body* made = nullptr;
+    crofton_status status = crofton_body_ball(0.5f, &made);
+    keep(status, made);
+    status = crofton_body_capsule(0.5f, 0.25f, &made);
+    keep(status, made);
+    status = crofton_body_cylinder(0.5f, 0.5f, &made);
+    keep(status, made);
+    status = crofton_body_cone(0.5f, 0.5f, &made);
+    keep(status, made);
+    bodies.push_back(box_body(0.5f, 0.25f, 1.0f));
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    status = crofton_body_triangle(corners, &made);
+    keep(status, made);
+    bodies.push_back(hull_body());
+    const crofton_plane plane{{0, 2, 0}, 1};
+    status = crofton_body_half_space(&plane, &made);
+    keep(status, made);
+    status = crofton_body_rounded(bodies[4].get(), 0.125f, &made);
+    keep(status, made);
+    const Tetrahedron tetrahedron;
+    const crofton_mesh mesh = tetrahedron.mesh();
+    status = crofton_body_mesh(&mesh, 1, &made);
+    keep(status, made);
+    const float heights[6] = {0, 1, 0, 1, 0, 1};
+    auto field = sized<crofton_height_field>();
+    field.columns = 3;
+    field.rows = 2;
+    field.heights = heights;
+    status = crofton_body_height_field(&field, 0, &made);
+    keep(status, made);
+    const crofton_body* children[2] = {bodies[4].get(), bodies[6].get()};
+    const crofton_transform poses[2] = {translation(-1, 0, 0), translation(1, 0, 0)};
+    status = crofton_body_compound(children, poses, 2, &made);
+    keep(status, made);
+    return bodies;
+}
+
+}  // namespace
+
+TEST_SUITE("capi/bodies") {
+    TEST_CASE("a body of each kind says what it is, and outlives nothing that it is made of") {
+        std::vector<BodyHandle> bodies = all_kinds();
+        const std::uint32_t kinds[] = {CROFTON_BODY_BALL, CROFTON_BODY_CAPSULE,      CROFTON_BODY_CYLINDER,
+                                       CROFTON_BODY_CONE, CROFTON_BODY_BOX,          CROFTON_BODY_TRIANGLE,
+                                       CROFTON_BODY_HULL, CROFTON_BODY_HALF_SPACE,   CROFTON_BODY_BOX,
+                                       CROFTON_BODY_MESH, CROFTON_BODY_HEIGHT_FIELD, CROFTON_BODY_COMPOUND};
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            auto info = sized<crofton_body_info>();
+            REQUIRE(crofton_body_get_info(bodies[i].get(), &info) == CROFTON_OK);
+            CAPTURE(i);
+            CHECK(info.kind == kinds[i]);
+            CHECK(info.part_count == (i == 11 ? 2 : 1));
+            CHECK(info.vertex_count == (i == 6 ? 6 : 0));
+            CHECK(info.face_count == (i == 6 ? 8 : 0));
+            if (i == 7) CHECK(std::isinf(info.max[1]));
+            if (i == 8) CHECK(info.max[2] == doctest::Approx(1.125));
+        }
+        // The compound's children go first.
+        const BodyHandle compound = std::move(bodies.back());
+        bodies.clear();
+        const BodyHandle probe = box_body(0.1f, 0.1f, 0.1f);
+        const crofton_transform here = translation(0, 0, 0), there = translation(1.9, 0, 0);
+        const crofton_placed a{compound.get(), &here}, b{probe.get(), &there};
+        int meet = 0;
+        REQUIRE(crofton_bodies_meet(&a, &b, nullptr, &meet) == CROFTON_OK);
+        CHECK(meet == 1);
+        auto distance = sized<crofton_body_distance>();
+        const double point[3] = {3, 0, 0};
+        REQUIRE(crofton_body_closest_point(&a, point, &distance) == CROFTON_OK);
+        CHECK(distance.distance == doctest::Approx(1.0));
+    }
+
+    TEST_CASE("a hull's surface and mass: an octahedron") {
+        const BodyHandle hull = hull_body();
+        const float* vertices = nullptr;
+        const std::uint16_t* indices = nullptr;
+        std::size_t vertex_count = 0, index_count = 0;
+        REQUIRE(crofton_body_hull_surface(hull.get(), &vertices, &vertex_count, &indices, &index_count) == CROFTON_OK);
+        CHECK(vertex_count == 6);
+        CHECK(index_count == 24);
+        for (std::size_t i = 0; i < index_count; ++i) CHECK(indices[i] < 6);
+        for (std::size_t i = 0; i < vertex_count; ++i)
+            CHECK(std::fabs(vertices[3 * i]) + std::fabs(vertices[3 * i + 1]) + std::fabs(vertices[3 * i + 2]) == 1.0f);
+        auto mass = sized<crofton_mass_properties>();
+        REQUIRE(crofton_body_get_mass(hull.get(), &mass) == CROFTON_OK);
+        CHECK(mass.volume == doctest::Approx(4.0 / 3.0));
+        CHECK(mass.inertia[0] == doctest::Approx(4.0 / 15.0));
+        CHECK(crofton_body_hull_surface(box_body(1, 1, 1).get(), &vertices, &vertex_count, &indices, &index_count) ==
+              CROFTON_UNSUPPORTED);
+    }
+
+    TEST_CASE("answers are the bits of C++") {
+        const std::vector<float> points = octahedron();
+        std::vector<glm::vec3> copies;
+        for (std::size_t i = 0; i < points.size(); i += 3) copies.emplace_back(points[i], points[i + 1], points[i + 2]);
+        const convex::Hull hull = convex::Hull::build(copies).value();
+        const convex::Body a = convex::Body::hull(hull), b = convex::Body::box({0.5f, 0.25f, 1.0f}).value();
+        const BodyHandle c_a = hull_body(), c_b = box_body(0.5f, 0.25f, 1.0f);
+        const crofton_transform origin = translation(0, 0, 0);
+        convex::PairCache cache;
+        crofton_pair_cache c_cache{};
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+        int met = 0;
+        for (int i = 0; i < 200; ++i) {
+            const double x = uniform(random), y = uniform(random), z = uniform(random);
+            const crofton_transform c_pose = translation(x, y, z);
+            const RigidTransform pose{glm::dmat3(1.0), {x, y, z}}, still;
+            const crofton_placed placed_a{c_a.get(), &origin}, placed_b{c_b.get(), &c_pose};
+            int meet = -1;
+            REQUIRE(crofton_bodies_meet(&placed_a, &placed_b, &c_cache, &meet) == CROFTON_OK);
+            CHECK((meet == 1) == convex::intersects({a, still}, {b, pose}, &cache));
+            met += meet;
+            auto distance = sized<crofton_body_distance>();
+            REQUIRE(crofton_bodies_distance(&placed_a, &placed_b, &c_cache, &distance) == CROFTON_OK);
+            const convex::Distance expected = convex::distance({a, still}, {b, pose}, &cache);
+            CHECK(distance.distance == expected.distance);
+            CHECK(distance.on_b[1] == expected.on_b.y);
+            auto overlap = sized<crofton_body_penetration>();
+            REQUIRE(crofton_bodies_penetration(&placed_a, &placed_b, &c_cache, &overlap) == CROFTON_OK);
+            const convex::Penetration depth = convex::penetration({a, still}, {b, pose}, &cache);
+            CHECK(overlap.overlapping == (depth.overlapping ? 1u : 0u));
+            CHECK(overlap.upper == depth.upper);
+            CHECK(overlap.normal[2] == depth.normal.z);
+            const crofton_motion motion{{-x, -y, -z}, {0, 3, 0}, {0, 0, 0}};
+            auto impact = sized<crofton_impact>();
+            REQUIRE(crofton_bodies_cast(&placed_a, nullptr, &placed_b, &motion, nullptr, &impact) == CROFTON_OK);
+            const auto first = convex::cast({a, still}, {}, {b, pose}, {{-x, -y, -z}, {0, 3, 0}, {}});
+            CHECK(impact.time == first->time);
+            CHECK(impact.result == static_cast<std::uint32_t>(first->result));
+        }
+        CHECK(met > 20);
+        CHECK(met < 180);
+    }
+
+    TEST_CASE("a pair's contacts keep the caller's numbers while they stay") {
+        const BodyHandle floor = box_body(5, 1, 5), crate = box_body(0.5f, 0.5f, 0.5f);
+        crofton_body_contacts* made = nullptr;
+        REQUIRE(crofton_body_contacts_create(&made) == CROFTON_OK);
+        const BodyContactsHandle contacts(made);
+        const crofton_transform ground = translation(0, 0, 0);
+        auto options = sized<crofton_manifold_options>();
+        options.margin = 0.02;
+        crofton_tracked_point* points = nullptr;
+        std::size_t count = 0, ended = 7;
+        for (int step = 0; step < 5; ++step) {
+            const crofton_transform place = translation(0.01 * step, 1.49, 0);
+            const crofton_placed a{floor.get(), &ground}, b{crate.get(), &place};
+            REQUIRE(crofton_body_contacts_update(made, &a, &b, &options) == CROFTON_OK);
+            REQUIRE(crofton_body_contacts_points(made, &points, &count, &ended) == CROFTON_OK);
+            REQUIRE(count == 4);
+            CHECK(ended == 0);
+            for (std::size_t i = 0; i < 4; ++i) {
+                CHECK(points[i].normal[1] == doctest::Approx(1.0));
+                CHECK(points[i].depth == doctest::Approx(0.01));
+                CHECK(points[i].began == (step == 0 ? 1 : 0));
+                if (step == 0) points[i].memory[2] = static_cast<float>(points[i].on_b.index) + 0.5f;
+                CHECK(points[i].memory[2] == static_cast<float>(points[i].on_b.index) + 0.5f);
+            }
+        }
+        const crofton_transform high = translation(0, 3, 0);
+        const crofton_placed a{floor.get(), &ground}, b{crate.get(), &high};
+        REQUIRE(crofton_body_contacts_update(made, &a, &b, &options) == CROFTON_OK);
+        REQUIRE(crofton_body_contacts_points(made, &points, &count, &ended) == CROFTON_OK);
+        CHECK(count == 0);
+        CHECK(ended == 4);
+    }
+
+    TEST_CASE("bad bodies are refused by name, and leave the result alone") {
+        crofton_body* none = nullptr;
+        CHECK(crofton_body_ball(-1, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_ball(1, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_capsule(kNaN, 1, &none) == CROFTON_NON_FINITE);
+        const float inside_out[3] = {1, -1, 1};
+        CHECK(crofton_body_box(inside_out, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_last_error_item() == 1);
+        const float flat[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+        CHECK(crofton_body_hull(flat, 4, nullptr, &none) == CROFTON_DEGENERATE);
+        CHECK(crofton_body_hull(flat, 3, nullptr, &none) != CROFTON_OK);
+        CHECK(crofton_body_hull(nullptr, 4, nullptr, &none) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_body_hull(flat, SIZE_MAX / 4, nullptr, &none) == CROFTON_OUT_OF_RANGE);
+        auto hull_options = sized<crofton_hull_options>();
+        hull_options.max_vertices = 3;
+        const std::vector<float> points = octahedron();
+        CHECK(crofton_body_hull(points.data(), 7, &hull_options, &none) == CROFTON_INVALID_ARGUMENT);
+        auto field = sized<crofton_height_field>();
+        field.columns = 4;
+        field.rows = 1;
+        field.heights = flat;
+        CHECK(crofton_body_height_field(&field, 0, &none) == CROFTON_OUT_OF_RANGE);
+        CHECK(crofton_body_compound(nullptr, nullptr, 0, &none) == CROFTON_EMPTY);
+        const crofton_transform here = translation(0, 0, 0);
+        const crofton_body* no_child = nullptr;
+        CHECK(crofton_body_compound(&no_child, &here, 1, &none) == CROFTON_BAD_HANDLE);
+        CHECK(none == nullptr);
+    }
+
+    TEST_CASE("compounds of compounds are refused where they are deeper than sixteen") {
+        std::vector<BodyHandle> nested;
+        nested.push_back(box_body(1, 1, 1));
+        const crofton_transform here = translation(0, 0, 0);
+        for (int depth = 1; depth <= 1000; ++depth) {
+            const crofton_body* child = nested.back().get();
+            crofton_body* made = nullptr;
+            const crofton_status status = crofton_body_compound(&child, &here, 1, &made);
+            REQUIRE(status == (depth <= 16 ? CROFTON_OK : CROFTON_OUT_OF_RANGE));
+            if (depth > 16) break;
+            nested.emplace_back(made);
+        }
+        CHECK(crofton_last_error_item() == 0);
+    }
+
+    TEST_CASE("bad poses, caches, options and sizes of structs are refused") {
+        const BodyHandle body = box_body(1, 1, 1);
+        const crofton_transform good = translation(0, 0, 0);
+        crofton_transform mirror = good, stretched = good, lost = good;
+        mirror.linear[0] = -1;
+        stretched.linear[0] = 2;
+        lost.translation[0] = std::numeric_limits<double>::quiet_NaN();
+        const crofton_placed placed{body.get(), &good};
+        int meet = 5;
+        for (const crofton_transform& pose : {mirror, stretched, lost}) {
+            const crofton_placed bad{body.get(), &pose};
+            CHECK(crofton_bodies_meet(&placed, &bad, nullptr, &meet) != CROFTON_OK);
+        }
+        const crofton_placed nobody{nullptr, &good}, nowhere{body.get(), nullptr};
+        CHECK(crofton_bodies_meet(&placed, &nobody, nullptr, &meet) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_bodies_meet(&placed, nullptr, nullptr, &meet) == CROFTON_BAD_HANDLE);
+        CHECK(crofton_bodies_meet(&placed, &nowhere, nullptr, &meet) == CROFTON_INVALID_ARGUMENT);
+        CHECK(meet == 5);
+        auto distance = sized<crofton_body_distance>();
+        distance.size += 8;
+        CHECK(crofton_bodies_distance(&placed, &placed, nullptr, &distance) == CROFTON_WRONG_SIZE);
+        auto impact = sized<crofton_impact>();
+        auto options = sized<crofton_cast_options>();
+        options.duration = -1;
+        CHECK(crofton_bodies_cast(&placed, nullptr, &placed, nullptr, &options, &impact) != CROFTON_OK);
+        options.duration = 1;
+        const crofton_motion whirl{{0, 0, 0}, {0, 1e6, 0}, {0, 0, 0}};
+        CHECK(crofton_bodies_cast(&placed, &whirl, &placed, nullptr, &options, &impact) == CROFTON_OUT_OF_RANGE);
+        auto manifold = sized<crofton_manifold_options>();
+        manifold.max_points = 9;
+        crofton_body_contacts* contacts = nullptr;
+        REQUIRE(crofton_body_contacts_create(&contacts) == CROFTON_OK);
+        const BodyContactsHandle owner(contacts);
+        CHECK(crofton_body_contacts_update(contacts, &placed, &placed, &manifold) == CROFTON_OUT_OF_RANGE);
+        manifold.max_points = 0;
+        manifold.margin = -0.5;
+        CHECK(crofton_body_contacts_update(contacts, &placed, &placed, &manifold) == CROFTON_INVALID_ARGUMENT);
+    }
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// A World's bodies in C: contacts that last, overlaps, casts, and bodies that are destroyed while they are used.
+#include <cmath>
+#include <cstring>
+
+#include "world_fixture.hpp"
+
+using namespace crofton::capi_test;
+
+namespace {
+
+BodyHandle crate_of(float half) {
+    const float extents[3] = {half, half, half};
+    crofton_body* body = nullptr;
+    REQUIRE(crofton_body_box(extents, &body) == CROFTON_OK);
+    return BodyHandle(body);
+}
+
+crofton_box slab() {
+    return {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {9, 1, 9}};
+}
+
+// A crate on a slab: the slab is object 5, the crate 6.
+struct Resting {
+    WorldHandle world;
+    crofton_object floor{}, crate{};
+    Resting() {
+        auto options = sized<crofton_world_options>();
+        options.contact_margin = 0.02;
+        world = make_world(&options);
+        floor = add_bound(world, box_bound(slab()), 5);
+        crate = add_bound(world, box_bound(box_at(0, 1.49, 0, 0.55f)), 6);
+        // A hull, whose points the World must keep alive after the handle is gone.
+        std::vector<float> corners;
+        for (int i = 0; i < 8; ++i)
+            for (int k = 0; k < 3; ++k) corners.push_back((k == 1 ? 1.0f : 9.0f) * ((i >> k & 1) != 0 ? 1.0f : -1.0f));
+        crofton_body* hull = nullptr;
+        REQUIRE(crofton_body_hull(corners.data(), 8, nullptr, &hull) == CROFTON_OK);
+        const BodyHandle owner(hull), box = crate_of(0.5f);
+        REQUIRE(crofton_world_set_body(world.get(), floor, hull) == CROFTON_OK);
+        REQUIRE(crofton_world_set_body(world.get(), crate, box.get()) == CROFTON_OK);
+    }
+    const crofton_body_contact* contacts(std::size_t expected) const {
+        update(world);
+        const crofton_body_contact* found = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_world_body_contacts(world.get(), &found, &count) == CROFTON_OK);
+        REQUIRE(count == expected);
+        return found;
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("capi/world bodies") {
+    TEST_CASE("a crate on a slab: began, stayed with the caller's numbers, ended") {
+        const Resting s;
+        const crofton_body_contact* contact = s.contacts(1);
+        CHECK(contact->first.user == 5);
+        CHECK(contact->second.user == 6);
+        CHECK(contact->phase == CROFTON_CONTACT_BEGAN);
+        REQUIRE(contact->point_count == 4);
+        for (int i = 0; i < 4; ++i) {
+            CHECK(contact->points[i].normal[1] == doctest::Approx(1.0));
+            CHECK(contact->points[i].depth == doctest::Approx(0.01));
+            contact->points[i].memory[3] = 2.5f;
+        }
+        crofton_bound moved = box_bound(box_at(0.01, 1.491, 0, 0.55f));
+        REQUIRE(crofton_world_set_bound(s.world.get(), s.crate, &moved) == CROFTON_OK);
+        contact = s.contacts(1);
+        CHECK(contact->phase == CROFTON_CONTACT_STAYED);
+        CHECK(contact->points[0].memory[3] == 2.5f);
+        REQUIRE(crofton_world_set_body(s.world.get(), s.crate, nullptr) == CROFTON_OK);
+        CHECK(s.contacts(1)->phase == CROFTON_CONTACT_ENDED);
+        s.contacts(0);
+    }
+
+    TEST_CASE("a body may be changed while contacts are read: they hold until the next update") {
+        const Resting s;
+        const crofton_body_contact* contact = s.contacts(1);
+        const crofton_tracked_point before = contact->points[0];
+        const BodyHandle small = crate_of(0.1f);
+        REQUIRE(crofton_world_set_body(s.world.get(), s.crate, small.get()) == CROFTON_OK);
+        CHECK(contact->point_count == 4);
+        CHECK(std::memcmp(&before, contact->points, sizeof before) == 0);
+        CHECK(s.contacts(1)->phase == CROFTON_CONTACT_ENDED);
+    }
+
+    TEST_CASE("overlaps and casts of bodies") {
+        const Resting s;
+        update(s.world);
+        const Found found = make_found();
+        const BodyHandle probe = crate_of(0.25f);
+        const crofton_transform above = translation(0, 5, 0), beside = translation(0, 1.2, 0.8);
+        const crofton_placed high{probe.get(), &above}, low{probe.get(), &beside};
+        const crofton_object_ref* objects = nullptr;
+        std::size_t count = 9;
+        REQUIRE(crofton_world_overlap_body(s.world.get(), &high, ~0u, found.get()) == CROFTON_OK);
+        REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
+        CHECK(count == 0);
+        // It meets the slab and the crate's box, but not the crate's body.
+        REQUIRE(crofton_world_overlap_body(s.world.get(), &low, ~0u, found.get()) == CROFTON_OK);
+        REQUIRE(crofton_found_objects(found.get(), &objects, &count) == CROFTON_OK);
+        REQUIRE(count == 1);
+        CHECK(objects[0].user == 5);
+        const crofton_motion fall{{0, -10, 0}, {0, 0, 0}, {0, 0, 0}};
+        auto hit = sized<crofton_body_hit>();
+        REQUIRE(crofton_world_cast(s.world.get(), &high, &fall, nullptr, ~0u, &hit) == CROFTON_OK);
+        CHECK(hit.user == 6);
+        CHECK(hit.result == CROFTON_CAST_HIT);
+        CHECK(hit.time == doctest::Approx((5.0 - 0.25 - 1.99) / 10.0).epsilon(1e-5));
+        CHECK(hit.normal[1] == doctest::Approx(-1.0));
+        const crofton_motion rise{{0, 10, 0}, {0, 0, 0}, {0, 0, 0}};
+        REQUIRE(crofton_world_cast(s.world.get(), &high, &rise, nullptr, ~0u, &hit) == CROFTON_OK);
+        CHECK(hit.object.index == CROFTON_NONE);
+        CHECK(std::isinf(hit.time));
+    }
+
+    TEST_CASE("half-spaces, stale objects, dead bodies and bad margins are refused") {
+        const Resting s;
+        update(s.world);
+        const crofton_plane plane{{0, 1, 0}, 0};
+        crofton_body* made = nullptr;
+        REQUIRE(crofton_body_half_space(&plane, &made) == CROFTON_OK);
+        const BodyHandle half(made);
+        const crofton_transform here = translation(0, 0, 0);
+        const crofton_placed placed{half.get(), &here};
+        const Found found = make_found();
+        auto hit = sized<crofton_body_hit>();
+        CHECK(crofton_world_set_body(s.world.get(), s.crate, made) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_world_overlap_body(s.world.get(), &placed, ~0u, found.get()) == CROFTON_UNSUPPORTED);
+        CHECK(crofton_world_cast(s.world.get(), &placed, nullptr, nullptr, ~0u, &hit) == CROFTON_UNSUPPORTED);
+        REQUIRE(crofton_world_remove(s.world.get(), s.crate) == CROFTON_OK);
+        const BodyHandle box = crate_of(1);
+        CHECK(crofton_world_set_body(s.world.get(), s.crate, box.get()) == CROFTON_STALE_HANDLE);
+        CHECK(crofton_world_set_body(nullptr, s.crate, box.get()) == CROFTON_BAD_HANDLE);
+        auto options = sized<crofton_world_options>();
+        crofton_world* none = nullptr;
+        for (const double margin : {-1.0, kNotANumber, kNoLimit}) {
+            options.contact_margin = margin;
+            CHECK(crofton_world_create(&options, &none) == CROFTON_INVALID_ARGUMENT);
+        }
+        CHECK(none == nullptr);
+    }
+}
