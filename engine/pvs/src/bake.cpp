@@ -152,6 +152,7 @@ std::uint64_t fingerprint_of(const Subject& subject, const Cells& cells, const B
         include(std::span(&box, 1));
     }
     sums.push_back(options.seed);
+    sums.push_back(LinePlan::kVersion);
     return bake::checksum(std::as_bytes(std::span(sums)));
 }
 

@@ -115,12 +115,11 @@ HWY_INLINE void put_in_order(FlatHit* hits, std::size_t first, std::size_t at, c
 
 using DL = hn::CappedTag<float, 16>;  // of lines side by side
 
-// Lines side by side. If all directions have one sign along `axis`, `narrow` is set: at the coordinate x along it each
-// line is then between low + slope · (x − from) and high + slope · (x − from) along the other two axes, for some slope
-// in [slope_low, slope_high].
+// Lines side by side, whose directions have one sign along `axis`. At the coordinate x along it each line is between
+// low + slope · (x − from) and high + slope · (x − from) along the other two axes, for some slope in [slope_low,
+// slope_high].
 struct Beam {
     alignas(64) float point[3][kBeamLines], direction[3][kBeamLines], inverse[3][kBeamLines];
-    bool narrow = false;
     std::size_t axis = 0;
     float from = 0.0f, low[3], high[3], slope_low[3], slope_high[3];
 };
@@ -129,9 +128,13 @@ HWY_INLINE float size_of(float x) {
     return x < 0.0f ? -x : x;
 }
 
-// Requires the lines and `axis`. `scale`: of all coordinates.
-HWY_INLINE void narrow_beam(float scale, Beam& beam) {
+// Of the scene's shadow: wider beams, which lines that have nothing in common make, take longer than their lines alone.
+constexpr float kWidestBeam = 0.3f;
+
+// Requires the lines and `axis`. `scale`: of all coordinates. False: too wide.
+HWY_INLINE bool bound_beam(const TracerView& tree, float scale, Beam& beam) {
     const std::size_t a = beam.axis;
+    float share = 1.0f;
     beam.from = 0.0f;
     for (std::size_t i = 0; i < kBeamLines; ++i) beam.from += beam.point[a][i] * (1.0f / kBeamLines);
     for (std::size_t n = 1; n < 3; ++n) {
@@ -145,6 +148,8 @@ HWY_INLINE void narrow_beam(float scale, Beam& beam) {
             slope_low = slope < slope_low ? slope : slope_low;
             slope_high = slope > slope_high ? slope : slope_high;
         }
+        const float width = high - low + 2.0f * tree.half[a] * (slope_high - slope_low);
+        share *= width / (2.0f * tree.half[k] + width);
         // Far above the rounding here and the slack of `children`.
         const float slack = 1e-5f * scale * (1.0f + size_of(slope_low) + size_of(slope_high));
         beam.low[k] = low - slack;
@@ -152,10 +157,11 @@ HWY_INLINE void narrow_beam(float scale, Beam& beam) {
         beam.slope_low[k] = slope_low;
         beam.slope_high[k] = slope_high;
     }
-    beam.narrow = true;
+    return share < kWidestBeam;
 }
 
-HWY_INLINE void make_beam(const TracerView& tree, const FlatRay* rays, Beam& beam) {
+// False: the lines are too far apart, in place or direction.
+HWY_INLINE bool make_beam(const TracerView& tree, const FlatRay* rays, Beam& beam) {
     float least[3], most[3], scale = 0.0f;
     for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < kBeamLines; ++i) {
@@ -178,7 +184,7 @@ HWY_INLINE void make_beam(const TracerView& tree, const FlatRay* rays, Beam& bea
     std::size_t a = 0;
     for (std::size_t k = 1; k < 3; ++k) a = nearest_zero(k) > nearest_zero(a) ? k : a;
     beam.axis = a;
-    if (nearest_zero(a) > 0.05f) narrow_beam(scale, beam);
+    return nearest_zero(a) > 0.05f && bound_beam(tree, scale, beam);
 }
 
 // Children that any line of the beam may pass.
@@ -259,8 +265,7 @@ HWY_INLINE bool cross_leaf(const TracerLeaf& leaf, const Beam& beam, std::uint64
 HWY_INLINE void lines_to_children(const Beam& beam, const mesh::BoxNode& node, std::uint64_t lines,
                                   std::uint64_t* passing) {
     const D d;
-    const unsigned all = (1u << node.count) - 1u;
-    unsigned bits = beam.narrow ? beam_children(d, node, beam) : all;
+    unsigned bits = beam_children(d, node, beam);
     for (std::size_t lane = 0; lane < kLanes; ++lane) passing[lane] = 0;
     // One by one all children take as long as a child takes with all lines, times a sixth of the lines.
     if (6 * __builtin_popcount(bits) <= __builtin_popcountll(lines)) {
@@ -279,9 +284,10 @@ HWY_INLINE void lines_to_children(const Beam& beam, const mesh::BoxNode& node, s
     }
 }
 
-enum class BeamEnd { done, crowded, full };
+enum class BeamEnd { done, no_beam, full };
 
-// All crossings of kBeamLines lines, as trace_all has them, behind `used` hits. `crowded`: too many for a beam.
+// All crossings of kBeamLines lines, as trace_all has them, behind `used` hits. `no_beam`: the lines are too far apart,
+// or have too many crossings.
 HWY_INLINE BeamEnd trace_beam(const TracerView& tree, const FlatRay* rays, FlatHit* hits, std::size_t capacity,
                               std::size_t& used, std::uint32_t* ends) {
     struct Entry {
@@ -292,7 +298,7 @@ HWY_INLINE BeamEnd trace_beam(const TracerView& tree, const FlatRay* rays, FlatH
     std::uint64_t passing[kLanes];
     Beam beam;
     Crossings found;
-    make_beam(tree, rays, beam);
+    if (!make_beam(tree, rays, beam)) return BeamEnd::no_beam;
     for (std::uint32_t& count : found.counts) count = 0;
     found.count = 0;
     std::size_t top = 0;
@@ -307,7 +313,7 @@ HWY_INLINE BeamEnd trace_beam(const TracerView& tree, const FlatRay* rays, FlatH
             if (!(child & kLeaf))
                 stack[top++] = {passing[lane], child};
             else if (!cross_leaf(tree.leaves[child & ~kLeaf], beam, passing[lane], found))
-                return BeamEnd::crowded;
+                return BeamEnd::no_beam;
         }
     }
     if (used + found.count > capacity) return BeamEnd::full;

@@ -11,6 +11,7 @@ namespace crofton::pvs {
 // near each other. Otherwise `per_cell` blocks of independent uniform lines through each cell by itself, where that
 // takes fewer lines: cells that are few and far apart.
 struct LinePlan {
+    static constexpr std::uint64_t kVersion = 2;   // changes with the lines: parts of a bake have the same
     static constexpr std::uint64_t kBlock = 4096;  // lines
     static constexpr std::uint64_t kStratum = 64;  // lines of a block that are drawn in one stratum
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Sets of the town: lines a second, what a frame pays for them, and how small they are.
+// `bench_pvs [--target=NAME] [--benchmark_filter=…]`; counters: lines/s, ids (found by a view), bits a pair.
+#include <benchmark/benchmark.h>
+
+#include <crofton/boxtree/box_tree.hpp>
+#include <crofton/cull/cull.hpp>
+#include <crofton/pvs/pvs.hpp>
+#include <crofton/sampling/sampling.hpp>
+#include <vector>
+
+#include "pipeline/pvs_scene.hpp"
+
+namespace {
+
+using namespace crofton;
+
+struct Town {
+    pvs::Subject subject;
+    Aabb eyes;
+    boxtree::BoxTree tree;
+    pvs::Pvs sets;
+    std::vector<cull::View> views;
+    std::vector<glm::dvec3> places;
+};
+
+pvs::Cells cells_over(const Aabb& eyes) {
+    return pvs::Cells::grid(eyes, {64, 2, 64}).value();
+}
+
+Town make_town() {
+    auto source = assets::load_scene("town").value();
+    source.scene.update();
+    auto subject = pvs::subject_of(source.scene, source.movers).value();
+    const Aabb eyes = pipeline::eyes_of(source.scene, 10.0);
+    auto bake = pvs::Bake::create(subject, cells_over(eyes), {.epsilon = 6.6e-3}).value();
+    (void)bake.run();
+    auto tree = boxtree::BoxTree::build(subject.boxes).value();
+    Town town{std::move(subject), eyes, std::move(tree), pvs::Pvs::finish(bake).value(), {}, {}};
+    sampling::Random random(11);
+    Camera prototype;
+    prototype.aspect = 16.0 / 9.0;
+    for (int i = 0; i < 256; ++i) {
+        Camera camera = prototype;
+        camera.position = sampling::box_point(eyes, random.point<3>());
+        const glm::dvec2 ahead = sampling::circle_point(random.uniform());
+        camera.forward = {ahead.x, 0.0, ahead.y};
+        town.views.push_back({.frustum = frustum_of(camera).value()});
+        town.places.push_back(camera.position);
+    }
+    return town;
+}
+
+const Town& town() {
+    static const Town made = make_town();
+    return made;
+}
+
+// From the first line on: the first rounds are small, so that their lines are farther apart than those of a long bake.
+void lines(benchmark::State& state) {
+    const Town& t = town();
+    const auto planned = pvs::Bake::create(t.subject, cells_over(t.eyes), {.epsilon = 1e-4});
+    double count = 0.0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        auto bake = pvs::Bake::create(t.subject, cells_over(t.eyes), {.epsilon = 1e-4}).value();
+        state.ResumeTiming();
+        // A part of the last round.
+        (void)bake.run({.lines = 1, .shard = {900, 1000}});
+        count += static_cast<double>(bake.lines_done());
+    }
+    state.counters["lines/s"] = benchmark::Counter(count, benchmark::Counter::kIsRate);
+    state.counters["planned"] = static_cast<double>(planned->lines_planned());
+}
+BENCHMARK(lines)->Unit(benchmark::kMillisecond)->Iterations(3);
+
+template <class Options>
+void views(benchmark::State& state, const Options& options_for) {
+    const Town& t = town();
+    cull::VisibleSet visible;
+    std::size_t i = 0;
+    double ids = 0.0;
+    for (auto _ : state) {
+        cull::CullOptions options = options_for(t, i);
+        options.order = state.range(0) == 0 ? cull::ResultOrder::ascending : cull::ResultOrder::tree;
+        cull::find_visible(t.tree, t.views[i], visible, options);
+        ids += static_cast<double>(visible.size());
+        i = (i + 1) % t.views.size();
+    }
+    state.counters["ids"] = ids / static_cast<double>(state.iterations());
+    state.SetLabel(state.range(0) == 0 ? "ascending" : "tree order");
+}
+
+void view_frustum(benchmark::State& state) {
+    views(state, [](const Town&, std::size_t) { return cull::CullOptions{}; });
+}
+BENCHMARK(view_frustum)->Arg(0)->Arg(1);
+
+void view_conservative(benchmark::State& state) {
+    views(state, [](const Town& t, std::size_t i) {
+        return cull::CullOptions{.among = t.sets.visible_from(t.places[i], pvs::Mode::conservative)};
+    });
+}
+BENCHMARK(view_conservative)->Arg(0)->Arg(1);
+
+void view_statistical(benchmark::State& state) {
+    views(state, [](const Town& t, std::size_t i) {
+        return cull::CullOptions{.among = t.sets.visible_from(t.places[i], pvs::Mode::statistical)};
+    });
+}
+BENCHMARK(view_statistical)->Arg(0)->Arg(1);
+
+void write_file(benchmark::State& state) {
+    const Town& t = town();
+    std::size_t bytes = 0;
+    for (auto _ : state) bytes = t.sets.to_file().value().size();
+    state.counters["bits a pair"] =
+        8.0 * static_cast<double>(bytes) / static_cast<double>(t.sets.cells().size() * t.sets.object_count());
+}
+BENCHMARK(write_file)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+}  // namespace
