@@ -3,7 +3,7 @@
 // docs/notes/world.md says what the hand-written side does.
 //   bench_world               the table
 //   bench_world --churn       what ten million spawns and despawns leave behind, as CSV; --churn=N: N of them
-//     --live=N                among so many objects, instead of 20,000
+//     --live=N, --part=N      among so many objects, of which an Nth changes in an update; 20,000 and 100
 //   --frames=N                instead of 200
 //   --target=AVX2             with this instruction set
 //   --benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE: as Google Benchmark's, for results.py
@@ -42,7 +42,7 @@ constexpr Row kRows[] = {
 struct Options {
     int frames = 200, repetitions = 1;
     bool churn = false;
-    std::size_t spawns = 10'000'000, live = 20'000;
+    std::size_t spawns = 10'000'000, live = 20'000, part = 100;
     std::string out;
     std::regex filter{""};
 };
@@ -59,6 +59,8 @@ bool parse(int argc, char** argv, Options& options) {
             options.churn = true, options.spawns = value.empty() ? options.spawns : std::stoul(value);
         else if (key == "--live")
             options.live = std::stoul(value);
+        else if (key == "--part")
+            options.part = std::stoul(value);
         else if (key == "--benchmark_filter")
             options.filter = value;
         else if (key == "--benchmark_repetitions")
@@ -102,9 +104,9 @@ int main(int argc, char** argv) {
     }
     const char* const target = crofton::bench::target_in_use();
     if (options.churn) {
-        std::printf("# command: bench_world --churn=%zu --live=%zu --target=%s\n", options.spawns, options.live,
-                    target);
-        crofton::bench::churn(options.live, options.spawns);
+        std::printf("# command: bench_world --churn=%zu --live=%zu --part=%zu --target=%s\n", options.spawns,
+                    options.live, options.part, target);
+        crofton::bench::churn(options.live, options.part, options.spawns);
         return 0;
     }
     std::printf("instruction set: %s\n%-48s %10s %10s %8s\n", target, "microseconds a frame", "by hand", "World",

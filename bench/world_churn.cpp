@@ -29,7 +29,8 @@ void count_memory() {
 // Objects of which some are removed and others added in each update; as many live at any time.
 class Churn {
   public:
-    explicit Churn(std::size_t live_count) : boxes(crowd(live_count)), a_frame_(live_count / 100) {
+    Churn(std::size_t live_count, std::size_t part)
+        : boxes(crowd(live_count)), a_frame_(std::max(live_count / part, std::size_t{1})) {
         for (const Obb& box : boxes) live.push_back(world.add({.bound = box}).value());
         must(world.update().has_value(), "loading");
     }
@@ -111,10 +112,10 @@ void print_row(const char* when, std::size_t spawns, Churn& churn, const cull::V
 
 }  // namespace
 
-void churn(std::size_t live_count, std::size_t spawns) {
+void churn(std::size_t live_count, std::size_t part, std::size_t spawns) {
     count_memory();
     {
-        Churn churn(live_count);
+        Churn churn(live_count, part);
         const cull::View view = view_of_share(churn.boxes, 0.2);
         std::printf("# objects: %zu live, %zu removed and as many added in an update\n", live_count, churn.a_frame());
         std::printf(

@@ -16,13 +16,15 @@ constexpr std::uint8_t kUpdatesToMove = 2;    // in a row, until an item leaves 
 constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new item does not wait in the list any more
 // Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
 constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
-// A tree of no more items is built anew in one go, within a few milliseconds, once such a part of them has come or
+// A tree that is small, or whose items come and go fast, is built anew in one go once such a part of them has come or
 // gone, or waits to enter: in the background they would change faster than they are built, and insertions wear it.
-constexpr std::size_t kSmallTree = 32768, kSmallTreeChanges = 32, kSmallTreeWaiting = 64, kAttachedToSmallTree = 16;
+constexpr std::size_t kSmallTree = 32768, kChangesToBuild = 32, kWaitingToBuild = 64, kAttachedBetweenBuilds = 16;
+// Fast: such a part within about as many updates.
+constexpr std::size_t kFastChanges = 32, kFastUpdates = 8;
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.
-constexpr std::size_t kBudgetPerChange = 128;
+constexpr std::size_t kBudgetPerChange = 2048;
 // The tree is rebuilt once such a part of its items has changed.
 constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 
@@ -79,6 +81,7 @@ void SpatialIndex::detach(ItemId item) {
     must(tree_.detach(item));
     ++tree_changes_;
     ++came_or_went_;
+    ++recent_;
     wants_refit_ = true;
 }
 
@@ -164,6 +167,7 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     }
     moved_.clear();
     moved_boxes_.clear();
+    recent_ -= (recent_ + kFastUpdates - 1) / kFastUpdates;
     enter(settings, changes, executor);
     bring_to_rest(settings, changes, executor);
     if (wants_refit_) tree_.refit();
@@ -175,17 +179,22 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
     return changes;
 }
 
-// Begins once enough has changed since the last rebuild began; in a small tree not while items come and go, for
-// which bring_to_rest() builds it anew.
+bool SpatialIndex::is_built_at_once() const {
+    const std::size_t items = tree_.item_count();
+    return items <= kSmallTree || recent_ * kFastChanges > items;
+}
+
+// Begins once enough has changed since the last rebuild began; not while items come and go for which bring_to_rest()
+// builds the tree anew.
 void SpatialIndex::rebuild_step(std::size_t budget) {
     const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
     const bool more_come_or_go = came_or_went_ != std::exchange(came_or_went_before_, came_or_went_);
     if (budget == 0) return;
     if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
     if (!rebuilding_) {
-        const bool is_small = tree_.item_count() <= kSmallTree;
-        const std::size_t part = is_small ? kChangesToRebuildSmallTree : kChangesToRebuild;
-        if (tree_changes_ * part < tree_.item_count() || tree_changes_ == 0 || (is_small && more_come_or_go)) return;
+        const std::size_t part = tree_.item_count() <= kSmallTree ? kChangesToRebuildSmallTree : kChangesToRebuild;
+        if (tree_changes_ * part < tree_.item_count() || tree_changes_ == 0) return;
+        if (more_come_or_go && is_built_at_once()) return;
         rebuilding_ = true;
         changes_at_start_ = tree_changes_;
     }
@@ -206,6 +215,7 @@ void SpatialIndex::enter(const Settings& settings, Changes& changes, Executor& e
         changes.tree_built = true;
         return;
     }
+    recent_ += entering.items.size();
     const std::uint32_t early = settings.updates_to_rest - std::min(settings.updates_to_rest, kUpdatesToEnter);
     while (!entering.items.empty()) {
         const ItemId item = entering.items.back();
@@ -229,15 +239,15 @@ void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Exe
     rested_.clear();
     moving_.list_rested(now_, settings.updates_to_rest, rested_);
     const std::size_t items = tree_.item_count();
-    const bool is_small = settings.rebuild_budget != 0 && items > kFewItems && items <= kSmallTree;
-    const std::size_t most_waiting = std::max(kFewItems, is_small ? items / kSmallTreeWaiting : items);
-    if (rested_.size() > most_waiting || (is_small && came_or_went_ > items / kSmallTreeChanges)) {
+    const bool at_once = settings.rebuild_budget != 0 && items > kFewItems && is_built_at_once();
+    const std::size_t most_waiting = std::max(kFewItems, at_once ? items / kWaitingToBuild : items);
+    if (rested_.size() > most_waiting || (at_once && came_or_went_ > items / kChangesToBuild)) {
         build_tree(rested_, executor);
         changes.tree_built = true;
         return;
     }
     const std::size_t most =
-        is_small ? kAttachedToSmallTree : std::max(kAttachedPerUpdate, moving_.size() / kAttachedPart);
+        at_once ? kAttachedBetweenBuilds : std::max(kAttachedPerUpdate, moving_.size() / kAttachedPart);
     rested_.resize(std::min(rested_.size(), most));
     for (const ItemId item : rested_) attach(item);
 }

@@ -97,6 +97,7 @@ class SpatialIndex {
     void set_box_elsewhere(ItemId item, const Obb& box);
     void detach(ItemId item);
     void note_move(ItemId item);
+    [[nodiscard]] bool is_built_at_once() const;
     void rebuild_step(std::size_t budget);
     void attach(ItemId item);
     void enter(const Settings& settings, Changes& changes, Executor& executor);
@@ -115,6 +116,7 @@ class SpatialIndex {
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.
     std::size_t tree_changes_ = 0, changes_before_ = 0, changes_at_start_ = 0;
     std::size_t came_or_went_ = 0, came_or_went_before_ = 0;  // in the tree, since it was last built; before the update
+    std::size_t recent_ = 0;  // items that came, or went from the tree, in about the last eight updates
     bool rebuilding_ = false, wants_refit_ = false;
 };
 
