@@ -6,6 +6,7 @@
 #   third_party/install.sh --bench    also the benchmarks' framework and the peers measured beside us
 #   third_party/install.sh --checks   also clang, its formatter and its linter, for .ci/run and .ci/long
 #   third_party/install.sh --python   also what the Python package needs (python/README.md)
+#   third_party/install.sh --platforms  also compilers and emulators of other targets (docs/testing.md, "Platforms")
 #   third_party/install.sh --engines  also the engines, decoders, job system and documentation tool that samples and tests use where installed
 set -euo pipefail
 
@@ -25,6 +26,8 @@ test_packages=(chromium)
 check_packages=(clang libclang-rt-dev clang-format clang-tidy)
 engine_packages=(libdraco-dev libmeshoptimizer-dev libogre-1.12-dev libopenscenegraph-dev libtbb-dev doxygen)
 python_packages=(python3-dev python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv pybind11-dev)
+platform_packages=(clang libc++-14-dev libc++abi-14-dev g++-12-multilib g++-riscv64-linux-gnu g++-aarch64-linux-gnu qemu-user
+    g++-mingw-w64-x86-64-posix wine64 wine emscripten nodejs dpkg-dev make)
 bench_packages=(libbenchmark-dev libcgal-dev libfcl-dev libbullet-dev libembree-dev libode-dev)
 
 for argument in "$@"; do
@@ -33,8 +36,9 @@ for argument in "$@"; do
         --bench) packages+=("${bench_packages[@]}") ;;
         --checks) packages+=("${check_packages[@]}") ;;
         --python) packages+=("${python_packages[@]}") ;;
+        --platforms) packages+=("${platform_packages[@]}") ;;
         --engines) packages+=("${engine_packages[@]}") ;;
-        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--engines]" >&2; exit 2 ;;
+        *) echo "usage: third_party/install.sh [--tests] [--checks] [--bench] [--python] [--platforms] [--engines]" >&2; exit 2 ;;
     esac
 done
 
