@@ -248,7 +248,8 @@ void bound_given_ancestors(benchmark::State& state, const study::QuerySample& qu
             std::vector<Obb> ancestors;
             for (std::size_t k = 0; k < levels; ++k)
                 ancestors.push_back(*fit::fit_oriented(points, glm::mat3(sampling::rotation(random.point<3>()))));
-            const auto found = *study::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter());
+            const auto found = *study::bound_given_ancestors(points, ancestors, queries, measure::minimal_perimeter(),
+                                                             {.max_cells = 0});
             plain += found.plain_hits, given += found.hits, reaching += found.ancestor_hits;
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What inner bounds along turned axes are worth, by scene: what a tree is expected to save by the criterion, what it
-// saves in bounds and boxes tested, and in time. usage: bench_oriented [--target=NAME] [COUNT]
+// saves in bounds and boxes tested, and in time; and the limit of that. usage: bench_oriented [--target=NAME] [COUNT]
 #include <algorithm>
 #include <chrono>
 #include <crofton/boxtree/box_tree.hpp>
@@ -20,21 +20,27 @@ using Clock = std::chrono::steady_clock;
 constexpr Orientation kKinds[3] = {Orientation::aligned, Orientation::oriented, Orientation::automatic};
 constexpr int kViews = 60, kRepetitions = 60;
 
-std::vector<cull::View> views_of(const std::vector<Obb>& boxes, double depth) {
+std::vector<Camera> cameras_in(const std::vector<Obb>& boxes, double depth) {
     Aabb scene;
     for (const Obb& box : boxes) scene.include(box.center);
     std::mt19937_64 random(7);
     const auto number = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
-    std::vector<cull::View> views;
+    std::vector<Camera> cameras;
     for (int i = 0; i < kViews; ++i) {
         Camera camera;
         for (int j = 0; j < 3; ++j) camera.position[j] = number(scene.min[j], scene.max[j]);
         for (int j = 0; j < 3; ++j) camera.forward[j] = j == 1 ? number(-0.3, 0.3) : number(-1, 1);
         camera.far_distance = depth * glm::length(scene.max - scene.min);
-        views.push_back({*frustum_of(camera)});
+        cameras.push_back(camera);
     }
+    return cameras;
+}
+
+std::vector<cull::View> views_of(const std::vector<Camera>& cameras) {
+    std::vector<cull::View> views;
+    for (const Camera& camera : cameras) views.push_back({*frustum_of(camera)});
     return views;
 }
 
@@ -64,14 +70,15 @@ struct Measured {
     double microseconds = 0.0, tests = 0.0;
 };
 
-// Each tree asks all views in turn, so that none profits from what another has left in the caches.
-void time_views(std::vector<Tree>& trees, const std::vector<cull::View>& views, Measured (&result)[3]) {
+// Each tree is asked all its views in turn, so that none profits from what another has left in the caches.
+void time_views(std::vector<Tree>& trees, const std::vector<cull::View> (&views_of_tree)[3], Measured (&result)[3]) {
     std::vector<double> least[3];
-    for (auto& times : least) times.assign(views.size(), 1e30);
+    for (auto& times : least) times.assign(kViews, 1e30);
     cull::VisibleSet visible;
     for (int repetition = 0; repetition < kRepetitions; ++repetition)
         for (int turn = 0; turn < 3; ++turn) {
             const int k = (turn + repetition) % 3;
+            const std::vector<cull::View>& views = views_of_tree[k];
             for (std::size_t v = 0; v < views.size(); ++v) {
                 const auto start = Clock::now();
                 cull::find_visible(trees[static_cast<std::size_t>(k)].tree, views[v], visible,
@@ -85,6 +92,35 @@ void time_views(std::vector<Tree>& trees, const std::vector<cull::View>& views, 
         }
     for (int k = 0; k < 3; ++k)
         for (const double time : least[k]) result[k].microseconds += time / kViews;
+}
+
+// The most that turning a whole tree can gain: the town at 30° beside the town that stands along the axes, which is
+// asked by the same views turned back.
+void print_limit(std::uint32_t count) {
+    const std::vector<Obb> straight = bench::SceneMaker(5).make("town", count),
+                           turned = bench::SceneMaker(5).make("town at 30", count);
+    if (straight.empty()) return;
+    const glm::dmat3 back = glm::dmat3(straight[0].axes) * glm::inverse(glm::dmat3(turned[0].axes));
+    std::vector<Tree> trees;
+    trees.emplace_back(turned, Orientation::aligned);
+    trees.emplace_back(straight, Orientation::aligned);
+    trees.emplace_back(turned, Orientation::automatic);
+    std::puts(
+        "\n| town at 30, shares of its aligned tree | depth | tests: straight town, automatic | time "
+        "|\n|---|---|---|---|");
+    for (const double depth : {1.0, 0.25, 0.06}) {
+        const std::vector<Camera> cameras = cameras_in(turned, depth);
+        std::vector<Camera> turned_back = cameras;
+        for (Camera& camera : turned_back) {
+            camera.position = straight[0].center + back * (camera.position - turned[0].center);
+            camera.forward = back * camera.forward;
+        }
+        Measured m[3];
+        time_views(trees, {views_of(cameras), views_of(turned_back), views_of(cameras)}, m);
+        std::printf("| %zu boxes | %.2f | %.3f, %.3f | %.3f, %.3f |\n", turned.size(), depth, m[1].tests / m[0].tests,
+                    m[2].tests / m[0].tests, m[1].microseconds / m[0].microseconds,
+                    m[2].microseconds / m[0].microseconds);
+    }
 }
 
 }  // namespace
@@ -103,7 +139,8 @@ int main(int argc, char** argv) {
         for (const Orientation kind : kKinds) trees.emplace_back(boxes, kind);
         for (const double depth : {1.0, 0.25, 0.06}) {
             Measured m[3];
-            time_views(trees, views_of(boxes, depth), m);
+            const std::vector<cull::View> views = views_of(cameras_in(boxes, depth));
+            time_views(trees, {views, views, views}, m);
             std::printf(
                 "| %s | %zu | %zu, %zu of %zu | %.0f, %.0f, %.0f | %.3f, %.3f | %.2f | %.3f, %.3f | %.2f | %.3f, %.3f "
                 "|\n",
@@ -113,5 +150,6 @@ int main(int argc, char** argv) {
                 m[0].microseconds, m[1].microseconds / m[0].microseconds, m[2].microseconds / m[0].microseconds);
         }
     }
+    print_limit(count);
     return 0;
 }

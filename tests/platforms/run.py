@@ -29,6 +29,8 @@ WORK = ROOT / "build" / "platforms"
 SOURCES = WORK / "sources"
 TARGETS = ["test_determinism", "test_core", "test_geometry"]
 EMSCRIPTEN = "/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake"
+# Debian's Emscripten needs its modules of node, which a node from elsewhere does not look for.
+ENVIRONMENT = {"NODE_PATH": "/usr/share/nodejs", "WINEDEBUG": "-all", **os.environ}
 # A pool of threads must exist before the program waits for one, and exceptions are off unless asked for.
 WASM_LINK = "-pthread -fexceptions -sPTHREAD_POOL_SIZE=12 -sINITIAL_MEMORY=1073741824 -sEXIT_RUNTIME=1 -sTOTAL_STACK=4194304"
 
@@ -81,7 +83,7 @@ CELLS = [
     Cell("clang-libcxx", "clang 14, x86-64, libc++", ["clang++-14", "/usr/lib/llvm-14/include/c++/v1/vector"],
          clang(), toolchain("clang-libcxx"), host="x86_64-linux-gnu"),
     Cell("i386", "g++ 12, 32-bit x86", ["g++", "/usr/lib/gcc/x86_64-linux-gnu/12/32/libstdc++.a"],
-         ["-DCROFTON_SIMD_TARGETS=SSE4;AVX2"],
+         ["-DCROFTON_SIMD_TARGETS=SSE4"],
          toolchain("i686-linux-gnu"), host="i686-linux-gnu", gmp_flags="-m32 -idirafter /usr/include/x86_64-linux-gnu"),
     Cell("aarch64", "g++ 12, 64-bit ARM, qemu", ["aarch64-linux-gnu-g++", "qemu-aarch64"], [],
          toolchain("aarch64-linux-gnu"), host="aarch64-linux-gnu",
@@ -105,14 +107,14 @@ def run(command, log, cwd=ROOT, environment=None):
     with log.open("a") as file:
         print("$", shlex.join(map(str, command)), file=file, flush=True)
         done = subprocess.run([str(c) for c in command], cwd=cwd, stdout=file, stderr=subprocess.STDOUT,
-                              env={**os.environ, **(environment or {})})
+                              env={**ENVIRONMENT, **(environment or {})})
     if done.returncode:
         raise Failed(f"`{Path(str(command[0])).name}` failed, see {log.relative_to(ROOT)}")
 
 
 def fetch_sources(log):
     """Unpacks the source packages of highway, qhull and gmp: the system's own versions, Debian's patches applied."""
-    if all((SOURCES / name).exists() for name in ("highway", "qhull", "gmp")):
+    if all((SOURCES / name).exists() for name in ("highway", "qhull", "gmp/doc")):
         return
     release = re.search(r"VERSION_CODENAME=(\w+)", Path("/etc/os-release").read_text())
     if not release:
@@ -128,6 +130,9 @@ def fetch_sources(log):
     for name in ("highway", "qhull", "gmp"):
         description = next(packages.glob(f"{name}_*.dsc"))
         run(["dpkg-source", "--no-check", "-x", description.name, SOURCES / name], log, packages)
+    # Debian leaves out GMP's manual, which its configure expects.
+    (SOURCES / "gmp" / "doc").mkdir(exist_ok=True)
+    (SOURCES / "gmp" / "doc" / "Makefile.in").write_text("all install check clean:\n")
 
 
 def cmake_options(cell):
@@ -179,7 +184,7 @@ def test(cell, target, log):
     """The numbers of passed, failed and skipped test cases of one program, and its digests' tests that failed."""
     program = cell.build / "build" / "bin" / (target + cell.suffix)
     done = subprocess.run([*cell.runner, str(program)], cwd=cell.build, capture_output=True, text=True, errors="replace",
-                          env={**os.environ, "WINEDEBUG": "-all"})
+                          env=ENVIRONMENT)
     with log.open("a") as file:
         print(f"$ {target}", done.stdout, done.stderr, sep="\n", file=file)
     found = re.findall(r"test cases:\s+(\d+) \|\s+(\d+) passed \|\s+(\d+) failed", done.stdout)

@@ -9,6 +9,7 @@
 #include <crofton/study/k_dop.hpp>
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <numbers>
 #include <vector>
 
@@ -79,7 +80,8 @@ TEST_SUITE("study/k_dop") {
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             const auto points = random_points(seed, 12);
             for (const std::uint32_t k : {6u, 14u, 18u, 26u}) {
-                const auto best = study::best_k_dop(points, *study::k_dop_directions(k), measure::minimal_area());
+                const auto best =
+                    study::best_k_dop(points, *study::k_dop_directions(k), measure::minimal_area(), {.max_cells = 100});
                 REQUIRE(best.has_value());
                 for (const glm::dvec3& p : points)
                     for (std::size_t i = 0; i < best->bound.directions.size(); ++i) {
@@ -99,6 +101,55 @@ TEST_SUITE("study/k_dop") {
                 CHECK(best->value >= box->lower_bound * (1.0 - 1e-9));
             }
         }
+    }
+
+    TEST_CASE("the gap is certified: a box's is the proved optimum, and no rotation undercuts the bound") {
+        for (std::uint64_t seed = 0; seed < 6; ++seed) {
+            const auto points = random_points(seed, 14);
+            for (const auto& criterion :
+                 {measure::minimal_area(), measure::minimal_volume(), measure::minimal_perimeter()}) {
+                const auto box = fit::fit_exact(std::span<const glm::dvec3>(points), {.criterion = criterion});
+                const auto six = study::best_k_dop(points, *study::k_dop_directions(6), criterion,
+                                                   {.tolerance = 5e-3, .max_cells = 4000});
+                CHECK(six->lower_bound <= box->value * (1.0 + 1e-6));
+                CHECK(six->lower_bound >= box->lower_bound * (1.0 - 6e-3));
+                CHECK(six->value <= box->value * (1.0 + 6e-3));
+            }
+            const auto directions = *study::k_dop_directions(seed % 2 == 0 ? 14 : 18);
+            const auto by_edges = study::best_k_dop(points, directions, measure::minimal_perimeter());
+            const auto by_area =
+                study::best_k_dop(points, directions, measure::minimal_area(), {.tolerance = 0.05, .max_cells = 10000});
+            CHECK(by_edges->value - by_edges->lower_bound <= 0.01 * by_edges->value);
+            CHECK(by_area->value - by_area->lower_bound <= 0.05 * by_area->value);
+            sampling::Random random(5, seed);
+            for (int turn = 0; turn < 200; ++turn) {
+                const glm::dmat3 rotation = sampling::rotation(random.point<3>());
+                std::vector<glm::dvec3> turned;
+                for (const glm::dvec3& d : directions) turned.push_back(rotation * d);
+                const auto volumes = measure::intrinsic_volumes_of_hull(study::k_dop_around(points, turned)->corners);
+                CHECK(volumes->area >= by_area->lower_bound);
+                CHECK(volumes->mean_curvature >= by_edges->lower_bound);
+            }
+        }
+        CHECK(error_of(study::best_k_dop(random_points(1, 5), *study::k_dop_directions(6), measure::minimal_area(),
+                                         {.tolerance = 0.0}))
+                  .code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("directions of one's own are searched over all rotations, not a cube's share of them") {
+        // Slabs of a skewed frame around a parallelepiped of the same frame, turned far: only that rotation fits.
+        const std::vector<glm::dvec3> directions = {
+            {1, 0, 0}, glm::normalize(glm::dvec3(0.5, 1, 0)), glm::normalize(glm::dvec3(0.2, 0.4, 1))};
+        const glm::dmat3 far = sampling::rotation({0.31, 0.77, 0.12});
+        const glm::dmat3 rows = glm::transpose(glm::dmat3(directions[0], directions[1], directions[2]));
+        std::vector<glm::dvec3> points;
+        for (unsigned c = 0; c < 8; ++c)
+            points.push_back(
+                far * (glm::inverse(rows) * glm::dvec3(c & 1 ? 1.0 : -1.0, c & 2 ? 0.6 : -0.6, c & 4 ? 0.3 : -0.3)));
+        const auto own = measure::intrinsic_volumes_of_hull(points)->volume;
+        const auto best = study::best_k_dop(points, directions, measure::minimal_volume(), {.max_cells = 20000});
+        CHECK(best->value == doctest::Approx(own).epsilon(0.02));
+        CHECK(best->lower_bound <= own * (1.0 + 1e-9));
     }
 
     TEST_CASE("the body that culling takes contains every point exactly, a millionth larger, and loses none of them") {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <crofton/fit/fit.hpp>
+#include <crofton/geometry/mesh.hpp>
 #include <crofton/geometry/trigonometry.hpp>
 #include <crofton/study/bound_given_ancestors.hpp>
 #include <glm/geometric.hpp>
+
+#include "count_search.hpp"
 
 namespace crofton::study {
 namespace {
@@ -70,15 +73,20 @@ class Search {
 
 Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> points, std::span<const Obb> ancestors,
                                                   const study::QuerySample& queries,
-                                                  const measure::Criterion& criterion) {
+                                                  const measure::Criterion& criterion,
+                                                  const BoundGivenAncestorsOptions& options) {
     if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+    if (!(options.tolerance >= 0.0 && options.tolerance < 1.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "bound given ancestors: `tolerance` must lie in [0, 1)");
     const auto plain = fit::fit_obb(points, {.criterion = criterion});
     if (!plain) return tl::unexpected(plain.error());
+    const auto hull = convex_hull(points);
+    if (!hull) return tl::unexpected(hull.error());
     Vector<std::uint32_t> candidates = queries.all();
     for (const Obb& ancestor : ancestors) candidates = queries.hitting(candidates, ancestor);
     BoundGivenAncestors result;
     result.ancestor_hits = static_cast<std::uint32_t>(candidates.size());
-    Search search(points, queries, criterion, std::move(candidates));
+    Search search(points, queries, criterion, candidates);
     search.consider(*plain);
     result.plain_hits = search.hits();
     for (const measure::Criterion& other : {measure::minimal_area(), measure::minimal_perimeter()})
@@ -86,6 +94,14 @@ Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> po
     for (const Obb& ancestor : ancestors) search.consider(ancestor.axes);
     search.consider(glm::mat3(1.0f));
     search.descend();
+    const auto consider = [&](const glm::dmat3& axes) {
+        search.consider(glm::mat3(axes));
+        return search.hits();
+    };
+    const CountProof proof = prove_count(points, hull->triangles, queries, candidates, search.hits(), options.tolerance,
+                                         options.max_cells, consider);
+    result.lower_bound = proof.lower_bound;
+    result.cells = proof.cells;
     result.bound = search.best();
     result.hits = search.hits();
     return result;

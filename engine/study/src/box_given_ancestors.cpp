@@ -12,34 +12,12 @@
 
 #include "ancestor_directions.hpp"
 #include "direction_cells.hpp"
+#include "rotation_cells.hpp"
 
 namespace crofton::study {
 namespace {
 
 using std::numbers::pi;
-
-// The rotation of Rodrigues vector g = tan(angle / 2) · axis.
-glm::dmat3 rotation_of(const glm::dvec3& g) {
-    glm::dmat3 result;
-    const double scale = 2.0 / (1.0 + glm::dot(g, g));
-    for (int k = 0; k < 3; ++k) {
-        glm::dvec3 e(0.0);
-        e[k] = 1.0;
-        const glm::dvec3 once = glm::cross(g, e);
-        result[k] = e + scale * (once + glm::cross(g, once));
-    }
-    return result;
-}
-
-// The Rodrigues vector of rotation_of(g) · rotation_of(from)⁻¹. A projective map of g: cubes become polytopes whose
-// corners are the images of theirs, as long as 1 + dot(g, from) > 0.
-glm::dvec3 turn_between(const glm::dvec3& from, const glm::dvec3& g) {
-    return (g - from - glm::cross(g, from)) / (1.0 + glm::dot(g, from));
-}
-
-glm::dvec3 corner_of(const glm::dvec3& center, double half, unsigned corner) {
-    return center + half * glm::dvec3(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-}
 
 struct Cell {
     glm::dvec3 center;  // Rodrigues
@@ -133,7 +111,7 @@ class BoxSearch {
             heap.push_back({center, half, below, result.cells});
             std::push_heap(heap.begin(), heap.end(), lower);
         };
-        add(glm::dvec3(0.0), std::sqrt(2.0) - 1.0 + 1e-12, 0.0);
+        add(glm::dvec3(0.0), kHalfOfAllRotations, 0.0);
         while (!heap.empty() && result.cells < options.max_cells &&
                heap.front().bound < result.value * (1.0 - options.tolerance)) {
             std::pop_heap(heap.begin(), heap.end(), lower);

@@ -11,6 +11,8 @@
 #include <glm/matrix.hpp>
 #include <string>
 
+#include "k_dop_search.hpp"
+
 namespace crofton::study {
 namespace {
 
@@ -107,8 +109,10 @@ Result<KDop> k_dop_around(std::span<const glm::dvec3> points, std::span<const gl
 }
 
 Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
-                            const measure::Criterion& criterion) {
+                            const measure::Criterion& criterion, const BestKDopOptions& options) {
     if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
+    if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
+        return fail(ErrorCode::invalid_argument, kNoItem, "k-DOP: `tolerance` must lie in (0, 1)");
     const auto hull = convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     if (hull->rank < 3) return fail(ErrorCode::degenerate, kNoItem, "k-DOP: the points lie in a plane");
@@ -118,7 +122,6 @@ Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const 
     if (!own) return tl::unexpected(own.error());
     BestKDop best;
     best.value = kInfinity;
-    best.lower_bound = criterion(*own);
     const auto value_at = [&](const glm::dmat3& rotation, KDop& dop) {
         Vector<glm::dvec3> turned_directions;
         for (const glm::dvec3& d : directions) turned_directions.push_back(rotation * d);
@@ -147,6 +150,19 @@ Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const 
                 if (value < best.value) best.value = value, best.bound = dop, best.rotation = at;
             }
     }
+    glm::dvec3 middle(0.0);
+    for (const glm::dvec3& p : corners) middle += p / static_cast<double>(corners.size());
+    Vector<glm::dvec3> around_middle;
+    for (const glm::dvec3& p : corners) around_middle.push_back(p - middle);
+    Vector<glm::dvec3> units;
+    for (const glm::dvec3& d : directions) units.push_back(glm::normalize(d));
+    const KDopSearch found =
+        search_rotations(around_middle, units, criterion, best.value, options.tolerance, options.max_cells);
+    if (const double value = value_at(found.rotation, dop); value < best.value)
+        best.value = value, best.bound = dop, best.rotation = found.rotation;
+    // Every bound contains the hull.
+    best.lower_bound = std::min(best.value, std::max(criterion(*own), found.lower_bound));
+    best.cells = found.cells;
     return best;
 }
 

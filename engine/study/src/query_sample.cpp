@@ -114,6 +114,50 @@ bool QuerySample::hits(std::uint32_t i, const Obb& box) const {
     return true;
 }
 
+bool QuerySample::surely_hits(std::uint32_t i, std::span<const glm::dvec3> points,
+                              std::span<const std::uint32_t> triangles) const {
+    const Query& q = queries_[i];
+    if (kind_ == Kind::plane) {
+        bool above = false, below = false;
+        for (const glm::dvec3& p : points) {
+            const double side = glm::dot(p - q.point, q.direction);
+            above = above || side >= 0.0;
+            below = below || side <= 0.0;
+        }
+        return above && below;
+    }
+    for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+        const std::array<glm::dvec3, 3> corner = {points[triangles[t]] - q.point, points[triangles[t + 1]] - q.point,
+                                                  points[triangles[t + 2]] - q.point};
+        int turns = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec3 &a = corner[k], &b = corner[(k + 1) % 3];
+            if (kind_ == Kind::frustum && segment_enters(q, a, b)) return true;
+            const double turn = glm::dot(glm::cross(a, b), q.direction);
+            turns += turn > 0.0 ? 1 : turn < 0.0 ? -1 : 0;
+        }
+        if (kind_ == Kind::line && std::abs(turns) == 3) return true;
+    }
+    return false;
+}
+
+// Points relative to the query's own.
+bool QuerySample::segment_enters(const Query& q, const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::dmat3 back = glm::transpose(q.rotation);
+    const glm::dvec3 a = back * from, b = back * to;
+    double begin = 0.0, end = 1.0;
+    // The part where side(0) + t (side(1) − side(0)) >= 0.
+    const auto clip = [&](double at_a, double at_b) {
+        if (at_a < 0.0 && at_b < 0.0) return false;
+        if (at_a < 0.0) begin = std::max(begin, at_a / (at_a - at_b));
+        if (at_b < 0.0) end = std::min(end, at_a / (at_a - at_b));
+        return begin <= end;
+    };
+    for (std::size_t k = 0; k < normals_.size(); ++k)
+        if (!clip(glm::dot(normals_[k], a) - extents_[k][0], glm::dot(normals_[k], b) - extents_[k][0])) return false;
+    return clip(extents_[4][1] - glm::dot(normals_[4], a), extents_[4][1] - glm::dot(normals_[4], b));
+}
+
 bool QuerySample::straddles(std::uint32_t i, const Obb& box) const {
     if (kind_ != Kind::frustum) return hits(i, box);
     bool contained = false;

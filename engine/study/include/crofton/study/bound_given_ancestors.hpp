@@ -16,16 +16,29 @@ struct BoundGivenAncestors {
     std::uint32_t ancestor_hits = 0;  // sampled queries that hit all ancestors
     std::uint32_t hits = 0;           // of those, how many hit `bound` too
     std::uint32_t plain_hits = 0;     // of those, how many hit the box that the criterion alone chooses
+    std::uint32_t lower_bound = 0;    // of those, at least so many hit any box around the object, however turned
+    std::uint64_t cells = 0;          // sets of orientations bounded
+};
+
+struct BoundGivenAncestorsOptions {
+    double tolerance = 1e-2;          // stop when hits − lower_bound ≤ tolerance · hits …
+    std::uint64_t max_cells = 20000;  // … or after this many cells; 0: by the object's hull alone
 };
 
 // By counting a sample of queries: planes, rays or frusta. Several orientations are tried first: boxes fitted by the
 // criterion, by area and by edge sum, the ancestors' axes, the world's. The best one is then turned by ever smaller
-// angles. Ties go to the criterion. A good local optimum of the count, never worse than the plain fit; no certificate.
-// The box contains all points. Errors: as fit_obb; a criterion that fails validate.
+// angles. Ties go to the criterion. Never worse than the plain fit.
+//
+// `lower_bound` is a certificate for the sample, by branch and bound over the orientations that differ as boxes. A
+// query that hits the object's hull hits every box around it; one that hits what is common to all tight boxes of a cell
+// of orientations hits each of them. Queries that touch within rounding may be off. Cells shrink the gap in proportion
+// to their size, so it stays wide for few of them (docs/notes/measure.md). The box contains all points. Errors: as
+// fit_obb; a criterion that fails validate; a tolerance outside [0, 1).
 [[nodiscard]] Result<BoundGivenAncestors> bound_given_ancestors(std::span<const glm::dvec3> points,
                                                                 std::span<const Obb> ancestors,
                                                                 const study::QuerySample& queries,
-                                                                const measure::Criterion& criterion);
+                                                                const measure::Criterion& criterion,
+                                                                const BoundGivenAncestorsOptions& options = {});
 
 struct BoxGivenAncestorsOptions {
     double tolerance = 1e-2;           // stop when value − lower_bound ≤ tolerance · value …
