@@ -23,7 +23,7 @@ std::vector<OutlineLine> outline_lines(const Body& body, const RigidTransform& p
 }  // namespace
 
 TEST_SUITE("convex/outline") {
-    TEST_CASE("a box has twelve lines, a triangle three, a hull its edges; all corners are reached") {
+    TEST_CASE("a box has twelve lines, a triangle three, a hull its edges, and all corners are reached") {
         RandomBodies random(1);
         for (int i = 0; i < 50; ++i) {
             const Body body = random.polytope(20);
