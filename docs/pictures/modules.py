@@ -42,8 +42,8 @@ def levels(modules):
     return level, arrows
 
 
-def place(level, arrows, left, width):
-    """Rows of boxes; each row is put in the order of the mean place of what its modules use."""
+def place(level, arrows, left, width, top):
+    """Rows of boxes, row `top` the highest; each row is put in the order of the mean place of what its modules use."""
     at, rows = {}, {}
     for name in sorted(level):
         rows.setdefault(level[name], []).append(name)
@@ -53,13 +53,13 @@ def place(level, arrows, left, width):
             return sum(used) / len(used) if used else left
         rows[row].sort(key=lambda name: (mean(name), name))
         for i, name in enumerate(rows[row]):
-            at[name] = (left + width * (i + 1) / (len(rows[row]) + 1), 470 - 58 * row)
+            at[name] = (left + width * (i + 1) / (len(rows[row]) + 1), 58 * (top - row) + 66)
     return at
 
 
-def draw(title, modules, left, width):
+def draw(title, modules, left, width, top):
     level, arrows = levels(modules)
-    at = place(level, arrows, left, width)
+    at = place(level, arrows, left, width, top)
     out = [f'<text class="title" x="{left + width / 2}" y="28">{title}</text>']
     for user, used in arrows:
         (x0, y0), (x1, y1) = at[user], at[used]
@@ -92,7 +92,9 @@ rect { fill: #24303c; stroke: #8ab; }
 </style>"""
 
 now = today()
-body = draw("0.1", BEFORE, 0, 360) + draw("now", now, 370, 640)
+top = max(max(levels(modules)[0].values()) for modules in (BEFORE, now))
+height = 58 * top + 140
+body = draw("0.1", BEFORE, 0, 360, top) + draw("now", now, 370, 640, top)
 legend = "an arrow: uses; arrows that others imply are left out · yellow: the front door · dashed: a library of its own · not drawn: study, which uses all, and simd"
-print('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1020 530" width="1020" height="530">')
-print("\n".join([STYLE, *body, f'<text class="note" x="16" y="516">{legend}</text>', "</svg>"]))
+print(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1020 {height}" width="1020" height="{height}">')
+print("\n".join([STYLE, *body, f'<text class="note" x="16" y="{height - 14}">{legend}</text>', "</svg>"]))
