@@ -95,6 +95,53 @@ TEST_SUITE("pvs/view") {
         }
     }
 
+    TEST_CASE("what has moved since it came, however seldom, and what has another's index is not judged by the set") {
+        World world({.pairs = false});
+        std::vector<ObjectHandle> objects;
+        const auto ball = [](double x) { return Sphere{{x, 0.0, -20.0}, 0.25}; };
+        for (int i = 0; i < 200; ++i) objects.push_back(world.add({.bound = ball(0.05 * i - 5.0)}).value());
+        for (int frame = 0; frame < 40; ++frame) REQUIRE(world.update().has_value());
+        const std::vector<std::uint64_t> none(8, 0);  // room for those that come later
+        const auto seen = [&](const ObjectHandle& object) {
+            VisibleObjects plain, hiding;
+            REQUIRE(world.view(Camera{}, plain, {.among = none}).has_value());
+            REQUIRE(world.view(Camera{}, OcclusionOptions{}, hiding, {.among = none}).has_value());
+            CHECK(sorted(plain.ids()) == sorted(hiding.ids()));
+            return std::count(plain.ids().begin(), plain.ids().end(), object.index) == 1;
+        };
+        CHECK_FALSE(seen(objects[0]));
+        // Every second update: it never leaves the tree.
+        for (int frame = 0; frame < 20; ++frame) {
+            if (frame % 2 == 0) REQUIRE(world.set_bound(objects[3], ball(0.01 * frame)).has_value());
+            REQUIRE(world.update().has_value());
+            CHECK(seen(objects[3]));
+        }
+        // Once, hidden, and back in the tree for long.
+        REQUIRE(world.set_hidden(objects[4], true).has_value());
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.set_bound(objects[4], ball(1.0)).has_value());
+        REQUIRE(world.update().has_value());
+        REQUIRE(world.set_hidden(objects[4], false).has_value());
+        // New ones: one rests from the beginning, one moves a little first, one has the index of another.
+        const auto resting = world.add({.bound = ball(0.1)}).value(),
+                   restless = world.add({.bound = ball(0.2)}).value();
+        REQUIRE(world.remove(objects[5]).has_value());
+        for (int frame = 0; frame < 5; ++frame) {
+            REQUIRE(world.update().has_value());
+            REQUIRE(world.set_bound(restless, ball(0.2 + 0.1 * frame)).has_value());
+        }
+        const auto heir = world.add({.bound = ball(0.3)}).value();
+        REQUIRE(heir.index == objects[5].index);
+        for (int frame = 0; frame < 60; ++frame) REQUIRE(world.update().has_value());
+        CHECK_FALSE(seen(objects[0]));
+        CHECK_FALSE(seen(objects[199]));
+        CHECK_FALSE(seen(resting));
+        CHECK(seen(objects[3]));
+        CHECK(seen(objects[4]));
+        CHECK(seen(restless));
+        CHECK(seen(heir));
+    }
+
     TEST_CASE("with occlusion the same objects are left out") {
         for (std::uint64_t seed = 1; seed <= 3; ++seed) {
             Town town(seed, 2000, 0.5);

@@ -28,12 +28,29 @@ crofton_status create_body(crofton_body** body, const char* function, Make make)
 }
 
 // Of a body that views nothing.
-crofton_status create_simple(crofton_body** body, const char* function, const Result<convex::Body>& made) {
-    return create_body(body, function, [&](BodyData&) { return made; });
+template <class Make>
+crofton_status create_simple(crofton_body** body, const char* function, Make make) {
+    return create_body(body, function, [&](BodyData&) { return make(); });
 }
 
 glm::vec3 to_float_vector(const float* v) {
     return {v[0], v[1], v[2]};
+}
+
+crofton_status create_compound(crofton_body** body, const char* function, Vector<SharedBody> parts,
+                               const crofton_transform* poses) {
+    return create_body(body, function, [&](BodyData& data) -> Result<convex::Body> {
+        Vector<convex::CompoundChild> children;
+        children.reserve(parts.size());
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const scene::Transform pose = to_transform(poses[i]);
+            children.push_back({*parts[i]->body, {pose.linear, pose.translation}});
+        }
+        data.parts = std::move(parts);
+        auto built = convex::Compound::build(children);
+        if (!built) return tl::unexpected(built.error());
+        return convex::Body::compound(data.compound.emplace(std::move(*built)));
+    });
 }
 
 void give_bounds(const Aabb& bounds, crofton_body_info& info) {
@@ -44,36 +61,39 @@ void give_bounds(const Aabb& bounds, crofton_body_info& info) {
 }  // namespace
 
 crofton_status crofton_body_ball(float radius, crofton_body** body) {
-    return create_simple(body, __func__, convex::Body::ball(radius));
+    return create_simple(body, __func__, [&] { return convex::Body::ball(radius); });
 }
 
 crofton_status crofton_body_capsule(float half_height, float radius, crofton_body** body) {
-    return create_simple(body, __func__, convex::Body::capsule(half_height, radius));
+    return create_simple(body, __func__, [&] { return convex::Body::capsule(half_height, radius); });
 }
 
 crofton_status crofton_body_cylinder(float half_height, float radius, crofton_body** body) {
-    return create_simple(body, __func__, convex::Body::cylinder(half_height, radius));
+    return create_simple(body, __func__, [&] { return convex::Body::cylinder(half_height, radius); });
 }
 
 crofton_status crofton_body_cone(float half_height, float radius, crofton_body** body) {
-    return create_simple(body, __func__, convex::Body::cone(half_height, radius));
+    return create_simple(body, __func__, [&] { return convex::Body::cone(half_height, radius); });
 }
 
 crofton_status crofton_body_box(const float half_extents[3], crofton_body** body) {
     CROFTON_CHECK(check_pointer(half_extents, __func__));
-    return create_simple(body, __func__, convex::Body::box(to_float_vector(half_extents)));
+    return create_simple(body, __func__, [&] { return convex::Body::box(to_float_vector(half_extents)); });
 }
 
 crofton_status crofton_body_triangle(const float corners[9], crofton_body** body) {
     CROFTON_CHECK(check_pointer(corners, __func__));
-    return create_simple(
-        body, __func__,
-        convex::Body::triangle(to_float_vector(corners), to_float_vector(corners + 3), to_float_vector(corners + 6)));
+    return create_simple(body, __func__, [&] {
+        return convex::Body::triangle(to_float_vector(corners), to_float_vector(corners + 3),
+                                      to_float_vector(corners + 6));
+    });
 }
 
 crofton_status crofton_body_half_space(const crofton_plane* plane, crofton_body** body) {
     CROFTON_CHECK(check_pointer(plane, __func__));
-    return create_simple(body, __func__, convex::Body::half_space({to_vector(plane->normal), plane->offset}));
+    return create_simple(body, __func__, [&] {
+        return convex::Body::half_space({to_vector(plane->normal), plane->offset});
+    });
 }
 
 crofton_status crofton_body_hull(const float* points, size_t count, const crofton_hull_options* options,
@@ -138,21 +158,17 @@ crofton_status crofton_body_compound(const crofton_body* const* children, const 
                                      crofton_body** body) {
     CROFTON_CHECK(check_array(children, count, __func__));
     CROFTON_CHECK(check_array(poses, count, __func__));
-    for (std::size_t i = 0; i < count; ++i)
-        if (const SharedUse use(children[i], __func__); use.failed())
-            return report(use.status(), __func__, "a child is no body", i);
-    return create_body(body, __func__, [&](BodyData& data) -> Result<convex::Body> {
-        Vector<convex::CompoundChild> copies;
-        copies.reserve(count);
-        data.parts.reserve(count);
+    const char* const function = __func__;
+    return recover(function, [&] {
+        // Copied while they are held: another thread may destroy a child at any time.
+        Vector<SharedBody> parts;
+        parts.reserve(count);
         for (std::size_t i = 0; i < count; ++i) {
-            const scene::Transform pose = to_transform(poses[i]);
-            copies.push_back({*children[i]->data->body, {pose.linear, pose.translation}});
-            data.parts.push_back(children[i]->data);
+            const SharedUse use(children[i], function);
+            if (use.failed()) return report(use.status(), function, "a child is no body", i);
+            parts.push_back(children[i]->data);
         }
-        auto built = convex::Compound::build(copies);
-        if (!built) return tl::unexpected(built.error());
-        return convex::Body::compound(data.compound.emplace(std::move(*built)));
+        return create_compound(body, function, std::move(parts), poses);
     });
 }
 

@@ -2,6 +2,7 @@
 #include <crofton/capi/base.h>
 
 #include <crofton/core/error.hpp>
+#include <crofton/core/no_recovery.hpp>
 #include <mutex>
 #include <string>
 
@@ -47,6 +48,7 @@ unsigned HostJobs::concurrency() const {
 
 void HostJobs::parallel_for(std::size_t count, std::size_t grain, RangeTask body) {
     if (!jobs_) return serial_executor().parallel_for(count, grain, body);
+    const detail::NoRecovery host;
     jobs_->parallel_for(
         jobs_->user, count, grain,
         [](void* data, std::size_t begin, std::size_t end, std::uint32_t worker) {

@@ -34,9 +34,12 @@ crofton_status check_eye(const double* eye, const char* function) {
 crofton_status crofton_pvs_open(const char* path, crofton_pvs** pvs) {
     CROFTON_CHECK(check_pointer(path, __func__));
     CROFTON_CHECK(check_pointer(pvs, __func__));
-    auto opened = pvs::Pvs::open(path);
-    if (!opened) return report(opened.error(), __func__);
-    return create(pvs, __func__, std::move(*opened));
+    const char* const function = __func__;
+    return recover(function, [&] {
+        auto opened = pvs::Pvs::open(path);
+        if (!opened) return report(opened.error(), function);
+        return create(pvs, function, std::move(*opened));
+    });
 }
 
 crofton_status crofton_pvs_destroy(crofton_pvs* pvs) {

@@ -112,7 +112,7 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     for (const glm::dvec3& p : t.corner) t.reach = std::max(t.reach, glm::dot(p, p));
     t.reach += glm::dot(half_, half_);
     // The direction of a sliver's face is as uncertain as that of nearly parallel edges.
-    if (!(glm::dot(t.normal, t.normal) >= kUncertain * t.reach * t.longest)) return Warm::unknown;
+    if (!(glm::dot(t.normal, t.normal) > kUncertain * t.reach * t.longest)) return Warm::unknown;
     Axis least;
     try_faces(t, least);
     if (least.extent < limit) return Warm::apart;

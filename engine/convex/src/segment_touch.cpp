@@ -97,7 +97,8 @@ Warm SegmentTouch::ask(const PlacedTriangle& t, Touch& touch) const {
     }
     for (int k = 0; k < 3; ++k) offer_edge(best, k, t.corner[k], edge[k], end_[0], end_[1] - end_[0], count_);
     const double distance = std::sqrt(best.squared);
-    if (!(distance > 8.0 * error_)) return Warm::unknown;
+    // Nearer than this the direction is rounding.
+    if (!(distance > 0x1p16 * error_)) return Warm::unknown;
     const glm::dvec3 n = (best.on_segment - best.on_triangle) / distance;
     const double lower =
         std::min(glm::dot(n, end_[0] - best.on_triangle), glm::dot(n, end_[1] - best.on_triangle)) -

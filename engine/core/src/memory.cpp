@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <crofton/core/memory.hpp>
+#include <crofton/core/no_recovery.hpp>
 #include <crofton/core/recovery.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -53,6 +55,11 @@ detail::Recovery::~Recovery() {
 }
 bool detail::Recovery::is_nested() {
     return recoveries > 1;
+}
+
+detail::NoRecovery::NoRecovery() : recoveries_(std::exchange(recoveries, 0)) {}
+detail::NoRecovery::~NoRecovery() {
+    recoveries = recoveries_;
 }
 
 void* detail::try_allocate(std::size_t bytes, std::size_t alignment) {

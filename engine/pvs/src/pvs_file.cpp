@@ -63,7 +63,7 @@ struct PvsFile {
         writer.add("pvs_box", std::span<const Aabb>(boxes));
         writer.add("pvs_kind", std::span<const CellKind>(pvs.kinds_));
         writer.add("pvs_from", std::span<const std::uint64_t>(pvs.baked_));
-        writer.add("pvs_code", std::span<const std::byte>(code));
+        writer.add("pvs_pair", std::span<const std::byte>(code));
     }
 
     static Result<Pvs> read(const bake::Reader& reader) {
@@ -71,7 +71,7 @@ struct PvsFile {
         const auto boxes = reader.section<Aabb>("pvs_box");
         const auto kinds = reader.section<CellKind>("pvs_kind");
         const auto baked = reader.section<std::uint64_t>("pvs_from");
-        const auto code = reader.section<std::byte>("pvs_code");
+        const auto code = reader.section<std::byte>("pvs_pair");
         if (!head) return tl::unexpected(head.error());
         if (!boxes) return tl::unexpected(boxes.error());
         if (!kinds) return tl::unexpected(kinds.error());

@@ -211,7 +211,7 @@ HWY_INLINE unsigned beam_children(D d, const mesh::BoxNode& node, const Beam& be
 }
 
 // The lines that pass one child: the arithmetic of `children`. A line that passes a box passes all boxes around it,
-// since each of the steps is monotone, rounding included: so the boxes in between need no test.
+// since each of the steps is monotone, rounding included: so a leaf gets the same lines by whichever way.
 HWY_INLINE std::uint64_t lines_through(const Beam& beam, const mesh::BoxNode& node, std::size_t lane) {
     const DL d;
     using W = hn::Vec<DL>;
@@ -248,11 +248,11 @@ HWY_INLINE bool cross_leaf(const TracerLeaf& leaf, const Beam& beam, std::uint64
     const D d;
     alignas(64) float values[kLanes];
     for (; lines != 0; lines &= lines - 1) {
-        const auto i = static_cast<std::size_t>(__builtin_ctzll(lines));
+        const auto i = static_cast<std::size_t>(std::countr_zero(lines));
         if (found.count + kLanes > Crossings::kMost) return false;
         unsigned front;
         for (unsigned met = triangles(d, leaf, Spread(d, beam, i), values, &front); met != 0; met &= met - 1) {
-            const unsigned t = static_cast<unsigned>(__builtin_ctz(met));
+            const unsigned t = static_cast<unsigned>(std::countr_zero(met));
             found.lines[found.count] = static_cast<std::uint8_t>(i);
             found.hits[found.count++] = {values[t], leaf.triangle[t] | ((front >> t & 1u) ? kFront : 0u)};
             ++found.counts[i];
@@ -268,19 +268,19 @@ HWY_INLINE void lines_to_children(const Beam& beam, const mesh::BoxNode& node, s
     unsigned bits = beam_children(d, node, beam);
     for (std::size_t lane = 0; lane < kLanes; ++lane) passing[lane] = 0;
     // One by one all children take as long as a child takes with all lines, times a sixth of the lines.
-    if (6 * __builtin_popcount(bits) <= __builtin_popcountll(lines)) {
+    if (6 * std::popcount(bits) <= std::popcount(lines)) {
         for (; bits != 0; bits &= bits - 1) {
-            const auto lane = static_cast<std::size_t>(__builtin_ctz(bits));
+            const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
             passing[lane] = lines & lines_through(beam, node, lane);
         }
         return;
     }
     alignas(64) float entry[kLanes];
     for (; lines != 0; lines &= lines - 1) {
-        const auto i = static_cast<std::size_t>(__builtin_ctzll(lines));
+        const auto i = static_cast<std::size_t>(std::countr_zero(lines));
         const std::uint64_t line = lines & (~lines + 1);
         for (unsigned met = children(d, node, Spread(d, beam, i), -kFar, kFar, entry); met != 0; met &= met - 1)
-            passing[__builtin_ctz(met)] |= line;
+            passing[std::countr_zero(met)] |= line;
     }
 }
 

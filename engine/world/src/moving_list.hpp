@@ -19,6 +19,7 @@ class MovingList {
     [[nodiscard]] std::size_t size() const { return items_.size(); }
     [[nodiscard]] ItemId item(std::size_t entry) const { return items_[entry]; }
     [[nodiscard]] const Obb& box(std::size_t entry) const { return boxes_[entry]; }
+    [[nodiscard]] std::uint32_t last_moved(std::size_t entry) const { return last_moved_[entry]; }
     [[nodiscard]] const cull::MovingBoxes& boxes() const { return moving_boxes_; }  // as of the last update()
 
     // Returns the entry: the last.

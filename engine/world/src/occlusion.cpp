@@ -109,14 +109,15 @@ Result<void> World::view(const OccludingView& view, const OcclusionOptions& occl
         return {};
     }
     if (!visible.occluded_) visible.occluded_ = world::make_occluded_view();
-    if (auto found = state_->find_visible(view, occlusion, options, executor, *visible.occluded_); !found) return found;
+    cull::CullOptions how = options;
+    how.among = state_->among_and_changed(options.among, visible.among_);
+    if (auto found = state_->find_visible(view, occlusion, how, executor, *visible.occluded_); !found) return found;
     visible.names_ = &state_->table.names;
     visible.hides_ = true;
     visible.occluded_->occluded.clear();
     if (!occlusion.list_occluded) return {};
-    cull::CullOptions ascending = options;
-    ascending.order = cull::ResultOrder::ascending;
-    cull::find_visible(state_->index.tree(), state_->index.moving(), plain, visible.set_, ascending, executor);
+    how.order = cull::ResultOrder::ascending;
+    cull::find_visible(state_->index.tree(), state_->index.moving(), plain, visible.set_, how, executor);
     visible.occluded_->list_occluded(visible.set_.ids());
     return {};
 }

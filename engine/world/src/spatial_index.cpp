@@ -21,10 +21,15 @@ constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
 constexpr std::size_t kSmallTree = 32768, kChangesToBuild = 32, kWaitingToBuild = 64, kAttachedBetweenBuilds = 16;
 // Fast: such a part within about as many updates.
 constexpr std::size_t kFastChanges = 32, kFastUpdates = 8;
+// Of a larger one that would be many milliseconds.
+constexpr std::size_t kLargestBuiltAtOnce = 131072;
 constexpr std::size_t kFewItems = 64;
 constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
-// Putting an item into the new tree is worth 64 (BoxTree::rebuild_step); so the new tree gains on what changes.
-constexpr std::size_t kBudgetPerChange = 2048;
+// Work on the new tree for each change of the old one, so that it is done before much has changed again. Putting an
+// item into it is worth 64, another change 2, building it 10 an item (BoxTree::rebuild_step). Measured: docs/notes.
+constexpr std::size_t kBudgetPerMember = 32 * 64, kBudgetPerMove = 128;
+// No more than such a part of the whole building, in one update.
+constexpr std::size_t kBuildingPerItem = 10, kBuildingPart = 8;
 // The tree is rebuilt once such a part of its items has changed.
 constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 
@@ -39,6 +44,8 @@ Result<ItemId> SpatialIndex::add(std::uint32_t layers) {
     if (*item >= items_.size()) {
         if (items_.size() == items_.capacity()) items_.reserve(items_.size() + items_.size() / 8 + 16);
         items_.resize(*item + std::size_t{1});
+    } else {
+        note_changed(*item);
     }
     items_[*item] = {};
     return item;
@@ -55,6 +62,7 @@ void SpatialIndex::put(ItemId item, Place place, const Obb& box) {
 void SpatialIndex::add_mover(ItemId item, const Obb& box, std::uint32_t last_moved) {
     items_[item].place = Place::moving;
     items_[item].entry = moving_.add(item, box, last_moved);
+    items_[item].last_moved = last_moved;
     relisted_.push_back(item);
 }
 
@@ -108,6 +116,12 @@ void SpatialIndex::note_move(ItemId id) {
     item.streak = in_a_row ? std::min<std::uint8_t>(item.streak + 1, kUpdatesToMove) : std::uint8_t{1};
     item.last_moved = now_;
     moved_items_.push_back(id);
+    note_changed(id);
+}
+
+void SpatialIndex::note_changed(ItemId item) {
+    if (item / 64 >= changed_.size()) changed_.resize(items_.size() / 64 + 1);
+    changed_[item / 64] |= std::uint64_t{1} << item % 64;
 }
 
 // Than in the list.
@@ -121,6 +135,7 @@ void SpatialIndex::set_box_elsewhere(ItemId id, const Obb& box) {
         case Place::hidden:
         case Place::entering:
             group(item.place).boxes[item.entry] = box;
+            note_changed(id);
             return;
         case Place::moving:
             return;
@@ -181,24 +196,26 @@ SpatialIndex::Changes SpatialIndex::update(const Settings& settings, Executor& e
 
 bool SpatialIndex::is_built_at_once() const {
     const std::size_t items = tree_.item_count();
-    return items <= kSmallTree || recent_ * kFastChanges > items;
+    return items <= kSmallTree || (items <= kLargestBuiltAtOnce && recent_ * kFastChanges > items);
 }
 
 // Begins once enough has changed since the last rebuild began; not while items come and go for which bring_to_rest()
 // builds the tree anew.
 void SpatialIndex::rebuild_step(std::size_t budget) {
     const std::size_t fresh = tree_changes_ - std::exchange(changes_before_, tree_changes_);
-    const bool more_come_or_go = came_or_went_ != std::exchange(came_or_went_before_, came_or_went_);
+    const std::size_t members = came_or_went_ - std::exchange(came_or_went_before_, came_or_went_);
     if (budget == 0) return;
     if (budget == kAutomatic) budget = kLeastBudget + tree_.item_count() / kBudgetPart;
     if (!rebuilding_) {
         const std::size_t part = tree_.item_count() <= kSmallTree ? kChangesToRebuildSmallTree : kChangesToRebuild;
         if (tree_changes_ * part < tree_.item_count() || tree_changes_ == 0) return;
-        if (more_come_or_go && is_built_at_once()) return;
+        if (members > 0 && is_built_at_once()) return;
         rebuilding_ = true;
         changes_at_start_ = tree_changes_;
     }
-    if (!tree_.rebuild_step(budget + kBudgetPerChange * fresh)) return;
+    const std::size_t moves = fresh - std::min(fresh, members);
+    const std::size_t most = kBuildingPerItem * tree_.item_count() / kBuildingPart;
+    if (!tree_.rebuild_step(budget + std::min(most, kBudgetPerMember * members + kBudgetPerMove * moves))) return;
     rebuilding_ = false;
     tree_changes_ -= changes_at_start_;
     changes_before_ = tree_changes_;
@@ -238,6 +255,8 @@ void SpatialIndex::attach(ItemId item) {
 void SpatialIndex::bring_to_rest(const Settings& settings, Changes& changes, Executor& executor) {
     rested_.clear();
     moving_.list_rested(now_, settings.updates_to_rest, rested_);
+    for (const ItemId item : rested_)
+        if (moving_.last_moved(items_[item].entry) != items_[item].last_moved) note_changed(item);
     const std::size_t items = tree_.item_count();
     const bool at_once = settings.rebuild_budget != 0 && items > kFewItems && is_built_at_once();
     const std::size_t most_waiting = std::max(kFewItems, at_once ? items / kWaitingToBuild : items);

@@ -65,6 +65,9 @@ class SpatialIndex {
     // That have come into the list, left it or got another entry since the last commit(). One may be named twice.
     [[nodiscard]] std::span<const ItemId> relisted_items() const { return relisted_; }
 
+    // A bit for each item that has ever had another box than at first, or whose id another item had before.
+    [[nodiscard]] std::span<const std::uint64_t> changed() const { return changed_; }
+
     [[nodiscard]] std::size_t size() const { return items_.size(); }  // ids are below it
     [[nodiscard]] bool is_placed(ItemId item) const {                 // in the tree or the list
         return items_[item].place >= Place::entering;
@@ -79,7 +82,7 @@ class SpatialIndex {
     enum class Place : std::uint8_t { nowhere, hidden, entering, resting, moving };
     struct Item {
         std::uint32_t entry = 0;       // in the list or the group of its place
-        std::uint32_t last_moved = 0;  // while it rests
+        std::uint32_t last_moved = 0;  // while it rests; in the list: as of when it came
         std::uint8_t streak = 0;       // updates in a row in which it moved, up to kUpdatesToMove
         Place place = Place::nowhere;
         bool shown = true;
@@ -97,6 +100,7 @@ class SpatialIndex {
     void set_box_elsewhere(ItemId item, const Obb& box);
     void detach(ItemId item);
     void note_move(ItemId item);
+    void note_changed(ItemId item);
     [[nodiscard]] bool is_built_at_once() const;
     void rebuild_step(std::size_t budget);
     void attach(ItemId item);
@@ -111,6 +115,7 @@ class SpatialIndex {
     Vector<ItemId> moved_items_, relisted_;  // in this update
     Vector<ItemId> moved_, rested_;          // the first: of those the tree's, with
     Vector<Obb> moved_boxes_;
+    Vector<std::uint64_t> changed_;
     std::uint32_t now_ = 1;              // counts updates
     std::uint32_t members_changed_ = 0;  // in this update
     // Since the last rebuild began; of them those before the last update, and those when the one under way began.

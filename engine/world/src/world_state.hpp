@@ -81,6 +81,9 @@ struct World::State {
     void show(std::uint32_t object);
     void update_occluders();
     [[nodiscard]] Result<void> set_found_occluders(scene::MeshId mesh, const occlude::FindOptions& how);
+    // CullOptions::among with the bits of what has changed since such a set can have been made; in `both`, or as it is.
+    [[nodiscard]] std::span<const std::uint64_t> among_and_changed(std::span<const std::uint64_t> among,
+                                                                   Vector<std::uint64_t>& both) const;
     [[nodiscard]] Result<void> find_visible(const OccludingView& view, const OcclusionOptions& occlusion,
                                             const cull::CullOptions& how, Executor& executor,
                                             world::OccludedView& result) const;

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "lights/froxel_kernel.hpp"
@@ -37,7 +38,7 @@ struct FilterLight {
         const T s = static_cast<T>(grid.spread);
         const T delta = kLightRounding<T> * (s * (largest + radius) + static_cast<T>(grid.start));
         eta = 8 * s * delta;
-        const T within = radius - eta, least = std::max(radius, 16 * s * s * delta);
+        const T within = radius - eta, least = std::max({radius, 16 * s * s * delta, std::numeric_limits<T>::min()});
         inner = within > 0 ? within * within * (1 - kLightTrifle<T>) : T(-1);
         outer = (least + eta) * (least + eta) * (1 + kLightTrifle<T>);
         keep = 1 - s * s * (kLightTrifle<T> + 4 * delta / least);

@@ -79,11 +79,12 @@ class PlaneBits {
 };
 
 // All planes against the balls around the boxes: what a plane's value at the centre exceeds by its slack and the
-// radius, with a normal up to 1.0005 long, is certainly inside. Slacks have room for the roundings here.
+// radius, with a normal up to 1.0005 long, is certainly inside. The slacks have room for the roundings here: a box's
+// own, where it is far from the eye and the plane's slack does not know of it.
 HWY_INLINE PlaneBits planes_open(const PlaneTable& table, const BoxLanes& bounds) {
     const DF d;
     PlaneBits open(table.count());
-    const VF radius = hn::Mul(bounds.ball, hn::Set(d, 1.0006f));
+    const VF radius = hn::MulAdd(bounds.ball, hn::Set(d, 1.0006f), bounds.edge_slack);
     for (unsigned n = 1; n <= table.count(); ++n) {
         const VF offset = hn::Set(d, table.scalar(3, n) - table.scalar(4, n));
         const VF value =

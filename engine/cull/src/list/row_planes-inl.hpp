@@ -28,7 +28,9 @@ class ScaledRowPlanes {
         const LocalOrigin at = local_origin(view, chunk.origin, 0.0f);
         for (std::size_t i = 0; i < count; i += kLanes) {
             scale(chunk, at, i);
-            for (std::size_t l = 0; l < kLanes; ++l) largest_slack_ = std::max(largest_slack_, slack_[i + l]);
+            // Not std::max, which would pass over NaN.
+            for (std::size_t l = 0; l < kLanes; ++l)
+                if (!(slack_[i + l] <= largest_slack_)) largest_slack_ = slack_[i + l];
         }
     }
 

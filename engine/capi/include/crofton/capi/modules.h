@@ -70,7 +70,8 @@ typedef struct crofton_cull_options {
     uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the frustum's corners */
     uint32_t tree_order;   /* 0: ids ascending; 1: as the tree lies in memory, in half the time where much is seen */
     /* Items that may be seen at all, as crofton_pvs_visible gives them: bit i % 64 of among[i / 64] is item i. Those
-     * beyond may, and so may what moves in a world. NULL: all. A caller's smaller struct lacks it: all. */
+     * beyond may, and so may what has moved in a world since it came. NULL, and 0 words: all. A caller's smaller struct
+     * lacks it: all. Views of many frusta at once do not look at it. */
     const uint64_t* among;
     size_t among_words;
 } crofton_cull_options;

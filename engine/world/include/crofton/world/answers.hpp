@@ -81,6 +81,7 @@ class VisibleObjects {
     world::OccludedViewOwner occluded_;
     bool hides_ = false;
     const world::ObjectNames* names_ = nullptr;
+    Vector<std::uint64_t> among_;  // CullOptions::among and what has changed since
 };
 
 // What up to 32 views see, each object once.

@@ -22,8 +22,9 @@ struct Motion;
 
 inline constexpr std::size_t kAutomatic = ~std::size_t{0};
 
-// A profiler's functions. Zones are told when they begin and end, on the thread that asked, nested as they run; names
-// are constants that live as long as the program. A function that is null is not called; none may throw.
+// A profiler's functions. Zones are told when they begin and end, on the thread that runs them, nested on each thread:
+// several views at once run on the executor's threads. Names are constants that live as long as the program. A function
+// that is null is not called; none may throw.
 struct TraceHooks {
     void (*begin)(void* user, const char* zone) = nullptr;
     void (*end)(void* user, const char* zone) = nullptr;
@@ -133,7 +134,8 @@ class World {
     [[nodiscard]] const boxtree::BoxTree& tree() const;
 
     // What a view sees, by the objects' boxes, exactly as the mode says. At most cull::kMaxViews views in one pass.
-    // A single view leaves out what rests and is not in options.among, the objects' indices: baked sets (docs/pvs.md).
+    // A single view leaves out what is not in options.among, the objects' indices: baked sets (docs/pvs.md). Never left
+    // out is what has moved since it was first updated, or has an index that another object had before.
     // Errors of the first: as validate(Camera).
     Result<void> view(const Camera& camera, VisibleObjects& visible, const cull::CullOptions& options = {},
                       Executor& executor = serial_executor()) const;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace crofton::detail {
+
+// While one lives, this thread runs a host's code, which may run anything else meanwhile: a failed allocation there
+// belongs to none of the operations that are under way here. Nothing is thrown through the host's frames.
+class NoRecovery {
+  public:
+    NoRecovery();
+    ~NoRecovery();
+    NoRecovery(const NoRecovery&) = delete;
+    NoRecovery& operator=(const NoRecovery&) = delete;
+
+  private:
+    int recoveries_;
+};
+
+}  // namespace crofton::detail
