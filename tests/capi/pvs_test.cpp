@@ -29,8 +29,8 @@ std::string file_of_sets() {
         if (o == 3) continue;
         const auto first = static_cast<std::uint32_t>(subject.mesh.positions.size());
         for (const glm::dvec3& p : corners(subject.boxes[o])) subject.mesh.positions.push_back(glm::vec3(p));
-        for (const std::uint32_t i : {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                                      2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6})
+        for (const std::uint32_t i : {0u, 4u, 6u, 0u, 6u, 2u, 1u, 3u, 7u, 1u, 7u, 5u, 0u, 1u, 5u, 0u, 5u, 4u,
+                                      2u, 6u, 7u, 2u, 7u, 3u, 0u, 2u, 3u, 0u, 3u, 1u, 4u, 5u, 7u, 4u, 7u, 6u})
             subject.mesh.indices.push_back(first + i);
         subject.object_of.insert(subject.object_of.end(), 12, o);
     }

@@ -106,7 +106,7 @@ TEST_SUITE("cull/rounding edges") {
             const glm::dvec3 p = (random.index(2) ? 1.0 : 1e3) * random.direction();
             Frustum frustum = half_space(random.direction(), p);
             frustum.planes[frustum.plane_count++] = half_space(random.direction(), p).planes[0];
-            for (int i = 0; i < 2; ++i)
+            for (std::size_t i = 0; i < 2; ++i)
                 frustum.planes[i].offset += (double(random.index(7)) - 3.0) * glm::length(p) * 0x1p-54;
             const glm::dvec3 a = frustum.planes[0].normal, b = frustum.planes[1].normal;
             Obb segment;
@@ -134,8 +134,8 @@ TEST_SUITE("cull/rounding edges") {
         for (const double length : {2.0, 1.5, 0.01}) {
             Frustum frustum;
             frustum.plane_count = 6;
-            for (int i = 0; i < 6; ++i) {
-                frustum.planes[i].normal[i / 2] = i % 2 ? length : -length;
+            for (std::size_t i = 0; i < 6; ++i) {
+                frustum.planes[i].normal[static_cast<int>(i / 2)] = i % 2 ? length : -length;
                 frustum.planes[i].offset = 7.0 * length;
             }
             cull::VisibleSet visible;

@@ -96,7 +96,7 @@ TEST_SUITE("memory/ending") {
         sweep_ending("rebuild_step", [&] {
             for (boxtree::ItemId i = 0; i < 1500; ++i) (void)tree.move(i, moved(tree.boxes()[i], 90.0));
             tree.refit();
-            for (int i = 0; i < 400 && !tree.rebuild_step(20000); ++i) (void)tree.insert(more[i % 200]);
+            for (std::size_t i = 0; i < 400 && !tree.rebuild_step(20000); ++i) (void)tree.insert(more[i % 200]);
         });
         sweep_ending("serialise", [&] { (void)tree.serialise(); });
         sweep_ending("spatial_order", [&] { (void)tree.spatial_order(); });
