@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Writes the manual pages of the command line and of each of its commands: manual_pages.sh PROGRAM FOLDER
 set -euo pipefail
-program=$1 folder=$2
+program=$(realpath "$1") folder=$2
 mkdir -p "$folder"
 page() { # NAME ONE-LINE-TEXT ARGUMENT…
     local name=$1 text=$2
