@@ -28,8 +28,8 @@ constexpr std::size_t kLeastBudget = 512, kBudgetPart = 128;
 // Work on the new tree for each change of the old one, so that it is done before much has changed again. Putting an
 // item into it is worth 64, another change 2, building it 10 an item (BoxTree::rebuild_step). Measured: docs/notes.
 constexpr std::size_t kBudgetPerMember = 32 * 64, kBudgetPerMove = 128;
-// No more than such a part of the whole building, in one update.
-constexpr std::size_t kBuildingPerItem = 10, kBuildingPart = 8;
+// No more than this in one update: some milliseconds.
+constexpr std::size_t kMostExtraWork = std::size_t{1} << 19;
 // The tree is rebuilt once such a part of its items has changed.
 constexpr std::size_t kChangesToRebuild = 64, kChangesToRebuildSmallTree = 256;
 
@@ -214,8 +214,8 @@ void SpatialIndex::rebuild_step(std::size_t budget) {
         changes_at_start_ = tree_changes_;
     }
     const std::size_t moves = fresh - std::min(fresh, members);
-    const std::size_t most = kBuildingPerItem * tree_.item_count() / kBuildingPart;
-    if (!tree_.rebuild_step(budget + std::min(most, kBudgetPerMember * members + kBudgetPerMove * moves))) return;
+    const std::size_t extra = std::min(kMostExtraWork, kBudgetPerMember * members + kBudgetPerMove * moves);
+    if (!tree_.rebuild_step(budget + extra)) return;
     rebuilding_ = false;
     tree_changes_ -= changes_at_start_;
     changes_before_ = tree_changes_;
