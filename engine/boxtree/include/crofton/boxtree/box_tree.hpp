@@ -16,13 +16,13 @@ class Rebuilder;
 class Structure;
 using ItemId = std::uint32_t;
 
-// Along which axes the tree's inner bounds lie: the world's; those along which the bounds below a node have the least
-// perimeters; or those only where the visits that are saved are worth more than turning a view's planes.
+// Along which axes the tree's inner bounds lie. aligned: the world's. oriented: those along which the bounds below a
+// node have the least perimeters. automatic: these only where they save more visits than turning a view's planes costs.
 enum class Orientation : std::uint8_t { aligned, oriented, automatic };
 
 struct BuildOptions {
     measure::Criterion criterion = measure::minimal_perimeter();
-    // What will move nearly every frame, if known: in a tree of more than 32,768 items it shares leaves with its like,
+    // What will move nearly every frame, if known. In a tree of more than 32,768 items it shares leaves with its like,
     // so that frames touch few leaves besides. rebuild_step() finds such items by itself.
     std::span<const ItemId> moving = {};
     std::span<const ItemId> detached = {};  // from the start: see BoxTree::detach
@@ -59,7 +59,7 @@ class BoxTree {
     [[nodiscard]] Result<void> set_layer_mask(ItemId item, std::uint32_t layer_mask);
     void refit();
 
-    // For what moves in every frame, which cull::MovingBoxes keeps beside the tree: a detached item is in no leaf and
+    // For what moves in every frame: cull::MovingBoxes keeps it beside the tree. A detached item is in no leaf and
     // keeps its id and layers until attach() puts it back or remove() gives the id away. Otherwise as remove and
     // insert.
     [[nodiscard]] Result<void> detach(ItemId item);
@@ -67,8 +67,8 @@ class BoxTree {
     [[nodiscard]] Result<void> attach(ItemId item, const Obb& box);
     [[nodiscard]] bool is_detached(ItemId item) const;
 
-    // Rebuilds in the background: about `budget` items' worth of work a call (a build is worth some 10 an item), and
-    // what has changed since the last call on top (an insertion is worth 64, another change 2). Call it once a frame,
+    // Rebuilds in the background, about `budget` items' worth of work a call; a build is worth some 10 an item. What
+    // has changed since the last call comes on top: an insertion is worth 64, another change 2. Call it once a frame,
     // after refit(), where items move for long. True when a rebuild has just been completed. What moved before both of
     // the last two refits is taken for what moves all the time (BuildOptions).
     bool rebuild_step(std::size_t budget);

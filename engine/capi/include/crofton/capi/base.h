@@ -70,8 +70,8 @@ CROFTON_API crofton_status crofton_set_memory_hooks(const crofton_memory_hooks* 
 typedef void (*crofton_range_task)(void* task_data, size_t begin, size_t end, uint32_t worker);
 
 /* The host's job system, given to each call that can use one (or NULL: on the calling thread alone). `parallel_for`
- * calls task(task_data, …) for the ranges [0, grain), [grain, 2 grain), … of [0, count), the last one cut short, in any
- * order and on any threads, and returns when all are done. Results do not depend on it. */
+ * calls task(task_data, …) for the ranges [0, grain), [grain, 2 grain), … of [0, count), the last one cut short. They
+ * may run in any order and on any threads. It returns when all are done. Results do not depend on it. */
 typedef struct crofton_jobs {
     size_t size;
     void* user;

@@ -3,7 +3,7 @@
  *
  * Every function returns a status; nothing throws, and nothing but a failed allocation ends the program. Results go to
  * the last parameters and are untouched on failure. Structs that may grow begin with `size`: set it to sizeof(the
- * struct), so that library and caller agree on what it holds; those of World may be older and smaller. Optional
+ * struct), so that library and caller agree on what it holds. Those of World may be older and smaller. Optional
  * pointers are marked "or NULL".
  *
  * Threads: calls on different handles are independent. On one handle, calls that take a pointer to const may run at the
@@ -35,9 +35,8 @@ typedef struct crofton_world_mesh {
     uint32_t index, generation;
 } crofton_world_mesh;
 
-/* The structs of this header that begin with `size` may grow. An older, smaller one is taken:
- * members that it lacks are 0, the default of every member, and results are written as far as it goes. A larger one is
- * CROFTON_WRONG_SIZE. */
+/* The structs of this header that begin with `size` may grow. An older, smaller one is taken: members that it lacks are
+ * 0, the default of every member. Results are written as far as it goes. A larger one is CROFTON_WRONG_SIZE. */
 
 typedef struct crofton_world_options {
     size_t size;
@@ -321,7 +320,7 @@ CROFTON_API crofton_status crofton_world_overlap_capsule(const crofton_world* wo
                                                          const double end[3], double radius, uint32_t layer_mask,
                                                          crofton_found* found);
 /* Fill a struct whose `size` is set: the box or ball nearest to the shape, no farther than max_distance, which may be
- * infinite; of several the lowest index. */
+ * infinite. Of several the lowest index. */
 CROFTON_API crofton_status crofton_world_closest_to_box(const crofton_world* world, const crofton_box* box,
                                                         double max_distance, uint32_t layer_mask,
                                                         crofton_closest_object* closest);
@@ -475,9 +474,9 @@ CROFTON_API crofton_status crofton_visible_objects_get_occlusion_statistics(cons
 CROFTON_API crofton_status crofton_visible_in_views_get_occlusion_statistics(const crofton_visible_in_views* visible,
                                                                              size_t view,
                                                                              crofton_occlusion_statistics* statistics);
-/* The depth buffer: its size, and where `nearness` is not NULL and has room for width * height numbers, row by row from
- * the bottom, 1 / w (parallel views: minus the distance) of the occluders; below -1e38 where there are none.
- * CROFTON_EMPTY after a view without occlusion. */
+/* The depth buffer: its size, and the occluders' nearness where `nearness` is not NULL and has room for width * height
+ * numbers. These are 1 / w (parallel views: minus the distance), row by row from the bottom; below -1e38 where nothing
+ * is drawn. CROFTON_EMPTY after a view without occlusion. */
 CROFTON_API crofton_status crofton_visible_objects_depth(const crofton_visible_objects* visible, uint32_t* width,
                                                          uint32_t* height, float* nearness, size_t capacity);
 CROFTON_API crofton_status crofton_visible_in_views_depth(const crofton_visible_in_views* visible, size_t view,

@@ -221,7 +221,7 @@ CROFTON_API crofton_status crofton_boxes_distance(const crofton_box* a, const cr
 CROFTON_API crofton_status crofton_colliders_contacts(const crofton_collider* a, const crofton_collider* b,
                                                       const crofton_transform* b_to_a, crofton_mesh_contact* contacts,
                                                       size_t capacity, size_t* count);
-/* A motion of b by *depth along `direction` (a unit vector, or NULL) ends the contact: an upper bound of the
+/* A motion of b by *depth along `direction` (a unit vector, or NULL) ends the contact. It is an upper bound of the
  * penetration depth, 0 where the meshes do not meet. */
 CROFTON_API crofton_status crofton_colliders_depth(const crofton_collider* a, const crofton_collider* b,
                                                    const crofton_transform* b_to_a, double* depth, double* direction);
@@ -564,8 +564,8 @@ typedef struct crofton_baked_node {
     uint32_t reserved;
 } crofton_baked_node;
 
-/* Writes the scene as of its last update into a file: all of it, flushed to the disk, or the old file stays as it was.
- * Whoever has the old file open keeps its contents. `jobs` or NULL. */
+/* Writes the scene as of its last update into a file. Either all of it is written and flushed to the disk, or the old
+ * file stays. Whoever has the old file open keeps its contents. `jobs` or NULL. */
 CROFTON_API crofton_status crofton_scene_bake(const crofton_scene* scene, const char* path, const crofton_jobs* jobs);
 
 /* Maps a file and checks it whole. `tree` lies over the instances, item i being instance i; it is a handle of its own,

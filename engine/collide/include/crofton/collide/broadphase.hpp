@@ -44,7 +44,7 @@ struct BroadphaseStatistics {
 
 // All pairs of boxes that meet, kept from frame to frame. Call update() when most boxes move, update_moved() when few
 // do: its cost follows those. Between updates it keeps an order of the items in which neighbours in space are
-// neighbours in memory; it is made anew only when motion has worn it out. Answers do not depend on that history.
+// neighbours in memory. It is made anew only when motion has worn it out. Answers do not depend on that history.
 class Broadphase {
   public:
     explicit Broadphase(const BroadphaseOptions& options = {});
@@ -92,17 +92,17 @@ void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtre
 void overlapping(const boxtree::BoxTree& tree, const Capsule& body, Vector<boxtree::ItemId>& items,
                  std::uint32_t layers = ~0u);
 
-// Told of an item whose box may be near; answers how near others must be to be of interest still: the distance of the
-// nearest so far, for instance, or a negative number to stop.
+// Told of an item whose box may be near. Answers how near others must be to be of interest still. That may be the
+// distance of the nearest so far; a negative number stops.
 using NearVisitor = FunctionRef<double(boxtree::ItemId item)>;
 
 // Visits all items whose boxes are no farther from `bounds` than `distance` ≥ 0 and the visitor's last answer, and some
-// that are a little farther, always in the same order. Bounds that are empty or not finite are near to nothing.
+// that are a little farther. The order is always the same. Bounds that are empty or not finite are near to nothing.
 void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tree, NearVisitor visit,
                 std::uint32_t layers = ~0u);
 
-// Told of an item whose box the ray enters at t; answers how far along the ray boxes are still of interest: the t of
-// the nearest hit so far, for instance, or a negative number to stop.
+// Told of an item whose box the ray enters at t. Answers how far along the ray boxes are still of interest. That may be
+// the t of the nearest hit so far; a negative number stops.
 using RayVisitor = FunctionRef<double(boxtree::ItemId item, double t)>;
 
 // Visits items whose boxes the ray meets (t as raycast(ray, box) gives it) no farther than the visitor's last answer;

@@ -21,7 +21,7 @@ namespace crofton::collide {
 [[nodiscard]] bool intersects(const Obb& a, const Obb& b);
 
 // Which axis tells two boxes apart, for statistics and for warm starts. Axes 0-2 are the face normals of `a`, 3-5 those
-// of `b`, 6 + 3i + j the cross product of edge i of `a` with edge j of `b`.
+// of `b`. Axis 6 + 3i + j is the cross product of edge i of `a` with edge j of `b`.
 inline constexpr int kAxisCount = 15;
 inline constexpr int kNotSeparated = -1;
 
@@ -44,8 +44,8 @@ struct BatchStatistics {
     BatchStatistics& operator+=(const BatchStatistics& other);
 };
 
-// Boxes packed for repeated use. The caller's boxes are kept by reference: pairs that float cannot decide are decided
-// from them, so they are to live, unchanged, as long as queries are made.
+// Boxes packed for repeated use. The caller's boxes are kept by reference and must live, unchanged, as long as queries
+// are made. Pairs that float cannot decide are decided from them.
 class PackedBoxes {
   public:
     PackedBoxes();
@@ -102,8 +102,8 @@ struct Capsule {
 [[nodiscard]] bool intersects(const Obb& box, const Sphere& sphere);
 [[nodiscard]] bool intersects(const Obb& box, const Capsule& capsule);
 
-// A convex body as the distance and contact queries see it: the hull of at most eight points, grown by a radius; with
-// the directions of its edges and the normals of its faces.
+// A convex body as the distance and contact queries see it: the hull of at most eight points, grown by a radius. It
+// lists the directions of its edges and the normals of its faces.
 struct ConvexShape {
     glm::dvec3 points[8];
     int point_count = 0;
@@ -131,9 +131,9 @@ struct Distance {
 // and of the offset of the centres.
 [[nodiscard]] Distance distance(const Obb& a, const Obb& b);
 
-// The shortest motion of b that ends the overlap is depth · axis (axis of unit length, pointing from a to b); negative
-// depth: a gap, by which the bodies are at least apart. Over the separating axes of the two bodies: exact for the depth
-// up to rounding.
+// The shortest motion of b that ends the overlap is depth · axis; the axis has unit length and points from a to b. A
+// negative depth is a gap: the bodies are at least so far apart. Over the separating axes of the two bodies: exact for
+// the depth up to rounding.
 struct Penetration {
     double depth = 0.0;
     glm::dvec3 axis{0.0};
@@ -163,10 +163,10 @@ enum class ManifoldPoints : std::uint8_t {
 // and distance, not of their coordinates.
 [[nodiscard]] Manifold contact_manifold(const Obb& a, const Obb& b, ManifoldPoints points = ManifoldPoints::reduced);
 // Where two meshes touch, in a's frame: at most four points, from all their contacts (mesh::contacts). The normal is
-// that of the curve in which the surfaces cross, by its vector area: the direction in which an even pressure between
-// the bodies would push. The points are the deepest and those that keep most of the area. A depth is how far b has to
-// move along the normal until the surfaces part on the line through the point; 0 where the point lies in no overlap. No
-// contacts: no points.
+// that of the curve in which the surfaces cross, by its vector area. An even pressure between the bodies would push in
+// that direction. The points are the deepest and those that keep most of the area. A depth is how far b has to move
+// along the normal until the surfaces part on the line through the point. It is 0 where the point lies in no overlap.
+// No contacts: no points.
 [[nodiscard]] Manifold contact_manifold(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
                                         std::span<const mesh::MeshContact> contacts);
 [[nodiscard]] Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b);  // one point, at the deepest place
@@ -186,7 +186,7 @@ struct Impact {
     Distance contact;  // at that time
 };
 // The first time in [0, duration] at which the bodies are closer than `tolerance` > 0, by conservative advancement
-// (Mirtich 1996): at the time returned they are, and at no earlier time do they meet. Nothing when that does not
+// (Mirtich 1996). At the time returned they are that close; they meet at no earlier time. Nothing when that does not
 // happen.
 [[nodiscard]] std::optional<Impact> time_of_impact(const ConvexShape& a, const ConstantMotion& motion_a,
                                                    const ConvexShape& b, const ConstantMotion& motion_b,

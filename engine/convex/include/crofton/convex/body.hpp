@@ -132,7 +132,7 @@ enum class Sides : std::uint8_t {
 
 // A small value; of a hull, mesh, height field or compound it is a view, which the caller keeps alive and unchanged.
 // Solids of revolution stand along the frame's y axis, with the origin half way up. Made by the functions below, which
-// refuse NaN, infinite and negative lengths, and lengths beyond kMaxExtent; zero lengths are allowed, and give a
+// refuse NaN, infinite and negative lengths, and lengths beyond kMaxExtent. Zero lengths are allowed and give a
 // segment, a disc, a point.
 class Body {
   public:
@@ -225,7 +225,8 @@ struct HeightFieldDescription {
 };
 
 // Corner (i, j) is at (i · spacing.x, height, j · spacing.y), each rounded to double. Cell c = j (columns − 1) + i has
-// triangles 2c, on the side of its corner (i, j), and 2c + 1; their common edge leads from (i + 1, j) to (i, j + 1).
+// triangles 2c and 2c + 1; 2c lies on the side of its corner (i, j). Their common edge leads from (i + 1, j) to (i, j +
+// 1).
 class HeightField {
   public:
     // Copies what it needs. Errors: sizes out of range or that do not fit; a height that is NaN, infinite or beyond

@@ -76,8 +76,9 @@ struct Penetration {
 // A vertex, edge or face of a body. Of hulls the indices are the hull's. Of boxes: a vertex is a corner number; edge 4k
 // + j runs along axis k; face 2k + s is across axis k, on the + side for s = 1. Of a triangle: edge k leads from corner
 // k to the next, the face is 0. Of capsules: the ends are vertices 0 and 1, the side is edge 0. Of cylinders and cones:
-// face 0 is the lower disc, 1 the upper; a disc's rim is edges 0 to 7 (lower) and 8 to 15, an eighth of a turn each,
-// its vertices alike; 16 is the edge of the side, and its ends are vertices 16 (lower) and 17. Half-spaces: face 0.
+// face 0 is the lower disc, 1 the upper. A disc's rim is edges 0 to 7 (lower) and 8 to 15, an eighth of a turn each;
+// its vertices have the same numbers. Edge 16 is that of the side, between vertices 16 (lower) and 17. Half-spaces:
+// face 0.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 struct Feature {
     FeatureKind kind;
@@ -107,10 +108,10 @@ struct ManifoldOptions {
 
 // The normal is that of `penetration` or `distance`, and the manifold as deep. The faces that look along it are clipped
 // against each other (Sutherland, Hodgman); the deepest point is among the points. Bodies that meet, as `intersects`
-// tells, have one point at least. With a cache the face of the frame before stays the contact's while its normal is
-// proven to be the least deep within 1e-4 of the pair's size; normal and depth are then those of that face.
-// Points are off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions).
-// Of bodies of parts: the deepest of the manifolds below; this allocates.
+// tells, have one point at least. With a cache, the face of the frame before is kept while its normal is proven to be
+// the least deep. That holds within 1e-4 of the pair's size. Normal and depth are then those of that face. Points are
+// off by 1e-9 of the pair's size, by 1e-5 where a hull's face is not quite flat (HullOptions). Of bodies of parts: the
+// deepest of the manifolds below; this allocates.
 [[nodiscard]] Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOptions& options = {},
                                         PairCache* cache = nullptr);
 
@@ -139,12 +140,12 @@ class Manifolds {
 };
 
 // Replaces what `found` has. Manifolds of parts whose normals agree within 5 degrees are one, with the normal of its
-// deepest point; each depth is along its own part's normal. Two convex bodies: one
-// manifold, or none. On the edges and vertices of a surface the internal-edge rule holds: where a triangle's own normal
-// would point into the surface beside it, the triangle pushes along its face's. So what slides over a floor of many
-// triangles meets the floor alone. Neighbours are triangles of the same body that share vertices of equal position.
-// Surfaces with Sides::front push to the front, and only bodies whose center is there (of mass for hulls; else the
-// middle of the bounds). The cache serves two convex bodies. No allocation once `found` has seen as many parts.
+// deepest point. Each depth is along its own part's normal. Two convex bodies: one manifold, or none. On the edges and
+// vertices of a surface the internal-edge rule holds. Where a contact's normal would point into the surface beside it,
+// the triangle pushes along its face's normal. So what slides over a floor of many triangles meets the floor alone.
+// Neighbours are triangles of the same body that share vertices of equal position. Surfaces with Sides::front push to
+// the front, and only bodies whose center is there (of mass for hulls; else the middle of the bounds). The cache serves
+// two convex bodies. No allocation once `found` has seen as many parts.
 void contact_manifolds(const Placed& a, const Placed& b, const ManifoldOptions& options, Manifolds& found,
                        PairCache* cache = nullptr);
 
@@ -164,17 +165,17 @@ std::size_t track(std::span<const Manifold> manifolds, Vector<TrackedPoint>& poi
 
 // For debug drawing: told of lines, in the world.
 using LineVisitor = FunctionRef<void(const glm::dvec3& from, const glm::dvec3& to)>;
-// The edges of a body and of its parts; circles of what is round, in pieces of a 24th; of a rounded polytope the faces
-// where they are, `radius` out; of a half-space a square of 20 around the point nearest to its frame's origin, and its
-// normal. Surfaces and compounds allocate.
+// The edges of a body and of its parts. What is round is drawn as circles, in pieces of a 24th. A rounded polytope's
+// faces are drawn where they are, `radius` out. A half-space is drawn as its normal and a square of 20 around the point
+// nearest to its frame's origin. Surfaces and compounds allocate.
 void outline(const Placed& body, LineVisitor line);
 // At each point its normal from surface to surface, with a cross of size `size` across it.
 void outline(std::span<const TrackedPoint> points, double size, LineVisitor line);
 
 // When will two moving bodies first touch?
 
-// What a body does from its pose on: its `pivot` (in the body's frame: the center of mass) moves by velocity · t, and
-// the body turns about it by |spin| · t radians around `spin` (world axes). Zero: it rests. Any number of turns.
+// What a body does from its pose on. Its `pivot` (in the body's frame: the center of mass) moves by velocity · t. The
+// body turns about it by |spin| · t radians around `spin` (world axes). Zero: it rests. Any number of turns.
 struct Motion {
     glm::dvec3 velocity{0.0};
     glm::dvec3 spin{0.0};
@@ -206,12 +207,12 @@ struct Impact {
     PartId part_a{}, part_b{};  // that hit
 };
 
-// Conservative advancement (Mirtich 1996) by a bound of second order: each step ends before any vertex can have crossed
-// the plane that parts the bodies, by its velocity across the plane and a bound of its acceleration. So no wall is too
-// thin. "Touch" is said of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a radian, which the
-// bounds include. Bodies of parts: the first time at which parts touch; a triangle that only its front sees, and that
-// is first touched from behind, is passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options
-// out of range, half-spaces turned.
+// Conservative advancement (Mirtich 1996) by a bound of second order. Each step ends before any vertex can have crossed
+// the plane that parts the bodies. That follows from its velocity across the plane and a bound of its acceleration. So
+// no wall is too thin. "Touch" is said of the bodies as they move in real arithmetic; the rotation is off by 1e-15 a
+// radian, which the bounds include. Bodies of parts: the first time at which parts touch. A one-sided triangle that is
+// first touched from behind is passed through. Errors: NaN or infinite motions, a turn beyond 1e5 radians, options out
+// of range, half-spaces turned.
 [[nodiscard]] Result<Impact> cast(const Placed& a, const Motion& motion_a, const Placed& b, const Motion& motion_b,
                                   const CastOptions& options = {}, PairCache* cache = nullptr);
 

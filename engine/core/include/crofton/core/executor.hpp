@@ -34,8 +34,8 @@ class FunctionRef<R(Args...)> {
 
 // The engine owns no threads: work is handed to the host's, through this hook.
 
-// body(begin, end, worker): do the items [begin, end); worker < concurrency() and no two bodies run at once on one
-// worker, so it may index per-worker scratch memory.
+// body(begin, end, worker) does the items [begin, end). worker < concurrency(), and no two bodies run at once on one
+// worker. So it may index scratch memory of each worker.
 using RangeTask = FunctionRef<void(std::size_t begin, std::size_t end, unsigned worker)>;
 
 class Executor {

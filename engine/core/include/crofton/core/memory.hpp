@@ -10,7 +10,7 @@ namespace crofton {
 
 // Both functions may be called from any thread. `allocate` returns memory aligned to `alignment`, a power of two, or
 // nullptr where the host has none. Then what builds, loads, bakes, fits or triangulates returns
-// ErrorCode::out_of_memory and has changed nothing (docs/testing.md has the list); elsewhere the program ends with a
+// ErrorCode::out_of_memory and has changed nothing; docs/testing.md has the list. Elsewhere the program ends with a
 // message (std::abort).
 struct MemoryHooks {
     void* (*allocate)(void* user, std::size_t bytes, std::size_t alignment);

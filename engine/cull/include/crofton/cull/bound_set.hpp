@@ -114,8 +114,8 @@ std::size_t list_bits(std::span<const std::uint64_t> bits, std::span<ItemId> ids
 
 // What moves in every frame: a list over the caller's own boxes, asked together with a tree of what rests.
 
-// The ids are the tree's: an item is taken out of it when it begins to move (BoxTree::detach), and is put back when it
-// comes to rest. The layers are the tree's too. 80 bytes an item beside the caller's boxes.
+// The ids are the tree's. An item is taken out of the tree when it begins to move (BoxTree::detach). It is put back
+// when it comes to rest. The layers are the tree's too. 80 bytes an item beside the caller's boxes.
 class MovingBoxes {
   public:
     // From now on these are the items that move, each once, and boxes[k] is that of items[k]. Both are the caller's and

@@ -34,13 +34,13 @@ enum class CullMode : std::uint8_t {
 
 // Exact for the boxes' and planes' stored numbers: `outside` as the mode says, `inside` iff the frustum contains the
 // box; touching from outside is straddling. A box or a frustum that is not finite, or beyond 1e30, is `straddling`:
-// never lost. Planes decide most boxes in double with a proven error bound; the rest go through the separating-axis
-// test (Gottschalk, Lin, Manocha 1996) and, where rounding could still matter, through exact arithmetic.
+// never lost. Planes decide most boxes in double with a proven error bound. The rest go through the separating-axis
+// test (Gottschalk, Lin, Manocha 1996). Where rounding could still matter, exact arithmetic decides.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Obb& box, CullMode mode = CullMode::exact);
 
 // The same for axis-aligned boxes and for balls. An empty Aabb and a negative radius are `straddling`, as is what is
-// not finite. `inside` and `outside` are exact for a ball too, except that one whose numbers (the view's as well)
-// include some other than 0 below 1e-60 in magnitude may be `straddling` where no plane rejects it but an edge would.
+// not finite. `inside` and `outside` are exact for a ball too, with one exception. Numbers of the ball or the view that
+// are not 0 but below 1e-60 in magnitude may leave it `straddling` though an edge rejects it.
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Aabb& box, CullMode mode = CullMode::exact);
 [[nodiscard]] Verdict classify(const Frustum& frustum, const Sphere& sphere, CullMode mode = CullMode::exact);
 
@@ -90,11 +90,10 @@ struct DrawLimits {
     double longer = 1.0;
 };
 
-// Drops what is below `pixels` in a picture `picture_height` pixels high. In perspective: items around which the ball
-// of radius r, seen from its distance in the middle of the picture, has a diameter of less than `pixels`; a ball
-// elsewhere in the picture is drawn larger, and is judged as if in its middle. Orthographic: items whose 2 r is less.
-// Up to rounding of `radii` or `least_radius` by 2^-50. Errors: as validate(Camera); a height or size that is not
-// positive and finite.
+// Drops what is below `pixels` in a picture `picture_height` pixels high. In perspective: items whose ball of radius r
+// has a diameter of less than `pixels`. It is seen from its distance, in the middle of the picture. A ball elsewhere in
+// the picture is drawn larger, but is judged as if in its middle. Orthographic: items whose 2 r is less. Up to rounding
+// of `radii` or `least_radius` by 2^-50. Errors: as validate(Camera); a height or size that is not positive and finite.
 [[nodiscard]] Result<DrawLimits> limits_of(const Camera& camera, double picture_height, double pixels);
 
 // The test of one item, in these layers of it that the view sees.

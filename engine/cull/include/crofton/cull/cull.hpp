@@ -20,8 +20,8 @@ namespace crofton::cull {
 
 class VisibleSet {
   public:
-    // The items seen, each once: in ResultOrder::ascending by id; in ResultOrder::tree in an order that depends on tree
-    // and view alone: those inside first, then those straddling, each part by and large along the tree.
+    // The items seen, each once. In ResultOrder::ascending they come by id. In ResultOrder::tree the order depends on
+    // tree and view alone: those inside first, then those straddling, each part by and large along the tree.
     [[nodiscard]] std::span<const boxtree::ItemId> ids() const { return {ids_.data(), size_}; }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t inside_count() const { return inside_; }
@@ -60,8 +60,8 @@ struct View {
 
 inline constexpr std::size_t kMaxViews = 32;  // in one pass
 
-// Tree order costs nothing and is the same on every run; items that a renderer lays out in the tree's order
-// (BoxTree::slot_items) come out in long ascending runs.
+// Tree order costs nothing and is the same on every run. A renderer that lays its items out in the tree's order
+// (BoxTree::slot_items) gets long ascending runs.
 enum class ResultOrder : std::uint8_t { ascending, tree };
 
 struct CullOptions {
@@ -70,9 +70,9 @@ struct CullOptions {
     // What is too small or too far is left out. A query without limits costs what it did; one with limits uses no other
     // thread.
     const DrawLimits* limits = nullptr;
-    // Items that may be seen at all: bit i % 64 of word i / 64 is item i; those beyond the span may, and so may all if
-    // it is empty. pvs::Pvs::visible_from() gives such sets. In a query of what rests and what moves it says nothing
-    // about what moves.
+    // Items that may be seen at all: bit i % 64 of word i / 64 is item i. Items beyond the span may be seen, and so may
+    // all if it is empty. pvs::Pvs::visible_from() gives such sets. In a query of what rests and what moves it says
+    // nothing about what moves.
     std::span<const std::uint64_t> among = {};
 };
 
@@ -81,8 +81,8 @@ struct CullOptions {
     return item / 64 >= set.size() || (set[item / 64] >> (item % 64) & 1) != 0;
 }
 
-// Finds the items that `view` sees and whose box is not outside; `visible` is overwritten, and once it has grown to the
-// largest answer nothing is allocated. Same answer, bit for bit, from tree and list, with any executor and instruction
+// Finds the items that `view` sees and whose box is not outside. `visible` is overwritten; once it has grown to the
+// largest answer, nothing is allocated. Same answer, bit for bit, from tree and list, with any executor and instruction
 // set.
 void find_visible(const boxtree::BoxTree& tree, const View& view, VisibleSet& visible, const CullOptions& options = {},
                   Executor& executor = serial_executor());
@@ -103,8 +103,8 @@ void find_visible(const boxtree::BoxTree& tree, std::span<const View> views, std
 
 class ManyVisible {
   public:
-    // The items that at least one view sees, each once: first those in leaves that each view sees whole or not at all,
-    // then the others, both in the order of the tree's slots.
+    // The items that at least one view sees, each once, in the order of the tree's slots. Those in leaves that each
+    // view sees whole or not at all come first.
     [[nodiscard]] std::span<const ItemId> ids() const { return {ids_.data(), size_}; }
     // Bit v: view v sees ids()[i].
     [[nodiscard]] std::uint32_t view_mask(std::size_t i) const {
@@ -144,16 +144,16 @@ struct ItemRange {
 // each once.
 void to_bits(std::span<const boxtree::ItemId> ids, std::size_t items, Vector<std::uint64_t>& bits);
 
-// The runs of set bits, ascending; runs that are at most `max_gap` items apart become one (drawing a few items in vain
-// is cheaper than another draw call). Runs are long where ids follow the tree's order: number the instances by
+// The runs of set bits, ascending. Runs that are at most `max_gap` items apart become one: drawing a few items in vain
+// is cheaper than another draw call. Runs are long where ids follow the tree's order: number the instances by
 // BoxTree::slot_items().
 void merge_ranges(std::span<const std::uint64_t> bits, std::uint32_t max_gap, Vector<ItemRange>& ranges);
 
 // Who may throw a shadow into a view? The view volume, drawn out towards the light.
 
 // All points from which going away from a far light one may come into `view`: { x + s · toward_light : x in view, s ≥ 0
-// }. The planes, at most 12 for a camera's 6, come from eliminating s (Fourier, Motzkin): those that look along the
-// light stay, and every pair of one that does and one that does not makes one parallel to the light. Exact up to the
+// }. The planes, at most 12 for a camera's 6, come from eliminating s (Fourier, Motzkin). Those that look along the
+// light stay. Every pair of one that does and one that does not makes one parallel to the light. Exact up to the
 // rounding of the new planes. Errors: a direction that is zero or not finite; a view of more than 6 planes; a volume
 // that is all of space.
 [[nodiscard]] Result<Frustum> shadow_volume(const Frustum& view, const glm::dvec3& toward_light);

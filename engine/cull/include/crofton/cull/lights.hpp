@@ -97,22 +97,22 @@ class FroxelLights {
     std::uint64_t exact_tests_ = 0;
 };
 
-// Lists for every froxel the lights that share a point with it, exactly for the stored numbers: none is missing, none
+// Lists for every froxel the lights that share a point with it, exactly for the stored numbers. None is missing, none
 // is there in vain, touching counts. Light i is points[i]; light points.size() + i is spots[i]. The same lists, bit for
 // bit, with any executor and instruction set. Allocates nothing once `result` has been used for as much. Points whose
 // numbers include some below 1e-60 other than 0 may be listed where they only nearly touch an edge. Errors, which leave
-// `result` as it was: a light that is not finite, beyond 1e12, of a negative radius or range, a cosine outside [0, 1],
-// a zero axis; `item` is the light's number. More than 2^32 − 1 pairs.
+// `result` as it was: a light that is not finite or beyond 1e12; a negative radius or range; a cosine outside [0, 1]; a
+// zero axis; `item` is the light's number. More than 2^32 − 1 pairs.
 [[nodiscard]] Result<void> find_lights(const FroxelGrid& grid, std::span<const Sphere> points,
                                        std::span<const SpotLight> spots, FroxelLights& result,
                                        Executor& executor = serial_executor());
 
 // Which objects throw a shadow onto something that the view sees? And cascades for the sun.
 
-// What of the view's receivers a light could reach, as seen from the light: for each tile of a picture from there the
+// What of the view's receivers a light could reach, as seen from the light. Each tile of a picture from there keeps the
 // nearest and the farthest point of any receiver within the view. A caster is wanted if in some tile it reaches nearer
-// than the farthest of them. Never refuses a caster whose shadow falls on a point of a receiver's box within the view;
-// how many others it keeps is a matter of the tiles. Keeps its memory: setting it again for as many tiles allocates
+// than the farthest of them. Never refuses a caster whose shadow falls on a point of a receiver's box within the view.
+// How many others it keeps depends on the tiles. Keeps its memory: setting it again for as many tiles allocates
 // nothing.
 class ShadowReceivers {
   public:
@@ -155,15 +155,15 @@ class ShadowReceivers {
     Vector<Tile> grid_;  // by face, row, column
 };
 
-// The practical split scheme (Zhang, Sun, Xu, Lun: "Parallel-split shadow maps", 2006): splits[i], i ≤ count, is
+// The practical split scheme (Zhang, Sun, Xu, Lun: "Parallel-split shadow maps", 2006). splits[i], i ≤ count, is
 // `share` of the way from equal steps to equal ratios between near and far. Fills `splits`, which has a place more than
 // there are cascades. Errors: fewer than two places; near, far or share not finite, near ≤ 0, far ≤ near, share outside
 // [0, 1].
 [[nodiscard]] Result<void> split_depths(double near, double far, double share, std::span<double> splits);
 
-// The sun's orthographic camera around what `camera` sees between two depths: the smallest rectangle across the light,
-// begun `caster_reach` before the first point that is seen. Errors: as validate(Camera) with these depths; a direction
-// that is zero or not finite; a reach that is negative or not finite.
+// The sun's orthographic camera around what `camera` sees between two depths. It is the smallest rectangle across the
+// light, and begins `caster_reach` before the first point that is seen. Errors: as validate(Camera) with these depths;
+// a direction that is zero or not finite; a reach that is negative or not finite.
 [[nodiscard]] Result<Camera> cascade_camera(const Camera& camera, double near, double far,
                                             const glm::dvec3& toward_light, double caster_reach);
 

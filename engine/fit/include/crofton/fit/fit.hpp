@@ -53,7 +53,7 @@ struct Clusters {
 };
 
 // As fit_obb for every cluster: writes boxes[i] for cluster i. The same bits with any executor. A cluster that cannot
-// be fitted (no points, a bad index or point) gets a default box; the others get theirs, and the error names the first
+// be fitted (no points, a bad index or point) gets a default box. The others get theirs, and the error names the first
 // bad cluster. Requires boxes.size() == clusters.ends.size(), and ends that never decrease and stay within `indices`.
 [[nodiscard]] Result<void> fit_many(const Clusters& clusters, const FitOptions& options, Executor& executor,
                                     std::span<Obb> boxes);
@@ -130,8 +130,8 @@ enum class PlanarCriterion : std::uint8_t {
 
 // V, F and M of a sphere grow with its radius alone: the least sphere is the best by every criterion. Contains every
 // point, by distances in double, and is larger than the least by rounding only (1e-9 of it at worst). Exact up to that:
-// the least sphere around at most four points that hold all others, found by adding the farthest point outside until
-// there is none; each step is linear in the points, and a dozen steps are usual. Errors: as fit_obb.
+// the least sphere around at most four points, which contains all others. It is found by adding the farthest point
+// outside until there is none. Each step is linear in the points, and a dozen steps are usual. Errors: as fit_obb.
 [[nodiscard]] Result<Sphere> minimal_sphere(std::span<const glm::dvec3> points);
 
 }  // namespace crofton::fit

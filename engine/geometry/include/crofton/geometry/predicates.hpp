@@ -13,9 +13,9 @@ namespace crofton {
 
 namespace detail {
 
-// Error bounds of the filters, relative to the sum of the absolute products ("permanent"), with u = 2^-53: Shewchuk,
-// "Adaptive precision floating-point arithmetic and fast robust geometric predicates" (1997), bounds A of figures 21
-// and 24.
+// Error bounds of the filters, relative to the sum of the absolute products ("permanent"), with u = 2^-53. Source:
+// Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates" (1997), bounds A of
+// figures 21 and 24.
 inline constexpr double kRounding = 0x1p-53;
 inline constexpr double kOrientationBound = (3.0 + 16.0 * kRounding) * kRounding;
 inline constexpr double kInCircleBound = (10.0 + 96.0 * kRounding) * kRounding;

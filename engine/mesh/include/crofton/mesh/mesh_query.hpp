@@ -24,8 +24,8 @@ class MeshTree;
 struct SegmentOfContact {
     glm::dvec3 begin{0.0}, end{0.0};
 };
-// Where two triangles that meet do so: the ends of their common segment (equal for a point; for coplanar triangles the
-// ends of a longest diagonal of their common polygon, at most). Rounded to double.
+// Where two triangles that meet do so: the ends of their common segment, equal for a point. For coplanar triangles: the
+// ends of a longest diagonal of their common polygon, at most. Rounded to double.
 [[nodiscard]] SegmentOfContact contact_segment(const Triangle& a, const Triangle& b);
 
 // Meshes against meshes, through their trees: do they meet, where, and how far apart are they?
@@ -63,9 +63,9 @@ struct MeshContact {
 void contacts(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& b_to_a,
               Vector<MeshContact>& found, MeshStatistics* statistics = nullptr);
 
-// A motion of b that ends the contact, containment included: `depth` along the unit vector `direction`. The shortest of
-// those along the axes of both meshes' frames and boxes, the mean normal of the contacts and the line of centres, to
-// 1e-6 of the meshes' size: an upper bound of the penetration depth, 0 where they do not meet.
+// A motion of b that ends the contact, containment included: `depth` along the unit vector `direction`. An upper bound
+// of the penetration depth, 0 where they do not meet. It is the shortest, to 1e-6 of the meshes' size, along these: the
+// axes of both meshes' frames and boxes, the mean normal of the contacts, the line of centres.
 struct MeshDepth {
     double depth = 0.0;
     glm::dvec3 direction{0.0};
@@ -107,8 +107,8 @@ struct MeshDistance {
 // may be told either way.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Obb& box);
 
-// Whether the ray's line passes through a triangle, edges and corners included, is decided exactly, so nothing slips
-// through between triangles that share an edge; t is rounded. A ray within the plane of a triangle does not hit that
+// Whether the ray's line passes through a triangle, edges and corners included, is decided exactly. So nothing slips
+// through between triangles that share an edge. t is rounded. A ray within the plane of a triangle does not hit that
 // triangle.
 [[nodiscard]] std::optional<double> raycast(const Ray& ray, const Triangle& triangle);
 
@@ -119,8 +119,8 @@ struct RayHit {
 // The nearest triangle, decided likewise; of hits with equal t that of the lowest index.
 [[nodiscard]] std::optional<RayHit> raycast(const Ray& ray, const mesh::MeshTree& mesh);
 // Many rays: hits[i] is what raycast(rays[i], mesh) gives, the same bits. Where rays are prepared
-// (MeshTree::prepare_rays) sixteen at a time go through the hierarchy as a packet, which takes less time: the less, the
-// closer they lie together. A picture's are best cast in tiles of 4 × 4 pixels. Requires hits.size() >= rays.size().
+// (MeshTree::prepare_rays), sixteen at a time go through the hierarchy as a packet. The closer they lie together, the
+// less time that takes. A picture's are best cast in tiles of 4 × 4 pixels. Requires hits.size() >= rays.size().
 // Allocates nothing.
 void raycast(std::span<const Ray> rays, const mesh::MeshTree& mesh, std::span<std::optional<RayHit>> hits);
 [[nodiscard]] bool hits_any(const Ray& ray, const mesh::MeshTree& mesh);

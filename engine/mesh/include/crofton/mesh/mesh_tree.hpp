@@ -35,8 +35,8 @@ struct MeshPiece {
     bool closed = false;
 };
 
-// Every node but the root has at least eight children, and the nodes make no more levels than sixteen-way splits need:
-// log16 of the number of leaves, rounded up.
+// Every node but the root has at least eight children. There are no more levels than sixteen-way splits need: log16 of
+// the number of leaves, rounded up.
 class MeshTree {
   public:
     MeshTree();  // of no triangles
@@ -47,7 +47,7 @@ class MeshTree {
     MeshTree& operator=(MeshTree&&) noexcept;
 
     // A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed
-    // in rejected(); the others are unharmed. Errors: no valid triangle; index count no multiple of three; 2^28
+    // in rejected(). The others are unharmed. Errors: no valid triangle; index count no multiple of three; 2^28
     // triangles or more.
     [[nodiscard]] static Result<MeshTree> build(const TriangleMesh& mesh, const MeshTreeOptions& options = {});
 

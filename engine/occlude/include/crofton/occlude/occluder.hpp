@@ -19,8 +19,8 @@ namespace crofton::occlude {
 using ShapeId = std::uint32_t;
 using OccluderId = std::uint32_t;
 
-// From where a surface hides what is behind it: from the side on which its triangles are counter-clockwise, as a
-// renderer that culls back faces draws it; or from either.
+// From where a surface hides what is behind it: from the front only, or from either side. The front is where its
+// triangles are counter-clockwise, as a renderer that culls back faces draws it.
 enum class Sides : std::uint8_t { front, both };
 
 // Shapes, each given once, and occluders: shapes in places. An occluder must lie within what is drawn, and must be
@@ -35,13 +35,13 @@ class OccluderSet {
     OccluderSet& operator=(OccluderSet&&) noexcept;
 
     // Shapes, in their own coordinates. Errors leave the set as it was: non_finite and out_of_range (item: the point,
-    // or what validate(TriangleMesh) says), degenerate (flat, or no triangle with an area), invalid_argument (open:
+    // or what validate(TriangleMesh) says); degenerate (flat, or no triangle with an area); invalid_argument (open:
     // item is a triangle at the hole; inside out).
 
     // The convex hull of the points; flat sets are refused. Costs least to draw, beside boxes.
     [[nodiscard]] Result<ShapeId> add_convex(std::span<const glm::vec3> points);
-    // A closed mesh: after equal positions are taken for one vertex, each edge has as many triangles that go along it
-    // as such that go against it; its volume is positive. Any number of closed pieces.
+    // A closed mesh: each edge has as many triangles that go along it as such that go against it, where equal positions
+    // are one vertex. Its volume is positive. Any number of closed pieces.
     [[nodiscard]] Result<ShapeId> add_mesh(const TriangleMesh& mesh);
     // Any triangles, open or not, none of which need be in one plane: a polygon as triangulated, a terrain, a wall.
     // A T-junction is a gap to the rule for covered pixels: it costs a row of pixels there.
@@ -96,10 +96,10 @@ struct FoundOccluder {
     TriangleMesh surface;
     Sides sides = Sides::both;  // of a patch: those of the mesh. Bodies hide from all around
     // Boxes and convex bodies: the bounds of what the occluder lies in. From an eye in these bounds the occluder may
-    // hide what is inside and seen from there: leave it out for such eyes, and for those nearer to them than to any
-    // point of their near plane. Patches: empty.
+    // hide what is inside and seen from there. Leave it out for such eyes, and for eyes that are nearer to the bounds
+    // than their near plane is to any point of it. Patches: empty.
     Aabb piece_bounds;
-    // Eyes must be in here. Bounded for boxes behind walls that leave a side open, as houses without a floor do: no ray
+    // Eyes must be in here. Bounded for boxes behind walls that leave a side open, as houses without a floor do. No ray
     // from within these bounds enters by that side.
     Aabb eyes_within = everywhere();
     double mean_shadow = 0.0;  // F/4 of a body; A/2 of a patch, A/4 where it hides from its front alone
@@ -116,7 +116,7 @@ struct FindOptions {
     double least_gain = 0.02;
     // Patches: how far from the plane of their largest triangle vertices may lie, relative to the size of the mesh.
     double flatness = 1e-4;
-    // A patch is drawn triangle by triangle, many times as slowly as a box: in a town those of more triangles take five
+    // A patch is drawn triangle by triangle, many times as slowly as a box. In a town those of more triangles take five
     // times as long as all other occluders and hide 1 % of the triangles.
     std::uint32_t max_patch_triangles = 4;
     // Cells along each axis of the grid that boxes are looked for in, 4 to 32: finer is slower and finds larger boxes.
@@ -135,18 +135,18 @@ struct FoundOccluders {
     [[nodiscard]] double share() const { return mean_shadow > 0.0 ? covered / mean_shadow : 0.0; }
 };
 
-// Boxes and convex bodies lie inside the solid that a closed piece bounds, proven: no triangle of the piece meets the
-// open body (separating axes with error bounds, or exact predicates), and its centre is inside by an exact count of
-// crossings. Sides::front: a piece is closed where the sides of its triangles cancel, and its inside is where it winds
+// Boxes and convex bodies are proven to lie inside the solid that a closed piece bounds. No triangle of the piece meets
+// the open body, by separating axes with error bounds or exact predicates. Its centre is inside by an exact count of
+// crossings. Sides::front: a piece is closed where the sides of its triangles cancel. Its inside is where it winds
 // round at least once, so that every ray into it meets a front face. Sides::both: where every edge has an even number
 // of triangles, and its inside is where rays cross it an odd number of times. Walled boxes lie behind walls across the
-// mesh's own axes that no straight path passes, recesses such as windows set back included, decided exactly; meshes of
-// more than 100,000 triangles get none. Patches are subsets of the mesh's triangles. So all that an occluder hides is
-// hidden by the mesh, from any eye that piece_bounds and eyes_within allow (docs/notes/occluder_finding.md).
-// A triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed in
-// rejected. The result depends on the mesh and the options alone; greedy, so not the best for the budget.
-// Errors: an index count that is no multiple of three; 2^28 triangles or more; no valid triangle (empty); an option out
-// of its range.
+// mesh's own axes that no straight path passes, decided exactly. Recesses such as windows set back are included. Meshes
+// of more than 100,000 triangles get none. Patches are subsets of the mesh's triangles. So all that an occluder hides
+// is hidden by the mesh, from any eye that piece_bounds and eyes_within allow (docs/notes/occluder_finding.md). A
+// triangle with a vertex that is NaN, infinite or beyond 1e12, or an index out of range, is left out and listed in
+// rejected. The result depends on the mesh and the options alone; greedy, so not the best for the budget. Errors: an
+// index count that is no multiple of three; 2^28 triangles or more; no valid triangle (empty); an option out of its
+// range.
 [[nodiscard]] Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOptions& options = {});
 
 // How much an occluder hides from a region of eyes: a measure to rank occluders by, before any view is known.
@@ -159,12 +159,12 @@ struct SeenScene {
     std::uint32_t samples = 64;        // of eyes; the same ones in every call
 };
 
-// The expected volume of the places in which an object is hidden as a whole by the convex hull of `points`: times the
-// number of objects per volume, the expected number of hidden objects. The shadow volume of a body K from an eye is
-// the union of the rays' parts from K on, up to `range`: convex, the hull of K and of K scaled from the eye. An object
-// of surface F' and mean curvature M' lies in a convex body (V, F, M) with kinematic measure V − F·M'/4π to first
-// order: what (1) in theory.md section 2 gives for "meets", with the sign of "contains". What is left out is of second
-// order in the object's size. An eye inside the hull sees nothing hidden: 0. Errors: as
+// The expected volume of the places in which an object is hidden as a whole by the convex hull of `points`. Times the
+// number of objects per volume it is the expected number of hidden objects. The shadow volume of a body K from an eye
+// is the union of the rays' parts from K on, up to `range`. It is convex: the hull of K and of K scaled from the eye.
+// An object of surface F' and mean curvature M' lies in a convex body (V, F, M) with kinematic measure V − F·M'/4π to
+// first order. That is what (1) in theory.md section 2 gives for "meets", with the sign of "contains". What is left out
+// is of second order in the object's size. An eye inside the hull sees nothing hidden: 0. Errors: as
 // measure::intrinsic_volumes_of_hull; eyes empty or not finite; a range that is not positive and finite; samples of 0.
 [[nodiscard]] Result<double> occlusion_worth(std::span<const glm::dvec3> points, const SeenScene& scene);
 

@@ -23,9 +23,9 @@ namespace crofton::occlude {
 
 // A view whose rays can be told apart: where they start, and the pixel that each belongs to.
 
-// Maps x to (column, row, w, z) = rows · (x − origin, 1): the ray through x is the point (column / w, row / w) of the
-// window [−1, 1]², and z / w falls along each ray. In a perspective view `origin` is the eye, exactly; the first three
-// rows then have no fourth number and z is 1. In a parallel view w is 1.
+// Maps x to (column, row, w, z) = rows · (x − origin, 1). The ray through x is the point (column / w, row / w) of the
+// window [−1, 1]². z / w falls along each ray. In a perspective view `origin` is the eye, exactly; the first three rows
+// then have no fourth number and z is 1. In a parallel view w is 1.
 struct OcclusionView {
     Frustum frustum;
     glm::dvec3 origin{0.0};
@@ -55,9 +55,9 @@ struct EyeLimits {
     std::uint32_t plane_count = 0;
 };
 
-// Whether all that the occluder hides from this camera is hidden by what it lies in: the eye keeps the limits and is
-// farther away than any point of its near plane. For a parallel view: what it lies in is wholly beyond the near plane,
-// and no open side faces the view. Conservative where rounding leaves a doubt. Requires a valid camera.
+// Whether all that the occluder hides from this camera is hidden by what it lies in. It is, where the eye keeps the
+// limits and is farther away than any point of its near plane. For a parallel view: what it lies in is wholly beyond
+// the near plane, and no open side faces the view. Conservative where rounding leaves a doubt. Requires a valid camera.
 [[nodiscard]] bool may_use(const EyeLimits& limits, const Camera& camera);
 [[nodiscard]] bool may_use(const EyeLimits& limits, const OcclusionView& view);
 
@@ -65,8 +65,8 @@ struct EyeLimits {
 struct OccluderCandidate {
     glm::dvec3 center{0.0};
     double radius = 0.0;  // of a ball around the center that contains the occluder
-    // Seen along a unit direction d it covers the area Σ |dot(d, areas[k])|: of a box, areas[k] is the area of the
-    // faces across axis k times the axis; of a patch, areas[0] is its area times its normal, the others are 0.
+    // Seen along a unit direction d it covers the area Σ |dot(d, areas[k])|. Of a box, areas[k] is the area of the
+    // faces across axis k times the axis. Of a patch, areas[0] is its area times its normal; the others are 0.
     std::array<glm::vec3, 3> areas{};
     bool front_only = false;  // hides only where dot(d, areas[0]) < 0
     std::uint32_t edges = 12;
@@ -76,8 +76,8 @@ struct OccluderCandidate {
 
 [[nodiscard]] OccluderCandidate candidate_of(const Obb& box);
 // An occluder of a mesh that stands under `transform`. A convex body counts as a cube of its surface area. Of a patch
-// the mean normal counts; where that is less than nine tenths, as of a closed mesh, a box of its mean shadows along the
-// axes.
+// the mean normal counts. Where that is shorter than nine tenths, as of a closed mesh, a box of the patch's mean
+// shadows along the axes counts.
 [[nodiscard]] OccluderCandidate candidate_of(const FoundOccluder& found, const scene::Transform& transform);
 
 // Candidates by id, stored for vector kernels. Ids are 0, 1, 2, … in the order of add().
@@ -131,11 +131,11 @@ struct OccluderChoice {
     Vector<std::uint64_t> order;
 };
 
-// The candidates that are worth most to the view, each by itself: their projected area over the squared distance, or
-// for a parallel view over the picture's area, times the way behind them. Of objects spread evenly with density n and
-// mean shadow A, a solid angle ω with a way L behind hides n·A·L·ω of their solid angles on average. Any choice is
-// right; a better one hides more. Same ids for any instruction set. Allocates nothing once `choice` and the candidates
-// have been as large. Errors: as validate(Camera).
+// The candidates that are worth most to the view, each by itself. Worth is the projected area over the squared distance
+// (in a parallel view: over the picture's area), times the way behind. Of objects spread evenly with density n and mean
+// shadow A, a solid angle ω with a way L behind hides n·A·L·ω of their solid angles. Any choice is right; a better one
+// hides more. Same ids for any instruction set. Allocates nothing once `choice` and the candidates have been as large.
+// Errors: as validate(Camera).
 [[nodiscard]] Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera,
                                             const ChooseBudget& budget, OccluderChoice& choice);
 void choose_occluders(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
@@ -152,8 +152,8 @@ struct DrawStatistics {
     std::uint64_t triangles_drawn = 0;  // of meshes, surfaces, and bodies that cross the near plane
 };
 
-// A pixel is covered where occluders cover the whole closed square; its depth is then not nearer than the farthest
-// point of the nearest surface over that square (docs/notes/occlude.md has the proof). Const functions may run on any
+// A pixel is covered where occluders cover the whole closed square. Its depth is then not nearer than the farthest
+// point of the nearest surface over that square; docs/notes/occlude.md has the proof. Const functions may run on any
 // number of threads at once.
 class OcclusionBuffer {
   public:
@@ -177,16 +177,17 @@ class OcclusionBuffer {
     // Bit i % 64 of word i / 64 for boxes[i]: as hides(). Requires one bit for each box.
     void find_hidden(std::span<const Obb> boxes, std::span<std::uint64_t> hidden,
                      Executor& executor = serial_executor()) const;
-    // The occluders that hide a box that is hidden: one that does so alone, the nearest; or else those whose depth is
-    // stored in a pixel of the rectangle around its picture, and those that cover one and have the box behind all of
-    // their faces. Ascending; empty where the box is not hidden. Slow and allocating: draws each occluder again.
+    // The occluders that hide a box that is hidden. If one does so alone, the nearest such. Else those whose depth is
+    // stored in a pixel of the rectangle around its picture. Also those that cover a pixel there and have the box
+    // behind all of their faces. Ascending; empty where the box is not hidden. Slow and allocating: draws each occluder
+    // again.
     void hidden_by(const Obb& box, Vector<OccluderId>& ids) const;
 
     [[nodiscard]] BufferSize size() const;
     [[nodiscard]] const OcclusionView& view() const;
     [[nodiscard]] const DrawStatistics& statistics() const;
-    // z / w of the view in column x and row y, counted from the left and from the bottom; kUncovered, which is less
-    // than any that is seen, where the pixel is not covered.
+    // z / w of the view in column x and row y, counted from the left and from the bottom. Where the pixel is not
+    // covered: kUncovered, which is less than any that is seen.
     [[nodiscard]] float nearness(std::uint32_t x, std::uint32_t y) const;
     static constexpr float kUncovered = -3e38f;
     // All of them, row by row from the bottom. Requires width · height numbers.
@@ -244,8 +245,8 @@ struct VisibleOptions {
     std::span<const std::uint64_t> among = {};  // as cull::CullOptions::among
 };
 
-// The items that cull::find_visible() finds in the buffer's view, less those that the buffer hides: an item is
-// hidden if its box is, or the bound of a node above it. Requires a buffer that has been drawn.
+// The items that cull::find_visible() finds in the buffer's view, less those that the buffer hides. An item is hidden
+// if its box is, or the bound of a node above it. Requires a buffer that has been drawn.
 void find_visible(const boxtree::BoxTree& tree, const OcclusionBuffer& buffer, VisibleSet& visible,
                   const VisibleOptions& options = {});
 // What rests and what moves in one answer. Requires the tree that `moving` was updated with.

@@ -190,7 +190,7 @@ class Pvs {
     [[nodiscard]] std::uint32_t find_cell(const glm::dvec3& eye) const;
     // Bit o % 64 of word o / 64: object o may be seen from the cell. Objects that were not baked have theirs set.
     [[nodiscard]] std::span<const std::uint64_t> visible_from(std::uint32_t cell, Mode mode) const;
-    // The set of the eye's cell, for CullOptions::among: in a view of a World or a tree only what it holds is found,
+    // The set of the eye's cell, for CullOptions::among. In a view of a World or a tree only what it holds is found,
     // and what moves. Empty, which is everything, where find_cell() says kNoCell.
     [[nodiscard]] std::span<const std::uint64_t> visible_from(const glm::dvec3& eye, Mode mode) const;
     // Keeps of `ids` (what a view has found, with or without occlusion) those that may be seen from the eye, in order.

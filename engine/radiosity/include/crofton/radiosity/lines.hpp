@@ -46,10 +46,10 @@ struct FirstHitQuery {
 };
 
 // A hierarchy of axis-aligned boxes, eight to a node, over the triangles. For measuring, where a crossing more or less
-// in 10^6 drowns in the spread of random lines: single precision, so a line through the common edge of two triangles
-// may (about once in 10^6) cross both or neither. Crossings closer together than 10^-6 of the scene's half diagonal
-// count as one place, fronts first: so two faces back to back at one place (a sheet with two sides) are seen from
-// either side. The same bits on every machine and for any thread count.
+// in 10^6 drowns in the spread of random lines. It works in single precision. A line through the common edge of two
+// triangles may cross both or neither, about once in 10^6. Crossings closer together than 10^-6 of the scene's half
+// diagonal count as one place, fronts first. So two faces back to back at one place (a sheet with two sides) are seen
+// from either side. The same bits on every machine and for any thread count.
 class LineTracer {
   public:
     // Errors: as validate(TriangleMesh); no triangles; 2^30 of them or more.
@@ -114,8 +114,7 @@ class LineSource {
 };
 
 // What uniform lines see of a scene. The mean number of crossings is 2·S/F for a surface S in a convex body of surface
-// F, whatever the shape: it is the spread, and the share of lines that meet nothing, that tell open scenes from crowded
-// ones.
+// F, whatever the shape. The spread, and the share of lines that meet nothing, tell open scenes from crowded ones.
 struct VisibilityComplexity {
     double mean_crossings = 0.0;
     double deviation = 0.0;  // of the number of crossings, from line to line
@@ -125,10 +124,9 @@ struct VisibilityComplexity {
 [[nodiscard]] VisibilityComplexity visibility_complexity(const LineTracer& tracer, const LineSource& source,
                                                          std::uint64_t blocks, Executor& executor = serial_executor());
 
-// The way that wastes fewer lines on this scene: walls or disc, by a trial of 8 blocks each. A box always has
-// less surface than its circumscribed sphere (for a cube 2/π of it, for a flat square box 1/π), and the chance to meet
-// a scene inside goes with the reciprocal: so for boxes as bodies this is walls, and by how much is
-// docs/notes/radiosity.md's.
+// The way that wastes fewer lines on this scene: walls or disc, by a trial of 8 blocks each. A box always has less
+// surface than its circumscribed sphere: for a cube 2/π of it, for a flat square box 1/π. The chance to meet a scene
+// inside goes with the reciprocal. So for boxes as bodies `walls` is better; docs/notes/radiosity.md says by how much.
 [[nodiscard]] LineMethod choose_method(const LineTracer& tracer, std::uint64_t seed);
 
 // Whole bundles of parallel global lines at once: the scene is drawn into the grid whose cells the lines pass through.
@@ -138,7 +136,7 @@ struct DrawnTriangles;
 }  // namespace detail
 
 // One line in each cell of a square grid, at a uniform place of its cell (jitter), all in one uniform direction. The
-// grid covers the shadow of the scene's box, so every place in it is met with density 1/cell_area: a surface of area S
+// grid covers the shadow of the scene's box, so every place in it is met with density 1/cell_area. A surface of area S
 // expects S/(2·cell_area) crossings per bundle, averaged over directions.
 struct Bundle {
     glm::dvec3 direction{0.0}, right{0.0}, up{0.0};  // orthonormal, right-handed

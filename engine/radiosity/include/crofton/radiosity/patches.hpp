@@ -44,14 +44,14 @@ struct RefinedMesh {
     Vector<std::uint32_t> source;
 };
 
-// Vertices of other triangles that lie within `tolerance` of a triangle's side become corners: the triangle is cut
-// through `triangulate` into those of minimum weight, which use every such point. Sides that lay against several others
-// then meet them end to end, so that refine() leaves no T-junctions. New vertices are copies of the ones met, their
-// colours the triangle's own. Errors: as validate(TriangleMesh); tolerance negative.
+// Vertices of other triangles that lie within `tolerance` of a triangle's side become corners. `triangulate` cuts the
+// triangle into those of minimum weight, which use every such point. Sides that lay against several others then meet
+// them end to end, so that refine() leaves no T-junctions. New vertices are copies of the ones met, their colours the
+// triangle's own. Errors: as validate(TriangleMesh); tolerance negative.
 [[nodiscard]] Result<RefinedMesh> mend_t_junctions(const TriangleMesh& mesh, double tolerance);
 
 // Long edges are halved, round by round. Whether and where depends on an edge's end points alone, so triangles that
-// share an edge are cut alike: where `mesh` has no T-junctions the result has none, also across meshes. Errors: as
+// share an edge are cut alike. Where `mesh` has no T-junctions the result has none, also across meshes. Errors: as
 // validate(TriangleMesh); longest_edge not positive; more than `most_triangles` (budget_exceeded).
 [[nodiscard]] Result<RefinedMesh> refine(const TriangleMesh& mesh, double longest_edge,
                                          std::size_t most_triangles = std::size_t{1} << 24);
@@ -60,15 +60,15 @@ using EdgeLength = FunctionRef<double(const glm::vec3& middle)>;
 [[nodiscard]] Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge,
                                          std::size_t most_triangles = std::size_t{1} << 24);
 
-// A patch number for each triangle: those of at least size²/4 are patches of their own, smaller ones share one with
-// their like in the same cell of side `size`: facing the same side of a cube, of one label (labels: by triangle, or
-// empty). What is too small to be met by lines on its own is met together.
+// A patch number for each triangle. Those of at least size²/4 are patches of their own. Smaller ones share one if they
+// are in one cell of side `size`, face the same side of a cube and have the same label. `labels`: by triangle, or
+// empty. What is too small to be met by lines on its own is met together.
 [[nodiscard]] Vector<std::uint32_t> group_small_triangles(const TriangleMesh& mesh,
                                                           std::span<const std::uint32_t> labels, double size);
 
-// One colour per corner of every triangle (3·triangles): the area-weighted mean of `values` over the patches that meet
-// at the corner's position and whose faces are within about 30 degrees of the triangle's; `weights`, one a patch or
-// none, multiply the areas, and a corner of no weight is 0.
+// One colour per corner of every triangle (3·triangles). It is the area-weighted mean of `values` over the patches that
+// meet at the corner's position and face within about 30 degrees of the triangle. `weights`, one a patch or none,
+// multiply the areas; a corner of no weight is 0.
 [[nodiscard]] Vector<glm::vec3> corner_values(const Patches& patches, std::span<const glm::vec3> values,
                                               std::span<const double> weights = {});
 
@@ -89,14 +89,14 @@ struct FactorRow {
 };
 
 // Row i from `lines` local lines, from triangles of the patch by area. A line that arrives at a back counts as
-// swallowed: it reaches no patch and does not escape, so the row then sums to less than 1. Requires i <
+// swallowed. It reaches no patch and does not escape, so the row then sums to less than 1. Requires i <
 // patches.count(), lines ≥ 1.
 [[nodiscard]] FactorRow factors_by_local_lines(const LineTracer& tracer, const Patches& patches, std::uint32_t i,
                                                std::uint64_t lines, LocalDensity density, std::uint64_t seed,
                                                sampling::Sequence sequence = sampling::Sequence::pseudo_random);
 
 // All rows at once from global lines. Every crossing of a patch's front with a line starts one ray there, whatever the
-// patch's shape: crossings are counted, not lines, so non-planar patches are right too (the paper's section 6.1).
+// patch's shape. Crossings are counted, not lines, so non-planar patches are right too (the paper's section 6.1).
 struct FactorMatrix {
     std::size_t size = 0;
     Vector<std::uint32_t> transfers;  // [i·size + j]: rays from i that reach j
@@ -118,8 +118,8 @@ struct FactorMatrix {
 inline constexpr std::uint32_t kSky = ~std::uint32_t{0};       // nothing
 inline constexpr std::uint32_t kBack = ~std::uint32_t{0} - 1;  // the back of a triangle, which swallows light
 
-// Calls ray(i, j) for every ray that starts on the front of patch i along the line, either way, with what it reaches
-// first: a patch, kSky or kBack. Two fronts that face each other give ray(i, j) and ray(j, i).
+// Calls ray(i, j) for every ray that starts on the front of patch i along the line, either way. j is what the ray
+// reaches first: a patch, kSky or kBack. Two fronts that face each other give ray(i, j) and ray(j, i).
 template <class RayVisitor>
 void for_each_ray(std::span<const Hit> crossings, const Patches& patches, RayVisitor&& ray) {
     std::uint32_t before = kSky;  // patch whose front looks along the line into this stretch, or what is there instead

@@ -35,11 +35,11 @@ struct SolverOptions {
     Outside outside{};
 };
 
-// One run: lamps shoot local lines and patches look for the sun (first-shot improvement: what is small and bright is a
-// waste of global lines); then each patch gathers the mean of what its rays along N global lines bring: the sky, and
-// what the runs before know of all patches' light. What that gathering finds beyond what was known travels on, gathered
-// along new and fewer lines, until it is spent. Whatever was known, a run's expectation is the light itself; knowing it
-// well only takes the spread of the many bounces away (a control variate).
+// One run. First lamps shoot local lines and patches look for the sun; global lines would rarely meet what is small and
+// bright. Then each patch gathers the mean of what its rays along N global lines bring. That is the sky, and what the
+// runs before know of all patches' light. What that gathering finds beyond what was known travels on, gathered along
+// new and fewer lines, until it is spent. Whatever was known, a run's expectation is the light itself; knowing it well
+// only takes the spread of the many bounces away (a control variate).
 //
 // The result is the mean of the runs, its error their spread: it falls as 1/√runs. With quasi-random numbers the true
 // error is smaller than this estimate, since runs share a sequence and make up for each other.
@@ -65,8 +65,8 @@ class Solver {
     // before the second run.
     [[nodiscard]] double relative_error() const;
     [[nodiscard]] double unseen() const;
-    // The share of a patch that lies in the open, as its rays so far tell; 0 where all is buried, 1 before the first
-    // run.
+    // The share of a patch that lies in the open, as its rays so far tell. It is 0 where all is buried, 1 before the
+    // first run.
     [[nodiscard]] double exposed_share(std::size_t patch) const;
     [[nodiscard]] LineMethod method() const { return method_; }
     [[nodiscard]] std::uint64_t lines_traced() const { return lines_traced_; }

@@ -27,13 +27,13 @@ class ModelToClip {
     glm::dmat4 from_camera_relative_;
 };
 
-// True only where the float pipeline finds no point of `bounds` beyond a clip plane of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w: a
+// True only where the float pipeline finds no point of `bounds` beyond a clip plane of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w. A
 // mesh within is drawn without any clipping. Boxes within rounding of a plane are answered false.
 [[nodiscard]] bool inside_clip_planes(const Aabb& bounds, const glm::mat4& model_to_clip);
 
-// Predicts the `clipping primitives` that Mesa's software pipeline (lavapipe) counts: each triangle is clipped, in
-// float, by the planes of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w, and a polygon of n ≥ 3 vertices counts n − 2. This is not the
-// number of triangles that meet the frustum: clipping repeats vertices that lie on planes, and rounds. Back-facing and
+// Predicts the `clipping primitives` that Mesa's software pipeline (lavapipe) counts. Each triangle is clipped, in
+// float, by the planes of |x| ≤ w, |y| ≤ w, 0 ≤ z ≤ w; a polygon of n ≥ 3 vertices counts n − 2. This is not the number
+// of triangles that meet the frustum: clipping repeats vertices that lie on planes, and rounds. Back-facing and
 // degenerate triangles count; a triangle with a NaN counts nothing, nor does one whose distance from a plane it crosses
 // is infinite.
 //
@@ -46,8 +46,8 @@ class ClipPredictor {
     [[nodiscard]] std::uint64_t count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                       const glm::mat4& model_to_clip);
 
-    // The same sum for positions that all lie in `bounds`: a mesh inside all planes, or beyond one, by more than the
-    // floats can round is counted by its bounds alone.
+    // The same sum for positions that all lie in `bounds`. A mesh inside all planes, or beyond one, by more than the
+    // floats can round, is counted by its bounds alone.
     [[nodiscard]] std::uint64_t count(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
                                       const glm::mat4& model_to_clip, const Aabb& bounds);
 

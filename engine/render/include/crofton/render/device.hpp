@@ -19,7 +19,7 @@ enum class DeviceKind : std::uint8_t {
 
 struct DeviceOptions {
     DeviceKind kind = DeviceKind::any;
-    // Part of the device's name, in any case of letters; empty: the environment's CROFTON_DEVICE, if set ("cpu" asks
+    // Part of the device's name, in any case of letters. If empty: the environment's CROFTON_DEVICE, if set ("cpu" asks
     // for the kind); otherwise the best device of `kind`.
     std::string name;
     // Turns on VK_LAYER_KHRONOS_validation with synchronisation checks, and collects what it says.

@@ -7,8 +7,8 @@
 
 namespace crofton::render {
 
-// One pass over a picture of kColorFormat, which ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and fragment
-// shaders that follow; one that is kept must be in that layout before.
+// One pass over a picture of kColorFormat. The picture ends in SHADER_READ_ONLY_OPTIMAL, visible to transfers and
+// fragment shaders that follow. One that is kept must be in that layout before.
 struct PassDescription {
     bool keep_color = false;                      // false: cleared
     VkFormat depth_format = VK_FORMAT_UNDEFINED;  // cleared, and gone after the pass; UNDEFINED: the pass has no depth

@@ -109,8 +109,8 @@ class Rasterizer {
 
     // Pictures are numbered; 0 is made by create(), others by their first resize(), one after another. They share the
     // geometry, so that one scene can be seen from several sides. Where `resolution` is less than 1 only that share of
-    // the pixels each way is drawn, and enlarged; counts stay as they are, but for the samples passed.
-    // Errors: as create(); a resolution that is not above 0 and at most 1.
+    // the pixels each way is drawn, and enlarged. Counts stay as they are, but for the samples passed. Errors: as
+    // create(); a resolution that is not above 0 and at most 1.
     [[nodiscard]] Result<void> resize(std::uint32_t width, std::uint32_t height, std::uint32_t picture = 0,
                                       float resolution = 1.0f);
 

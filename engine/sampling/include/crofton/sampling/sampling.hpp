@@ -22,7 +22,7 @@ namespace crofton::sampling {
 // Random numbers that are the same bits on every machine, for any number of threads.
 
 // The counter-based generator Philox4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3",
-// 2011): 2^64 streams per seed, each of 2^65 values, independent of one another; integer arithmetic only.
+// 2011). Each seed has 2^64 independent streams of 2^65 values. Integer arithmetic only.
 class Random {
   public:
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : seed_(seed), stream_(stream) {}
@@ -126,10 +126,10 @@ struct PlanarMotion {
 // (b) A uniform direction through a uniform point of the orthogonal disc through the centre.
 [[nodiscard]] Line line_through_disc(const Sphere& ball, const std::array<double, 4>& u);
 
-// (c) A bundle of parallel lines: a uniform direction, and a square grid of cell area Δ in the plane orthogonal to it,
-// turned and shifted at random. Each cell has one line, uniform in it. Appends those that meet the ball, πR²/Δ on
-// average. A surface of area S inside the ball is expected to be crossed S/(2Δ) times by a bundle.
-// Requires cell_area > 0 and at most 2^31 cells across the ball's projection.
+// (c) A bundle of parallel lines: a uniform direction, and a square grid of cell area Δ in the plane orthogonal to it.
+// The grid is turned and shifted at random. Each cell has one line, uniform in it. Appends those that meet the ball,
+// πR²/Δ on average. A surface of area S inside the ball is expected to be crossed S/(2Δ) times by a bundle. Requires
+// cell_area > 0 and at most 2^31 cells across the ball's projection.
 void append_line_bundle(const Sphere& ball, double cell_area, Random& random, Vector<Line>& lines);
 
 // (d) From a uniform point of a box's surface inward, cosine-weighted. Starts on the surface.

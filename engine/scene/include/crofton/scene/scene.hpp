@@ -57,11 +57,11 @@ struct SceneOptions {
 };
 
 // Nodes form a forest by parent. A node's layer mask is its own AND its parent's. Instances are meshes that hang on
-// nodes; an instance's layer mask is its own AND its node's, and 0 where the world transform scales all to a point.
-// World transforms, boxes and masks change in update() alone. Its cost is in proportion to what changed.
-// Ids are indices: each is below its count, and those of what was removed are given out again, latest first.
-// Const calls may run on any number of threads; others need the scene to themselves. They require ids that are not
-// removed, unless they say otherwise.
+// nodes. An instance's layer mask is its own AND its node's. It is 0 where the world transform scales all to a point.
+// World transforms, boxes and masks change in update() alone. Its cost is in proportion to what changed. Ids are
+// indices: each is below its count, and those of what was removed are given out again, latest first. Const calls may
+// run on any number of threads; others need the scene to themselves. They require ids that are not removed, unless they
+// say otherwise.
 class Scene {
   public:
     explicit Scene(const SceneOptions& options = {});
@@ -69,9 +69,9 @@ class Scene {
     Scene(Scene&&) noexcept;
     Scene& operator=(Scene&&) noexcept;
 
-    // Every error below names the item, and leaves the scene as it was: an id that does not exist or was removed; more
-    // than 2^31 items; a transform that fails validate(Transform).
-    // A mesh must have triangles and pass validate(TriangleMesh).
+    // Every error below names the item, and leaves the scene as it was. Errors: an id that does not exist or was
+    // removed; more than 2^31 items; a transform that fails validate(Transform). A mesh must have triangles and pass
+    // validate(TriangleMesh).
     [[nodiscard]] Result<MeshId> add_mesh(TriangleMesh mesh, std::string_view name = {});
     // A polygon is drawn through its triangles (indices into polygon.points), and is a mesh for all other calls.
     [[nodiscard]] Result<MeshId> add_polygon(PlanarPolygon polygon,
@@ -134,7 +134,7 @@ class Scene {
     [[nodiscard]] std::span<const std::uint32_t> layer_masks() const;  // 0 once removed
 
     // What the last update() found, each list ascending and without repetition. An id that was removed and given out
-    // again in between is in removed_instances() for what it was, and in the others for what it is.
+    // again in between is in removed_instances() for its old instance. For its new one it is in the others.
     [[nodiscard]] std::span<const InstanceId> moved_instances() const;      // new, or with another box
     [[nodiscard]] std::span<const InstanceId> relayered_instances() const;  // new, or with another layer mask
     [[nodiscard]] std::span<const InstanceId> removed_instances() const;  // there at the update() before, then removed

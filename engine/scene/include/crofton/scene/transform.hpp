@@ -37,10 +37,10 @@ struct Transform {
 [[nodiscard]] bool maps_to_point(const Transform& transform);
 
 // A box that contains the exact image of every point of `box` under the stored numbers of `transform`. Similarities
-// keep the box's shape but for rounding; other maps turn it into a parallelepiped, around which the best box by
+// keep the box's shape but for rounding. Other maps turn it into a parallelepiped. Around that the best box by
 // `criterion` with two adjacent flush faces is taken (theory.md section 3). A flat image gets a flat box, up to the
-// rounding of its float axes. Always right-handed, also for reflections.
-// Errors: as validate(Obb) for the result: not finite or too large.
+// rounding of its float axes. Always right-handed, also for reflections. Errors: as validate(Obb) for the result: not
+// finite or too large.
 [[nodiscard]] Result<Obb> transformed_box(const Transform& transform, const Obb& box,
                                           const measure::Criterion& criterion);
 

@@ -17,11 +17,11 @@ namespace crofton::triangulate {
 
 enum class Method : std::uint8_t { ear, delaunay, minimum_weight };
 
-// Limits of the exact search for the minimum weight. Where one is reached, the lightest of several triangulations is
-// returned, with `optimal` false and a proven `gap`: what is proven so far completed to a constrained Delaunay one,
-// that of Method::delaunay and that of Method::ear, each improved by flips and by exact minima of windows of fifty
-// triangles. They are linear, and not counted. All but the largest and smoothest polygons (docs/triangulate.md) need a
-// small part.
+// Limits of the exact search for the minimum weight. Where one is reached, the lightest of three triangulations is
+// returned, with `optimal` false and a proven `gap`. One completes what is proven so far to a constrained Delaunay
+// triangulation; the others are those of Method::delaunay and Method::ear. Each is improved by flips and by exact
+// minima of windows of fifty triangles. They are linear, and not counted. All but the largest and smoothest polygons
+// (docs/triangulate.md) need a small part.
 struct TriangulateOptions {
     static constexpr std::uint64_t kUnlimitedWork = ~std::uint64_t{0};
 
@@ -48,16 +48,16 @@ struct Triangulation {
 };
 
 // What input means that is not a simple polygon with disjoint simple holes inside it:
-// - a point is inside a ring if an odd number of the ring's edges lie between it and infinity; rings may touch
+// - a point is inside a ring if an odd number of the ring's edges lie between it and infinity. Rings may touch
 //   themselves and each other, at points or along edges;
 // - points at one position are one vertex: triangles name the index of the ring whose corner they fill, and of
 //   consecutive duplicates the first;
 // - a vertex on another edge splits that edge;
-// - an edge that one ring traverses there and back is no boundary: a spike pointing inside becomes a slit that
-//   triangles do not cross, one pointing outside vanishes and its tip is used by no triangle;
+// - an edge that one ring traverses there and back is no boundary. A spike pointing inside becomes a slit that
+//   triangles do not cross. One pointing outside vanishes and its tip is used by no triangle;
 // - a hole of one point is a Steiner point, of two a slit, of none nothing.
-// Errors name ring, point and position: an outer ring of fewer than three points, positions not finite or differing by
-// more than 2^200 in size, edges that cross, holes outside, overlapping or nested, zero area.
+// Errors name ring, point and position: an outer ring of fewer than three points; positions not finite or differing by
+// more than 2^200 in size; edges that cross; holes outside, overlapping or nested; zero area.
 [[nodiscard]] Result<Triangulation> triangulate(const Polygon& polygon, const TriangulateOptions& options = {});
 
 // The same with memory kept between calls: allocates nothing once its buffers fit the largest polygon seen.
@@ -83,8 +83,8 @@ class Triangulator {
 // The planar polygons hidden in a triangle mesh, found and triangulated anew.
 
 // What a vertex carries besides its position: texture coordinates, normals, colours, displacements. Triangles
-// interpolate it, so a flat area is one patch only as far as it is one linear function of the position there, up to
-// `tolerance` at every vertex (in the values' units; NaN agrees with nothing). Its interpolated value then changes
+// interpolate it, so a flat area is one patch only where it is one linear function of the position. It may be off by
+// `tolerance` at every vertex, in the values' units; NaN agrees with nothing. Its interpolated value then changes
 // nowhere by more than 2 · tolerance. What is not interpolated linearly (bones and their weights) must be `constant`
 // over a patch.
 struct VertexValues {
@@ -94,8 +94,8 @@ struct VertexValues {
     bool constant = false;
 };
 
-// Triangles that hang together by shared sides (pairs of vertex indices, so seams of any vertex attribute separate
-// them) and lie in one plane, facing the same way.
+// Triangles that hang together by shared sides and lie in one plane, facing the same way. A side is a pair of vertex
+// indices, so seams of any vertex attribute separate triangles.
 struct PlanarPatch {
     Vector<std::uint32_t> triangles;  // of the mesh, ascending
     Polygon polygon;                  // outer ring first; a vertex inside the patch is a ring of one point
@@ -139,9 +139,9 @@ struct PatchReport {
                                                               std::span<const VertexValues> values = {});
 
 // Replaces the triangles of each patch by those of its polygon where that makes it lighter. Vertices stay as they are,
-// all remain in use, and the number of triangles is the same. A patch whose new triangles would not all face as before
-// (rounding, at collinear vertices) or cover another area (where the patch overlaps itself) is left alone. Errors: as
-// find_planar_patches, cancelled.
+// all remain in use, and the number of triangles is the same. A patch is left alone if its new triangles would not all
+// face as before (rounding, at collinear vertices). So is one that overlaps itself, since they would cover
+// another area. Errors: as find_planar_patches, cancelled.
 [[nodiscard]] Result<PatchReport> retriangulate_planar_patches(TriangleMesh& mesh, const PatchOptions& options = {});
 
 }  // namespace crofton::triangulate

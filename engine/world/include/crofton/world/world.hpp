@@ -22,8 +22,8 @@ struct Motion;
 
 inline constexpr std::size_t kAutomatic = ~std::size_t{0};
 
-// A profiler's functions. Zones are told when they begin and end, on the thread that runs them, nested on each thread:
-// several views at once run on the executor's threads. Names are constants that live as long as the program. A function
+// A profiler's functions. Zones are told when they begin and end, on the thread that runs them, nested on each thread.
+// Several views at once run on the executor's threads. Names are constants that live as long as the program. A function
 // that is null is not called; none may throw.
 struct TraceHooks {
     void (*begin)(void* user, const char* zone) = nullptr;
@@ -63,11 +63,10 @@ struct WorldStatistics {
 
 // Owns nodes, meshes, objects, the tree of what rests and the list of what moves; which is which it finds out.
 // Changes take effect in update(). Const calls answer as of the last update and may run on any number of threads; the
-// others need the World for themselves. An error names the item and leaves all as it was; calls that take many handles
-// do what they can and return the first error, whose item is the place among the handles.
-// Errors of all calls: a stale handle (stale_handle); numbers that are NaN, infinite or out of range, for which see
-// validate(Obb) and scene::validate(Transform). A transform may flatten: zero scale hides, a flat scale gives a flat
-// box.
+// others need the World for themselves. An error names the item and leaves all as it was. Calls that take many handles
+// do what they can and return the first error; its item is the place among the handles. Errors of all calls: a stale
+// handle (stale_handle); numbers that are NaN, infinite or out of range, for which see validate(Obb) and
+// scene::validate(Transform). A transform may flatten: zero scale hides, a flat scale gives a flat box.
 class World {
   public:
     explicit World(const WorldOptions& options = {});
@@ -89,10 +88,10 @@ class World {
     Result<void> set_collides_with(ObjectHandle object, std::uint32_t layers);
     Result<void> set_user(ObjectHandle object, std::uint64_t user);
 
-    // Gives an object a body, or with nullptr takes it away, from the next update on: pairs of objects that both have
+    // Gives an object a body, or with nullptr takes it away, from the next update on. Pairs of objects that both have
     // bodies are in body_contacts() instead of contacts(). What the body is a view of stays the caller's, alive and
     // unchanged; to change it, set the body again. It stands where the object's transform, or the frame of its box or
-    // ball, puts it; under a transform that is not rigid it touches nothing. The object's box stands for it in pairs
+    // ball, puts it. Under a transform that is not rigid it touches nothing. The object's box stands for it in pairs
     // and queries: what reaches beyond is missed. Error: a half-space, which has no box.
     Result<void> set_body(ObjectHandle object, const convex::Body* body);
 
@@ -102,11 +101,11 @@ class World {
     Result<void> set_vertices(MeshHandle mesh, PointsView positions);  // as many as before: a mesh that deforms
     Result<void> remove(MeshHandle mesh);                              // error: objects use it
 
-    // What objects of a mesh hide other objects with, in views that ask for occlusion: found in its triangles, which
-    // takes time; or given, in the mesh's frame. Given ones must lie within what is drawn of the mesh, and be opaque: a
-    // box (kind and box alone are enough), the convex hull of surface.positions, or as a patch any triangles. Store
-    // what was found, and give it the next time. Replacing a mesh or its vertices forgets its occluders. Errors name
-    // the occluder: as occlude::find_occluders and occlude::OccluderSet.
+    // What objects of a mesh hide other objects with, in views that ask for occlusion. They are found in its triangles,
+    // which takes time, or given, in the mesh's frame. Given ones must lie within what is drawn of the mesh, and be
+    // opaque. One is a box (kind and box alone are enough), the convex hull of surface.positions, or a patch of any
+    // triangles. Store what was found, and give it the next time. Replacing a mesh or its vertices forgets its
+    // occluders. Errors name the occluder: as occlude::find_occluders and occlude::OccluderSet.
     Result<void> find_occluders(MeshHandle mesh, const occlude::FindOptions& options = {});
     Result<void> set_occluders(MeshHandle mesh, std::span<const occlude::FoundOccluder> occluders);
     [[nodiscard]] std::span<const occlude::FoundOccluder> occluders_of(MeshHandle mesh) const;  // none: empty
@@ -146,8 +145,8 @@ class World {
 
     // The same, and what other objects hide is left out: never what is seen (docs/occlude.md). Ascending, whatever
     // options.order says. An object hides with its mesh's occluders where the view draws it: shown, in a layer of the
-    // view, within options.limits. Any number of calls at once, each with its own `visible`; the same bits for any
-    // executor; nothing is allocated once `visible` has seen as much. Errors: a camera that is not valid; a buffer's
+    // view, within options.limits. Any number of calls at once, each with its own `visible`. The same bits for any
+    // executor. Nothing is allocated once `visible` has held as many. Errors: a camera that is not valid; a buffer's
     // size out of its range. Not more than cull::kMaxViews views.
     Result<void> view(const Camera& camera, const OcclusionOptions& occlusion, VisibleObjects& visible,
                       const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
@@ -155,8 +154,8 @@ class World {
                       const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
     Result<void> view(std::span<const OccludingView> views, const OcclusionOptions& occlusion, VisibleInViews& visible,
                       const cull::CullOptions& options = {}, Executor& executor = serial_executor()) const;
-    // Of a view with occlusion, before the next update: which occluders hide an object, none where it is not hidden;
-    // and which were drawn, those worth most first. The first draws all of them again, and allocates.
+    // Of a view with occlusion, before the next update: which occluders hide an object (none where it is not hidden).
+    // Also which were drawn, those worth most first. The first draws all of them again, and allocates.
     Result<void> hidden_by(ObjectHandle object, const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
     void drawn_occluders(const VisibleObjects& visible, Vector<OccluderRef>& occluders) const;
 
