@@ -18,8 +18,8 @@ inline constexpr double kTurnCost = 0.35;
 // What a box is to the builder: its bound along `axes`, around `middle`.
 [[nodiscard]] BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle, const Axes& axes);
 
-// Tries axes that are at hand: those that are, the world's, and those of some items; one at a time, since each takes a
-// division of all items. Memory is kept from node to node.
+// Tries the axes that are at hand: the present ones, the world's, and those of some items. They are tried one at a
+// time, since each takes a division of all items. Memory is kept from node to node.
 class AxesChooser {
   public:
     [[nodiscard]] bool is_busy() const { return next_ > 0; }

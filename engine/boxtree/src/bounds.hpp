@@ -12,7 +12,7 @@ void clear(Node& node);
 void clear(Leaf& leaf);
 
 // A leaf's origin and units for boxes whose centres lie in `centers` and whose half edges are no longer than
-// `longest_edge`, with room to move; all lanes must be written anew.
+// `longest_edge`, with room to move. All lanes must be written anew.
 void fit_frame(Leaf& leaf, const Aabb& centers, double longest_edge);
 [[nodiscard]] double longest_edge(const Obb& box);
 // Does the frame keep the promises that Leaf states?

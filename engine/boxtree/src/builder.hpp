@@ -20,8 +20,8 @@ struct Movers {
 };
 
 // Small crowds are split from the top by the criterion. Large ones are first sorted along a space-filling curve into
-// clusters of 4096, of items that move or of items at rest; the clusters are split from the top, and each cluster
-// within itself, a subtree for each: the same work per item whatever their number.
+// clusters of 4096, of items that move or of items at rest. The clusters are split from the top, and each cluster
+// within itself, a subtree for each. The work per item is the same whatever their number.
 class Builder {
   public:
     // Coordinates are taken around `scene`'s middle. `items` is how many will be added.

@@ -232,7 +232,7 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
     for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
 }
 
-// All lanes of the node; above it the contents of those on the path, and the bounds if the child's are no longer what
+// All lanes of the node. Above it the contents of those on the path, and the bounds if the child's are no longer what
 // they were. Where bounding a child along other axes is dear, only those on the path. Up to the first node that nothing
 // changes in: those above depend on it alone.
 void Placement::refresh_path(NodeId n) {

@@ -90,8 +90,8 @@ Aabb bounds_along(const Axes& axes, const Obb& box) {
 }
 
 // A centre is within half a unit of its lane's integers along each of the world's axes, and so is each of three half
-// edges: within √3/2 of one along any other. Axes in float, products and sums round by 6 · 2^-24 of the sums of sizes
-// of centre and edges; those are at most √3 times as large as the ends together.
+// edges. So they are within √3/2 of one along any other. Axes in float, products and sums round by 6 · 2^-24 of the
+// sums of sizes of centre and edges. Those are at most √3 times as large as the ends together.
 Aabb bounds_along(const Axes& axes, const Leaf& leaf) {
     if (axes.rounding == 0.0) return bounds_of(leaf);
     if (leaf.count == 0) return {};

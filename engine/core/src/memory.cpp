@@ -14,7 +14,7 @@
 namespace crofton {
 namespace {
 
-// Large blocks ask for huge pages: a page fault costs as much as filling the page, and a tree of a million items spans
+// Large blocks ask for huge pages. A page fault costs as much as filling the page, and a tree of a million items spans
 // tens of thousands of ordinary ones.
 constexpr std::size_t kLargeBlock = std::size_t{4} << 20, kHugePage = std::size_t{2} << 20;
 

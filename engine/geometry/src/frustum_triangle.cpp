@@ -10,7 +10,7 @@ namespace {
 
 // The triangle's points are λa·a + λb·b + λc·c with λ ≥ 0; plane i keeps those with Σ λ_v f_i(v) ≥ 0, f_i(v) its value
 // at corner v. The triangle meets the frustum iff the cone { λ : rows · λ ≥ 0 } (unit rows for λ ≥ 0 included) is more
-// than 0; being pointed it then has an extreme ray, which is the cross product of two of the rows.
+// than 0. Being pointed it then has an extreme ray, which is the cross product of two of the rows.
 constexpr std::uint32_t kMaxRows = Frustum::kMaxPlanes + 3;
 
 // A row in double: `value` within 6·2^-53·`size` of the exact one (difference, product, three additions).
@@ -94,7 +94,7 @@ bool is_extreme_ray(const Rows& rows, std::uint32_t i, std::uint32_t j) {
         if (sign * side < 0) return false;
         if (sign != 0) side = sign;
     }
-    // A ray that is not 0 has a component k that is not 0; it is not perpendicular to unit row k, which was therefore
+    // A ray that is not 0 has a component k that is not 0. It is not perpendicular to unit row k, which was therefore
     // asked.
     return side != 0;
 }

@@ -80,7 +80,7 @@ DoubleDouble difference(double a, double b) {
 
 // Points that are cocircular but for their rounding, as on discs and caps: 100 bits tell, a thirtieth of what
 // expansions cost. 0 if they do not tell. No path from the differences, which are exact, to the determinant has more
-// than eight operations: so it errs by less than 2^-97 of the permanent, and the permanent in double by far less than
+// than eight operations. So it errs by less than 2^-97 of the permanent, and the permanent in double by far less than
 // half of it. Below the threshold underflow would add to that.
 int in_circle_to_100_bits(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {
     constexpr double kBound = 0x1p-95, kSmallest = 1e-200;

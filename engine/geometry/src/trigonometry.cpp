@@ -7,8 +7,8 @@
 namespace crofton {
 namespace {
 
-// π/2 in parts of 33 bits and the rest: products with integers below 2^20 are exact, and what is lost is below 1e-26
-// of the integer.
+// π/2 in parts of 33 bits and the rest. Products with integers below 2^20 are exact, and what is lost is below 1e-26 of
+// the integer.
 constexpr double kHalfPiHigh = 0x1.921fb544p+0, kHalfPiMiddle = 0x1.0b4611a6p-34, kHalfPiLow = 0x1.3198a2e037073p-69;
 
 // Σ c[k] y^k

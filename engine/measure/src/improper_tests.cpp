@@ -23,8 +23,8 @@ double rest(double a, double b) {
 
 // At most so many motions bring the object into the query. For a fixed rotation its places are the body
 // K' = { x : x + object ⊂ query }, and K' + object ⊂ query. By Brunn and Minkowski the cube root of the volume, the
-// square root of the area and the mean width of K' and object therefore sum to no more than the query's; and area and
-// mean width bound a volume (isoperimetric inequality, Urysohn).
+// square root of the area and the mean width of K' and object therefore sum to no more than the query's. Area and mean
+// width bound a volume (isoperimetric inequality, Urysohn).
 double containing(const IntrinsicVolumes& query, const IntrinsicVolumes& object) {
     const double by_volume = rest(std::cbrt(query.volume), std::cbrt(object.volume));
     const double by_area = rest(std::sqrt(query.area), std::sqrt(object.area)) / std::cbrt(6.0 * std::sqrt(pi));

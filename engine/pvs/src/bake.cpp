@@ -94,9 +94,9 @@ class BlockTracing {
             if ((gap.behind.is_nothing() || gap.ahead.is_nothing()) && !(gap.flags & kSolid)) gap.flags |= escapes;
     }
 
-    // Depth is how often the line is inside of something. A line that goes in as often as it comes out, and has been at
-    // two depths at least, is in a solid where it is deeper than at its least. Others have met what is open, or nothing
-    // but sheets at one place: they say nothing.
+    // Depth is how often the line is inside of something. Take a line that goes in as often as it comes out and has
+    // been at two depths at least. It is in a solid where it is deeper than at its least. Others have met what is open,
+    // or nothing but sheets at one place: they say nothing.
     void tell_solids(std::span<const radiosity::Hit> hits) {
         int depth = 0, least = 0, most = 0;
         for (std::size_t i = 0; i < hits.size(); ++i) {

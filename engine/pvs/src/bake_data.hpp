@@ -39,7 +39,7 @@ class BlockRanges {
 }
 
 // What lines have found about a cell. Lines are dealt out to twelve classes by number, and those that leave the scene
-// set the bit of theirs: one or two may have slipped between two triangles, many have found a way out.
+// set the bit of theirs. One or two may have slipped between two triangles; many have found a way out.
 enum CellFlag : std::uint16_t { kPassed = 1, kFree = 2, kSolid = 4, kFirstEscape = 16 };
 inline constexpr std::uint32_t kEscapeClasses = 12;
 inline constexpr int kEscapesOfOpen = 8;

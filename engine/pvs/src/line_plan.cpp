@@ -21,7 +21,7 @@ std::uint64_t blocks_for(double lines) {
     return static_cast<std::uint64_t>(std::ceil(lines / static_cast<double>(LinePlan::kBlock)));
 }
 
-// Lines that enter a box through one face: a point (s, t) of the face; the direction's shadow on the face is a point of
+// Lines that enter a box through one face: a point (s, t) of the face. The direction's shadow on the face is a point of
 // the unit disc with squared radius u and angle 2πv. Uniform in all four, the lines are uniform.
 struct Stratum {
     std::array<double, 4> low{0.0, 0.0, 0.0, 0.0}, high{1.0, 1.0, 1.0, 1.0};

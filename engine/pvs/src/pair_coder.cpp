@@ -7,8 +7,8 @@
 namespace crofton::pvs {
 namespace {
 
-// The interval [low, high] of 32-bit numbers shrinks with each decision in proportion to its probability; leading bytes
-// that both ends share are settled (Witten, Neal and Cleary, "Arithmetic coding for data compression", 1987).
+// The interval [low, high] of 32-bit numbers shrinks with each decision in proportion to its probability. Leading bytes
+// that both ends share are final (Witten, Neal and Cleary, "Arithmetic coding for data compression", 1987).
 struct Interval {
     std::uint32_t low = 0, high = ~std::uint32_t{0};
 
@@ -79,7 +79,7 @@ struct Likest {
 constexpr unsigned kLikestBits = 9;
 constexpr std::uint32_t kFarthest = (1u << kLikestBits) - 1;
 
-// An object's states as two bits a cell, and where they differ from those of the cells before along x or z: there the
+// An object's states as two bits a cell, and where they differ from those of the cells before along x or z. There the
 // neighbours say little, and the likest objects shall agree.
 class Columns {
   public:
@@ -128,8 +128,8 @@ class Columns {
     Vector<std::uint64_t> columns_;
 };
 
-// Two decisions a pair, each with the probabilities of its surroundings: what the object's states in the cells before
-// are, and those of its likest objects here and before. A surrounding that is new begins with what a coarser one has
+// Two decisions a pair, each with the probabilities of its surroundings. These are the object's states in the cells
+// before, and those of its likest objects here and before. A surrounding that is new begins with what a coarser one has
 // learnt.
 class Model {
   public:

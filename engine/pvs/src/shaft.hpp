@@ -29,8 +29,8 @@ using Corners = std::array<glm::dvec3, 8>;
 [[nodiscard]] Corners corners_of(const Aabb& box);
 
 // True only if the body meets every segment from a point of one hull to a point of the other. For a fixed point q the
-// points p whose segments to q meet a convex body are convex themselves: so the 64 segments between corners decide.
-// Where it says true, each of them passes deeper than `margin` inside of all planes; the margin is far above the
+// points p whose segments to q meet a convex body are convex themselves. So the 64 segments between corners decide.
+// Where it says true, each of them passes deeper than `margin` inside of all planes. The margin is far above the
 // rounding of what is computed here. docs/notes/pvs.md has the proof.
 [[nodiscard]] bool blocks_all(const Blocker& body, const Corners& eyes, const Corners& object, double margin);
 

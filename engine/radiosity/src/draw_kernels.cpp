@@ -53,8 +53,8 @@ void project(const DrawnTriangles* blocks, std::size_t count, const GridFrame& g
         }
 }
 
-// Edge functions from the sample: of a shared edge seen from either side they are each other's negatives to the last
-// bit, so exactly one of two neighbours takes a sample between them, but where it is exactly 0.
+// Edge functions from the sample. Those of a shared edge seen from either side are each other's negatives to the last
+// bit. So exactly one of two neighbours takes a sample between them, but where it is exactly 0.
 std::size_t covered(const Projected& chunk, const std::uint32_t* triangles, const std::uint32_t* cells,
                     std::size_t count, const float* sample_x, const float* sample_y, std::uint32_t* out_cell,
                     std::uint32_t* out_triangle, float* out_t) {

@@ -11,8 +11,8 @@
 namespace crofton::radiosity {
 namespace {
 
-// From the second run on most light is known already, and what still travels is mostly noise of the last gathering:
-// fewer lines and an earlier end do for it.
+// From the second run on most light is known already. What still travels is mostly noise of the last gathering: fewer
+// lines and an earlier end do for it.
 constexpr std::uint64_t kFewerLinesAtFirst = 4, kFewerLines = 8;
 constexpr double kEarlierEnd = 10.0;
 constexpr std::uint64_t kGatherStream = 8;
@@ -57,8 +57,8 @@ Solver::Solver(const Patches& patches, const SolverOptions& options, LineTracer 
     list_triangles();
 }
 
-// A cell is as large as a triangle on average: then crossings cost about as much as triangles, and a patch of one
-// triangle has half a ray of each bundle; more lines of one direction would tell it little.
+// A cell is as large as a triangle on average. Then crossings cost about as much as triangles, and a patch of one
+// triangle has half a ray of each bundle. More lines of one direction would tell it little.
 double Solver::lines_of_bundle() const {
     constexpr double kMost = 1 << 21;
     return std::min(kMost, 0.25 * box_area_ * static_cast<double>(patches_->triangle_areas.size()) / surface_);

@@ -116,8 +116,8 @@ HWY_INLINE void put_in_order(FlatHit* hits, std::size_t first, std::size_t at, c
 using DL = hn::CappedTag<float, 16>;  // of lines side by side
 
 // Lines side by side, whose directions have one sign along `axis`. At the coordinate x along it each line is between
-// low + slope · (x − from) and high + slope · (x − from) along the other two axes, for some slope in [slope_low,
-// slope_high].
+// low + slope · (x − from) and high + slope · (x − from) along the other two axes. The slope is some number in
+// [slope_low, slope_high].
 struct Beam {
     alignas(64) float point[3][kBeamLines], direction[3][kBeamLines], inverse[3][kBeamLines];
     std::size_t axis = 0;
@@ -211,7 +211,7 @@ HWY_INLINE unsigned beam_children(D d, const mesh::BoxNode& node, const Beam& be
 }
 
 // The lines that pass one child: the arithmetic of `children`. A line that passes a box passes all boxes around it,
-// since each of the steps is monotone, rounding included: so a leaf gets the same lines by whichever way.
+// since each of the steps is monotone, rounding included. So a leaf gets the same lines by whichever way.
 HWY_INLINE std::uint64_t lines_through(const Beam& beam, const mesh::BoxNode& node, std::size_t lane) {
     const DL d;
     using W = hn::Vec<DL>;

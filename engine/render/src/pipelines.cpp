@@ -29,7 +29,7 @@ Result<void> create_layout(Pipelines& pipelines) {
     return {};
 }
 
-// The draw's transform comes as attributes that step once an instance: software devices fetch those once for eight
+// The draw's transform comes as attributes that step once an instance. Software devices fetch those once for eight
 // vertices, and a storage buffer once for each.
 constexpr std::array<VkVertexInputBindingDescription, 2> kVertexBindings{{
     {0, sizeof(PackedVertex), VK_VERTEX_INPUT_RATE_VERTEX},

@@ -33,7 +33,8 @@ struct Rasterizer::State {
     VkQueryPool statistics = VK_NULL_HANDLE;  // null where the device has none
     VkQueryPool occlusion = VK_NULL_HANDLE;
     // Software devices bin on one thread and rasterise on others, but hand over what is binned only at the frame's end,
-    // or before a time stamp is taken: so one is taken, and never read, after each portion of this many triangles.
+    // or before a time stamp is taken. So a time stamp is taken, and never read, after each portion of this many
+    // triangles.
     static constexpr std::uint32_t kPortionTriangles = 20'000;
     static constexpr std::uint32_t kMaxPortions = 64;
     VkQueryPool stamps = VK_NULL_HANDLE;

@@ -198,8 +198,8 @@ HWY_ATTR inline void store(const Image& image, const Box& box, hn::Mask<D> done,
     hn::StoreU(hn::IfThenElseZero(done, hn::Set(d, 1.0)), d, block.done + first);
 }
 
-// A box is one long chain of operations that wait for each other. So the kernels go over all lanes in several passes,
-// each short enough for the processor to overlap what it does for one vector and the next.
+// A box is one long chain of operations that wait for each other. So the kernels go over all lanes in several passes.
+// Each is short enough for the processor to overlap what it does for one vector and the next.
 constexpr std::size_t kLanes = hn::MaxLanes(D()), kVectors = kBoxesAtOnce / kLanes;
 static_assert(kBoxesAtOnce % kLanes == 0);
 

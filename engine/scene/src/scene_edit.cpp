@@ -47,7 +47,7 @@ Result<void> Scene::set_layer_mask(NodeId node, std::uint32_t layer_mask) {
 }
 
 // Whoever is below a node comes after it in the topological order. So the way up from the parent ends where it has
-// passed the node's position, and a parent that comes first needs no look at its ancestors.
+// passed the node's position. A parent that comes first needs no look at its ancestors.
 Result<void> Scene::set_parent(NodeId node, NodeId parent) {
     State& s = *state_;
     if (auto known = check_node(s.nodes, node); !known) return known;

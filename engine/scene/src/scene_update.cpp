@@ -71,7 +71,7 @@ UpdateStatistics Scene::update(Executor& executor) {
 }
 
 // visit(id) for dirty nodes and all below them, in topological order. Few: each makes its children dirty, which come
-// later. Many: one pass over all nodes, each of which looks whether its parent was visited; this spares the walk along
+// later. Many: one pass over all nodes, each of which looks whether its parent was visited. This spares the walk along
 // lists of children, whose every step waits for memory.
 template <class Visit>
 void Scene::State::for_each_updated_node(Visit visit) {

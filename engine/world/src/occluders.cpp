@@ -21,8 +21,8 @@ using occlude::OccluderKind;
 using occlude::ShapeId;
 
 // Eight corners in float whose hull lies in the box. Rounding moves a corner by no more than e = 2^-24 max|coordinate|
-// along each axis: by e Σ|row k of the inverse of the axes| along the box's axis k, which is taken off beforehand. None
-// where nothing is left.
+// along each axis. Along the box's axis k that is e Σ|row k of the inverse of the axes|, which is taken off beforehand.
+// None where nothing is left.
 std::optional<std::array<glm::vec3, 8>> inner_corners(const Obb& box) {
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(box.axes));
     double size = 0.0;

@@ -9,8 +9,8 @@
 
 namespace crofton::world {
 
-// 0 where the ray starts inside. Rounded; the discriminant is that of the distance from the centre to the line (Haines,
-// Günther, Akenine-Möller 2019), which keeps its digits for small balls far away.
+// 0 where the ray starts inside. Rounded. The discriminant is that of the distance from the centre to the line, which
+// keeps its digits for small balls far away (Haines, Günther, Akenine-Möller 2019).
 [[nodiscard]] inline std::optional<double> raycast(const Ray& ray, const Sphere& ball) {
     const glm::dvec3 to_center = ball.center - ray.origin;
     const double outside = glm::dot(to_center, to_center) - ball.radius * ball.radius;

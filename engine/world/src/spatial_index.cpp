@@ -17,7 +17,7 @@ constexpr std::uint32_t kUpdatesToEnter = 1;  // without moving, until a new ite
 // Into the tree one at a time, at about a microsecond each; a part of the list where many wait.
 constexpr std::size_t kAttachedPerUpdate = 256, kAttachedPart = 16;
 // A tree that is small, or whose items come and go fast, is built anew in one go once such a part of them has come or
-// gone, or waits to enter: in the background they would change faster than they are built, and insertions wear it.
+// gone, or waits to enter. In the background they would change faster than they are built, and insertions wear it.
 constexpr std::size_t kSmallTree = 32768, kChangesToBuild = 32, kWaitingToBuild = 64, kAttachedBetweenBuilds = 16;
 // Fast: such a part within about as many updates.
 constexpr std::size_t kFastChanges = 32, kFastUpdates = 8;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How nodes and leaves of a BoxTree lie in memory: plain arrays that vector kernels read as they are (no GLM here, see
-// DESIGN section 3).
+// How nodes and leaves of a BoxTree lie in memory: plain arrays that vector kernels read as they are. There is no GLM
+// here, so that kernels compile for any target.
 #pragma once
 #include <crofton/core/version.hpp>
 #include <cstdint>
@@ -44,8 +44,8 @@ struct Axes {
 // ends fit 16 bits. The axes are the tree's with the index `axes`; the origin is in the world's coordinates. `unit` is
 // a power of two, so that products with it are exact. An empty child has half = −32767. Layers are read only where the
 // view does not share one with everything below.
-// `rounding` is what a plane's value on a child's box may be off by where the plane's normal is in units of 2^-14 (see
-// rounding_of); `per_quantum` units of 2^-14 of a unit are 1.
+// `rounding` is what a plane's value on a child's box may be off by, where the plane's normal is in units of 2^-14 (see
+// rounding_of). `per_quantum` units of 2^-14 of a unit are 1.
 struct alignas(64) Node {
     double origin[3];
     float unit;
@@ -84,8 +84,8 @@ struct alignas(64) Node {
     return middle_of(node, lane, axis) + half_of(node, lane, axis);
 }
 
-// Up to 16 oriented boxes, compressed for filtering. Lane i < count holds an item: its centre within half a
-// position_unit, along each axis, of origin + position_unit · (x, y, z), and each component of its half edges within
+// Up to 16 oriented boxes, compressed for filtering. Lane i < count holds an item. Its centre is within half a
+// position_unit, along each axis, of origin + position_unit · (x, y, z). Each component of its half edges is within
 // half an edge_unit of edge_unit times the integer that stands for it. Units are powers of two, edge_unit ≤
 // position_unit; `per_quantum` units of 2^-14 of a position_unit are 1; `rounding` as a node's.
 struct alignas(64) Leaf {

@@ -22,7 +22,7 @@ class Rebuilder {
     // the new structure when it is complete, otherwise nothing.
     [[nodiscard]] Owner<Structure> step(const Structure& current, Items& items, std::size_t budget);
 
-    // The item was moved, inserted, removed or given other layers; `placed`: it was inserted or attached, so that it
+    // The item was moved, inserted, removed or given other layers. `placed`: it was inserted or attached, so that it
     // may be far from where the new structure has it.
     void note_change(ItemId item, bool placed = false);
     void note_changes(std::span<const ItemId> items);

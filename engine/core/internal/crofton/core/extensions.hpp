@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whether code may use vectors and 128-bit integers of the compiler. Each use has a portable twin that gives the same
-// bits: other compilers (MSVC) and targets of 32 bits take it, and CROFTON_NO_EXTENSIONS forces it for the tests.
+// bits. Other compilers (MSVC) and targets of 32 bits take it, and CROFTON_NO_EXTENSIONS forces it for the tests.
 #pragma once
 
 #if defined(__has_builtin) && !defined(CROFTON_NO_EXTENSIONS)

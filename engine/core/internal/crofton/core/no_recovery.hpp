@@ -3,7 +3,7 @@
 
 namespace crofton::detail {
 
-// While one lives, this thread runs a host's code, which may run anything else meanwhile: a failed allocation there
+// While one lives, this thread runs a host's code, which may run anything else meanwhile. A failed allocation there
 // belongs to none of the operations that are under way here. Nothing is thrown through the host's frames.
 class NoRecovery {
   public:

@@ -20,7 +20,7 @@ class Recovery {
     [[nodiscard]] static bool is_nested();  // two live on this thread
 };
 
-// The operation's result, or ErrorCode::out_of_memory. What the operation had built is destroyed by then; an object
+// The operation's result, or ErrorCode::out_of_memory. What the operation had built is destroyed by then. An object
 // that it changes must be changed by steps that cannot fail, after all that can. Within another operation it throws on
 // to that one's: nothing goes on with half of what it asked for.
 template <class Operation>

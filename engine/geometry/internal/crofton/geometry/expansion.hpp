@@ -7,10 +7,10 @@
 
 namespace crofton {
 
-// A real number as the exact sum of up to N doubles that do not overlap, smallest first (Shewchuk, "Adaptive precision
-// floating-point arithmetic", 1997); zeros are dropped. Exact as long as no partial product over- or underflows: every
-// nonzero product of inputs, and 2^-53 of it, must lie within [1e-300, 1e300]. Sizes are bounds known at compile time,
-// so nothing is allocated.
+// A real number as the exact sum of up to N doubles that do not overlap, smallest first; zeros are dropped. Source:
+// Shewchuk, "Adaptive precision floating-point arithmetic", 1997. Exact as long as no partial product over- or
+// underflows: every nonzero product of inputs, and 2^-53 of it, must lie within [1e-300, 1e300]. Sizes are bounds known
+// at compile time, so nothing is allocated.
 template <std::size_t N>
 struct Expansion {
     std::array<double, N> terms;

@@ -12,7 +12,7 @@ inline constexpr int kUnknownSign = 2;
 // The plane through a, b, c, for the sides of many points.
 struct PlaneFilter {
     // Shewchuk's bound A of the three-dimensional orientation test (1997, figure 23), (7 + 56u)u with u = 2^-53,
-    // rounded up: det(b − a, c − a, d − a) by cofactors is off by at most this times the same expression with all terms
+    // rounded up. det(b − a, c − a, d − a) by cofactors is off by at most this times the same expression with all terms
     // positive.
     static constexpr double kErrorBound = 0x1.d0p-51;
 

@@ -6,7 +6,7 @@
 
 namespace crofton::pvs {
 
-// Lines in blocks. `whole`: through the box around all cells. They come in rounds; a round divides the lines through
+// Lines in blocks. `whole`: through the box around all cells. They come in rounds. A round divides the lines through
 // the box into strata of equal measure, and draws as many independent uniform lines in each. Lines of one stratum are
 // near each other. Otherwise `per_cell` blocks of independent uniform lines through each cell by itself, where that
 // takes fewer lines: cells that are few and far apart.

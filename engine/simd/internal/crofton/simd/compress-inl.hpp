@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The selected lanes of a vector, moved to its front. Compiled once per instruction set (Highway).
 //
-// Instead of Highway's Compress and CompressStore: in version 1.0.3 those of AVX2 and SSE4 copy their table to the
-// stack at each call, as does that of AVX-512 for 64-bit lanes; and CompressStore of AVX-512 is slow on Zen 4.
+// Instead of Highway's Compress and CompressStore. In version 1.0.3 those of AVX2 and SSE4 copy their table to the
+// stack at each call, as does that of AVX-512 for 64-bit lanes. CompressStore of AVX-512 is slow on Zen 4.
 #include <hwy/highway.h>
 #include <crofton/simd/compress_tables.hpp>
 #include <cstddef>

@@ -60,7 +60,7 @@ HWY_INLINE Row load_difference(const unsigned char* from, const double* b) {
 #endif
 }
 
-// Lane l of out[k] is number k of row(l), which returns a Row; it is asked for l below the number of lanes, 1, 4, 8 or
+// Lane l of out[k] is number k of row(l), which returns a Row. It is asked for l below the number of lanes, 1, 4, 8 or
 // 16.
 template <class D, class RowOf>
 HWY_INLINE void gather_rows([[maybe_unused]] D d, const RowOf& row, hn::Vec<D> (&out)[4]) {

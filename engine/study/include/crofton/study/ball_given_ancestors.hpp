@@ -24,10 +24,10 @@ struct BallGivenAncestors {
 };
 
 // All measures are by the same 1,024 directions, a quadrature within about 1e-3 of (4); the certificate is for it. With
-// h the ball's support and A the least of the ancestors', the measure is 4π × the mean of min(A, h) over directions,
-// since all hold the object. Branch and bound over centres c = c₀ + δ: for any point p of the object the radius is at
-// least |p − c₀| + e·δ, e the unit vector from p to c₀. So h is at least a linear function of δ, the mean of min(A,
-// that) is concave, and over a cube least in a corner. Errors: no points; NaN or infinite ones (by index); as
+// h the ball's support and A the least of the ancestors', the measure is 4π × the mean of min(A, h) over directions.
+// That is so since all hold the object. Branch and bound over centres c = c₀ + δ. For any point p of the object the
+// radius is at least |p − c₀| + e·δ, e the unit vector from p to c₀. So h is at least a linear function of δ, the mean
+// of min(A, that) is concave, and over a cube least in a corner. Errors: no points; NaN or infinite ones (by index); as
 // validate_bodies for ancestors; an object that sticks out of them; options out of range.
 [[nodiscard]] Result<BallGivenAncestors> ball_given_ancestors(std::span<const glm::dvec3> points,
                                                               std::span<const ConvexBody> ancestors,

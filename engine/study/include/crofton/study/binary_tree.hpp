@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A binary hierarchy of boxes built by the chance of a visit: for studying what a criterion is worth, and for items
-// that come and go. BoxTree is the one to cull with where speed counts; this is the one to compare by, and the one that
-// has oriented inner bounds (docs/notes/boxtree.md).
+// A binary hierarchy of boxes built by the chance of a visit. It is for studying what a criterion is worth, and for
+// items that come and go. BoxTree is the one to cull with where speed counts. This is the one to compare by, and its
+// inner bounds may be oriented box by box (docs/notes/boxtree.md).
 #pragma once
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/memory.hpp>
@@ -25,14 +25,15 @@ enum class Split : std::uint8_t {
 
 struct BinaryTreeOptions {
     Split split = Split::nested;
-    // What Split::nested weighs sides by. The area wins there even for frusta: items(side) overrates what is below a
+    // What Split::nested weighs sides by. The area wins there even for frusta. items(side) overrates what is below a
     // side, and more so for M, which shrinks more slowly on the way down (docs/notes/boxtree.md).
     measure::Criterion split_criterion = measure::minimal_area();
-    // What chooses places for insertion, and among bounds: here the cost is the expected number of visits itself, and
-    // with (2) for the frustum in use it is exact for nested boxes.
+    // What chooses places for insertion, and among bounds. Here the cost is the expected number of visits itself. With
+    // (2) for the frustum in use it is exact for nested boxes.
     measure::Criterion criterion = measure::minimal_perimeter();
-    // false: axis-aligned bounds, nested by nature. true: oriented ones, which need not lie within their parent's; the
-    // best of a few fits by the criterion (nested, median) or by the queries that straddle all ancestors (sampled).
+    // false: axis-aligned bounds, nested by nature. true: oriented ones, which need not lie within their parent's. Each
+    // is the best of a few fits, by the criterion (nested, median) or by the queries that straddle all ancestors
+    // (sampled).
     bool oriented = false;
     // For Split::sampled; where fewer than min_queries are left, the criterion decides. Lives as long as build().
     const QuerySample* queries = nullptr;
@@ -55,10 +56,10 @@ class BinaryTree {
     // Split::sampled without queries. Items are numbered as in `boxes`. Deterministic.
     [[nodiscard]] static Result<BinaryTree> build(std::span<const Obb> boxes, const BinaryTreeOptions& options = {});
 
-    // Places the box where the expected number of visits grows least, by branch and bound over the whole tree
-    // (Goldsmith and Salmon, 1987, who descend greedily and by area): Δ = criterion of the new inner node + what it
-    // adds to its ancestors. Bounds that it changes become axis-aligned. Ids of removed items are used again. Errors:
-    // as validate(Obb).
+    // Places the box where the expected number of visits grows least, by branch and bound over the whole tree. Δ =
+    // criterion of the new inner node + what it adds to its ancestors. Goldsmith and Salmon (1987) descend greedily and
+    // by area. Bounds that it changes become axis-aligned. Ids of removed items are used again. Errors: as
+    // validate(Obb).
     [[nodiscard]] Result<ItemId> insert(const Obb& box);
     // False where there is no such item. The bounds above shrink again.
     bool remove(ItemId item);
@@ -73,9 +74,8 @@ class BinaryTree {
     // constant.
     [[nodiscard]] double cost() const;
 
-    // test(bound) → Visit for the root and for both children of every node that said descend; a leaf that says descend
-    // or take is found, and all leaves below a node that says take are found without further tests. Returns how many
-    // tests.
+    // test(bound) → Visit for the root and for both children of every node that said descend. A leaf that says descend
+    // or take is found. All leaves below a node that says take are found without further tests. Returns how many tests.
     template <class Test, class Found>
     std::size_t visit(Test test, Found found) const;
 

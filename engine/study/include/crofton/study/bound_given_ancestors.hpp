@@ -30,7 +30,7 @@ struct BoundGivenAncestorsOptions {
 // angles. Ties go to the criterion. Never worse than the plain fit.
 //
 // `lower_bound` is a certificate for the sample, by branch and bound over the orientations that differ as boxes. A
-// query that hits the object's hull hits every box around it; one that hits what is common to all tight boxes of a cell
+// query that hits the object's hull hits every box around it. One that hits what is common to all tight boxes of a cell
 // of orientations hits each of them. Queries that touch within rounding may be off. Cells shrink the gap in proportion
 // to their size, so it stays wide for few of them (docs/notes/measure.md). The box contains all points. Errors: as
 // fit_obb; a criterion that fails validate; a tolerance outside [0, 1).

@@ -41,16 +41,17 @@ struct BestKDopOptions {
     std::uint64_t max_cells = 5000;  // … or after this many sets of rotations
 };
 
-// The directions turned as a whole: a search downhill from several rotations, never worse than the directions as they
-// are, then branch and bound over all rotations. Per face the offset is at least a linear function of the turn minus a
-// remainder of second order, and V^(1/3), F^(1/2) and M are concave in the offsets (Brunn and Minkowski): over a cell
-// each is least in a corner (docs/notes/measure.md). `lower_bound` is never below the hull's own value. Errors: as
+// The directions turned as a whole. First a search downhill from several rotations, never worse than the directions as
+// they are; then branch and bound over all rotations. Per face the offset is at least a linear function of the turn
+// minus a remainder of second order. V^(1/3), F^(1/2) and M are concave in the offsets (Brunn and Minkowski). So over a
+// cell each is least in a corner (docs/notes/measure.md). `lower_bound` is never below the hull's own value. Errors: as
 // k_dop_around; a criterion that fails validate; a hull without volume; a tolerance outside (0, 1).
 [[nodiscard]] Result<BestKDop> best_k_dop(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
                                           const measure::Criterion& criterion, const BestKDopOptions& options = {});
 
-// The k-DOP as a body that culling takes (cull::classify): its corners rounded to floats, moved out by a few 2^-22 of
-// their size until the hull contains every point, in exact arithmetic. Errors: no points, as convex::Hull::build.
+// The k-DOP as a body that culling takes (cull::classify). Its corners are rounded to floats and moved out by a few
+// 2^-22 of their size until the hull contains every point, in exact arithmetic. Errors: no points, as
+// convex::Hull::build.
 [[nodiscard]] Result<convex::Hull> hull_around(const KDop& dop, std::span<const glm::dvec3> points);
 
 }  // namespace crofton::study

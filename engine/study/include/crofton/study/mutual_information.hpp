@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Visibility complexity in bits: what the place where a ray starts tells of the place where it arrives (Feixas, del
-// Acebo, Bekaert and Sbert, "An information theory framework for the analysis of scene complexity", 1999).
+// Visibility complexity in bits: what the place where a ray starts tells of the place where it arrives. Source:
+// (Feixas, del Acebo, Bekaert and Sbert, "An information theory framework for the analysis of scene complexity", 1999).
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/radiosity/patches.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The best disc, box or rectangle around an object of the plane, given its ancestors' bounds: the one that fewest lines
-// hit together with all of them (theory.md section 4). The paper's n-level case has n − 1 ancestors.
+// The best disc, box or rectangle around an object of the plane, given its ancestors' bounds. It is the one that fewest
+// lines hit together with all of them (theory.md section 4). The paper's n-level case has n − 1 ancestors.
 #pragma once
 #include <crofton/core/error.hpp>
 #include <crofton/study/planar_support.hpp>
@@ -30,10 +30,10 @@ struct BoundOptions {
 //
 // optimal_disc searches along the farthest-point Voronoi diagram. The measure is ∫ min(h_ancestors, h_K), since all
 // contain the object, and grows with K. So a disc that touches the object in one point only can shrink towards it, and
-// the best passes through two corners: one family of discs for each of the diagram's O(n) edges. Along an edge, with t
-// the centre's place and r(t) convex, the measure is concave and increasing in centre and radius. So on an interval it
-// is at least the smaller value at its ends less 2π·max r″·Δt²/8; intervals are dropped by this bound or halved. O(n
-// log n) for the diagram, then one pass over the ancestors' pieces for each disc measured.
+// the best passes through two corners. There is one family of discs for each of the diagram's O(n) edges. Along an
+// edge, with t the centre's place and r(t) convex, the measure is concave and increasing in centre and radius. So on an
+// interval it is at least the smaller value at its ends less 2π·max r″·Δt²/8; intervals are dropped by this bound or
+// halved. O(n log n) for the diagram, then one pass over the ancestors' pieces for each disc measured.
 [[nodiscard]] Result<OptimalBound<Disc>> optimal_disc(std::span<const glm::dvec2> object,
                                                       const PlanarSupport& ancestors, const BoundOptions& options = {});
 
@@ -43,8 +43,8 @@ struct BoundOptions {
 
 // Any orientation. Given ancestors the best rectangle need not have a flush side (without, it has: rotating calipers).
 // Between changes of support corner the measure at an angle is at least the smaller value at the ends of an interval
-// less 8·diameter·Δθ²: the corners move on circles (Thales), which bends each sinusoid by at most 2·diameter·Δθ²/8, and
-// the kinks of h_K at the four sides' normals lie within four windows of width Δθ and take at most √2·diameter·Δθ each.
+// less 8·diameter·Δθ². The corners move on circles (Thales), which bends each sinusoid by at most 2·diameter·Δθ²/8. The
+// kinks of h_K at the four sides' normals lie within four windows of width Δθ and take at most √2·diameter·Δθ each.
 [[nodiscard]] Result<OptimalBound<Rectangle>> optimal_rectangle(std::span<const glm::dvec2> object,
                                                                 const PlanarSupport& ancestors,
                                                                 const BoundOptions& options = {});

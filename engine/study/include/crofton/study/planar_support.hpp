@@ -9,8 +9,8 @@
 
 namespace crofton::study {
 
-// A function h of the angle φ in [0, 2π] made of pieces dot(point, (cos φ, sin φ)) + radius: the support function of
-// any figure bounded by arcs and segments, and what minima and maxima of such functions are.
+// A function h of the angle φ in [0, 2π] made of pieces dot(point, (cos φ, sin φ)) + radius. Such are the support
+// functions of figures bounded by arcs and segments, and their minima and maxima.
 class PlanarSupport {
   public:
     struct Piece {

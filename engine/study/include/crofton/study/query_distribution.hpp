@@ -22,7 +22,7 @@ class QueryDistribution {
     // index); sizes that do not match; a weight that is negative or not finite (by index); all weights 0.
     [[nodiscard]] static Result<QueryDistribution> samples(std::span<const glm::dvec3> directions,
                                                            std::span<const double> weights = {});
-    // The normals of the faces of a path's view volumes, by their areas: for views that are large beside the objects
+    // The normals of the faces of a path's view volumes, by their areas. For views that are large beside the objects,
     // the improper tests are those of the planes through these faces. Errors: no cameras; as
     // intrinsic_volumes_of_frustum, with the camera's index.
     [[nodiscard]] static Result<QueryDistribution> of_views(std::span<const Camera> cameras);
@@ -30,8 +30,8 @@ class QueryDistribution {
     // The mean of |dot(n, u)| for a unit vector u: 1/2 for uniform directions.
     [[nodiscard]] double mean_cosine(const glm::dvec3& u) const;
 
-    // The measure of the planes with such normals that hit the body, 2π × the mean breadth: of a box
-    // 2π Σ edge_k · mean_cosine(axis_k), of others a sum over the directions. A uniform density takes 4,096 of them.
+    // The measure of the planes with such normals that hit the body, 2π × the mean breadth. Of a box it is 2π Σ edge_k
+    // · mean_cosine(axis_k), of others a sum over the directions. A uniform density takes 4,096 of them.
     [[nodiscard]] double measure_of_planes(const Obb& box) const;
     [[nodiscard]] double measure_of_planes(const ConvexBody& body) const;
     // The measure of the lines with such directions, 2π × the mean shadow: of a box 2π Σ face_k · mean_cosine(axis_k),
@@ -54,7 +54,7 @@ struct DirectedFit {
 };
 
 // The box of least measure under the distribution, by a search downhill from the plain box, the world's axes and eight
-// rotations: never worse than the plain box. Contains every point. Errors: as fit_obb.
+// rotations. It is never worse than the plain box. Contains every point. Errors: as fit_obb.
 [[nodiscard]] Result<DirectedFit> fit_box_for(std::span<const glm::dvec3> points, const QueryDistribution& distribution,
                                               QueryKind kind);
 

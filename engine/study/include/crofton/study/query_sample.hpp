@@ -17,8 +17,8 @@ class QuerySample {
   public:
     QuerySample() = default;  // no queries
 
-    // Quasi-random queries, by seed: planes and lines that hit the region, or frusta of this camera whose own box,
-    // grown by the region's radius, contains its centre. All frusta that hit anything inside the region are among
+    // Quasi-random queries, by seed. They are planes and lines that hit the region, or frusta of this camera whose own
+    // box, grown by the region's radius, contains its centre. All frusta that hit anything inside the region are among
     // these. At most 2^24. Errors: a radius that is not positive and finite; a count that is 0 or too large; as
     // measure::intrinsic_volumes_of_frustum for the camera.
     [[nodiscard]] static Result<QuerySample> planes(const Sphere& region, std::uint32_t count, std::uint64_t seed);

@@ -23,15 +23,15 @@ struct QuadratureOptions {
 
 // (4), normalised so that one body gives its M: the integral over the directions of a half sphere of
 // max(0, min_i h_i(n) + min_i h_i(−n)). Two bodies that meet: M₁ + M₂ − M_hull. The half sphere is cut into spherical
-// triangles, the one with the widest bounds first; on each, support functions lie above a tangent and below the chord
-// through the corners (they are convex), and both are linear in n and integrated exactly. Error ∝ 1/cells or better.
+// triangles, the one with the widest bounds first. On each, support functions lie above a tangent and below the chord
+// through the corners, since they are convex. Both are linear in n and integrated exactly. Error ∝ 1/cells or better.
 // Errors: no bodies, a body without points, non-finite numbers, a negative radius; item = the body.
 [[nodiscard]] Result<Enclosure> measure_of_planes_hitting_all(std::span<const ConvexBody> bodies,
                                                               const QuadratureOptions& options = {});
 
 // (5), normalised so that one body gives π·F/2 = measure_of_lines(F): the integral over a half sphere of the area
-// common to the shadows along n. On a triangle of directions every shadow contains its middle one with each side moved
-// inward by how far any point of it can move, and lies in the hull of the shadows along the corners. Error ∝ 1/√cells
+// common to the shadows along n. On a triangle of directions every shadow lies in the hull of the shadows along the
+// corners. It contains the middle one with each side moved inward by how far any point of it can move. Error ∝ 1/√cells
 // only, so ask for 1e-2; `value` is the middle directions' sum, held to the bounds, and is far better than they prove.
 // Balls are treated as polygons of 32 sides, inside and outside.
 [[nodiscard]] Result<Enclosure> measure_of_lines_hitting_all(std::span<const ConvexBody> bodies,
