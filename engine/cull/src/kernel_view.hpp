@@ -58,10 +58,10 @@ inline LocalOrigin local_origin(const KernelView& view, const double* origin, fl
 }
 
 // A plane as seen from the block's origin: value(x) = normal_f · x + offset, for x relative to it. `slack` bounds how
-// far that, with a box's reach added or taken away, is from the exact value. With u = 2^-24: the roundings of the
-// normal, of the offset, of the products and of at most seven additions cost u each, of reach + |offset|: 10u in all,
-// doubled here. The offset itself is computed in double: seven roundings of 2^-53 of size + |plane offset| each,
-// |normal| ≤ 1.001 per component; 2^-49.
+// far that, with a box's reach added or taken away, is from the exact value. With u = 2^-24, the roundings of the
+// normal, of the offset, of the products and of at most seven additions cost u each, of reach + |offset|. That is 10u
+// in all, doubled here. The offset itself is computed in double: seven roundings of 2^-53 of size + |plane offset|
+// each, |normal| ≤ 1.001 per component; 2^-49.
 struct LocalPlane {
     float offset;
     float slack;

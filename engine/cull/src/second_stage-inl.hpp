@@ -79,10 +79,10 @@ struct BoxRows {
     }
 };
 
-// Those of the wanted lanes whose boxes certainly have a point inside all planes: from the centre towards the plane
-// that it is farthest outside of, to a little beyond it, and on towards the plane that is worst then; coordinates that
-// have come to a face stay there while the way leads across it. Of the boxes that cross an edge of the frustum about
-// one in fifty needs more than six steps.
+// Those of the wanted lanes whose boxes certainly have a point inside all planes. The search goes from the centre
+// towards the plane that it is farthest outside of, to a little beyond it. Then on towards the plane that is worst
+// then. Coordinates that have come to a face stay there while the way leads across it. Of the boxes that cross an edge
+// of the frustum about one in fifty needs more than six steps.
 HWY_INLINE MF has_witness(const BoxRows& box, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -131,12 +131,12 @@ struct PairTest {
 };
 
 // A sum with weights ≥ 0 of two f_i that is negative on the whole cube is a proof that the box is outside. Its largest
-// value on the cube is convex and piecewise linear in the weights, so the least of all is found where one slope
-// vanishes (a separating axis across an edge of the frustum and one of the box), or is that of one plane alone; and
-// that it is ≥ 0 is a proof that the box meets both half-spaces at once (minimax). For any weights the sum's largest
-// value is within Σ weight · slack of what the floats of f_i, f_j give. Evaluating it here, at weights that are rounded
-// too, is off by at most ten times 2^-24 of Σ weight · (|base| + reach): 2^-19; what underflow eats is far below 1e-30.
-// The difference of a convex function and that linear bound is convex, with the same corners.
+// value on the cube is convex and piecewise linear in the weights. So the least of all is that of one plane alone, or
+// is found where one slope vanishes: a separating axis across an edge of the frustum and one of the box. If it is ≥ 0,
+// the box meets both half-spaces at once (minimax). For any weights the sum's largest value is within Σ weight · slack
+// of what the floats of f_i, f_j give. Evaluating it here, at weights that are rounded too, is off by at most ten times
+// 2^-24 of Σ weight · (|base| + reach), which is below 2^-19. What underflow eats is far below 1e-30. The difference of
+// a convex function and that linear bound is convex, with the same corners.
 HWY_INLINE PairTest test_pairs(const BoxRows& box, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), tiny = hn::Set(d, 1e-30f);

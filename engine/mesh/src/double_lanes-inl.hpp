@@ -15,10 +15,10 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Signs of determinants det(u, v, w) of differences of points are certain beyond kDeterminantError · |u|₁ |v|₁ |w|₁:
-// Shewchuk's bound for orient3d, (7 + 56 u') u' with u' = 2^-53, holds for the sum of all products' magnitudes, which
-// is at most |u|₁ |v|₁ |w|₁ in any of the factorings used here. Fused operations only lower the error. Underflow stays
-// below 1e-280.
+// Signs of determinants det(u, v, w) of differences of points are certain beyond kDeterminantError · |u|₁ |v|₁ |w|₁.
+// Shewchuk's bound for orient3d, (7 + 56 u') u' with u' = 2^-53, holds for the sum of all products' magnitudes. That
+// sum is at most |u|₁ |v|₁ |w|₁ in any of the factorings used here. Fused operations only lower the error. Underflow
+// stays below 1e-280.
 constexpr double kDeterminantError = 0x1.d0p-51;
 
 using DD = hn::CappedTag<double, mesh::kMeshLeafWidth>;
@@ -40,8 +40,8 @@ HWY_INLINE VD dot(const VD* u, const VD* v) {
     return hn::MulAdd(u[0], v[0], hn::MulAdd(u[1], v[1], hn::Mul(u[2], v[2])));
 }
 
-// The same with every product rounded, as without fused operations: for numbers that are answers, not filters, and so
-// the same bits on every instruction set.
+// The same with every product rounded, as without fused operations. It is for numbers that are answers, not filters,
+// and so the same bits on every instruction set.
 HWY_INLINE void rounded_cross(const VD* u, const VD* v, VD* out) {
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;

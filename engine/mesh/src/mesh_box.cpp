@@ -24,7 +24,7 @@ float float_above(double value) {
 }
 
 // The box with this frame. Coordinates along axes that are orthonormal only to 3e-7 differ from those in the exact
-// parallelepiped by that share of their size; a margin of 1e-6 of all half extents covers it and the float rounding.
+// parallelepiped by that share of their size. A margin of 1e-6 of all half extents covers it and the float rounding.
 MeshBox box_with(std::span<const glm::vec3> points, const glm::dmat3& frame) {
     MeshBox box{};
     glm::dvec3 axis[3], low(kInfinity), high(-kInfinity);

@@ -202,7 +202,7 @@ HWY_INLINE void measure(const QueryBox& q, const float (&corner)[3][4], Directio
     }
 }
 
-// The gap along any unit direction bounds the distance from below; along that of the nearest points found so far hardly
+// The gap along any unit direction bounds the distance from below. Along that of the nearest points found so far hardly
 // anything far from them remains. Rounding of the projection scales with the offset, which may be long: 2^-20 of it.
 HWY_INLINE V gap_along(D d, const mesh::MeshNode& node, std::size_t l, const Lanes& s, const QueryBox& q,
                        const Direction& direction) {
@@ -222,7 +222,7 @@ HWY_INLINE V gap_along(D d, const mesh::MeshNode& node, std::size_t l, const Lan
     return hn::Sub(hn::Max(ahead, behind), hn::MulAdd(length, hn::Set(d, 0x1p-20f), reach));
 }
 
-// A lower bound of the squared distance of q to each lane's box: in either frame the gaps along the three perpendicular
+// A lower bound of the squared distance of q to each lane's box. In either frame the gaps along the three perpendicular
 // face normals add up by Pythagoras. The last factor covers the rounding of the squares.
 HWY_INLINE void distance_bounds(const mesh::MeshNode& node, const QueryBox& q, float slop, const Direction& first,
                                 const Direction& second, float* bounds) {

@@ -19,9 +19,9 @@
 namespace crofton::mesh {
 namespace {
 
-// A point carried to the other frame in float: entries of the matrix, three products, three sums and the translation
-// are each rounded by 2^-24, in all below 7.2e-7 of the mesh's extent and 2.4e-7 of the translation. The way back takes
-// the transpose for the inverse, which is off by the rotation's own deviation.
+// A point carried to the other frame in float. Entries of the matrix, three products, three sums and the translation
+// are each rounded by 2^-24. In all that is below 7.2e-7 of the mesh's extent and 2.4e-7 of the translation. The way
+// back takes the transpose for the inverse, which is off by the rotation's own deviation.
 float slop_of(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose) {
     double deviation = 0.0, shift = 0.0;
     for (int i = 0; i < 3; ++i) {

@@ -39,7 +39,7 @@ struct LaneVerdict {
 struct LeafTriangle {
     std::uint32_t leaf = 0, lane = 0;
 };
-// A triangle of a and one of b that meet: bit e is set where edge e of a, or edge e − 3 of b, passes through the other.
+// A triangle of a and one of b that meet. Bit e is set where edge e of a, or edge e − 3 of b, passes through the other.
 // Without a bit they may meet. True ends the traversal.
 using PairVisitor = FunctionRef<bool(LeafTriangle of_a, LeafTriangle of_b, std::uint32_t edges)>;
 
@@ -60,8 +60,8 @@ struct Nearest {
 // Calls `visit` for pairs that may be nearer than `nearest`, nearest boxes first.
 void visit_nearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visit, TraversalCounts& counts);
 
-// A stack this deep is never exceeded: at most 7 levels of nodes in each tree (2^25 leaves, sixteen to a node that is
-// full), each step down leaves at most fifteen siblings, and a leaf seven of its triangles.
+// A stack this deep is never exceeded. Each tree has at most 7 levels of nodes (2^25 leaves, sixteen to a node that is
+// full). Each step down leaves at most fifteen siblings, and a leaf seven of its triangles.
 inline constexpr std::uint32_t kMeshStackSize = 512;
 
 }  // namespace crofton::mesh

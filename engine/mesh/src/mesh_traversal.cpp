@@ -16,8 +16,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 
-// Lane `lane` of node `node`, the root having no lane, or one triangle of the leaf that is its child; with what the
-// descent asks of it at once.
+// Lane `lane` of node `node`, the root having no lane, or one triangle of the leaf that is its child. Beside it lies
+// what the descent asks of it at once.
 struct Reference {
     std::uint32_t node, lane;
     std::uint32_t child;
@@ -215,8 +215,8 @@ HWY_INLINE std::uint32_t push_triangles(const MeshPair& pair, const Step& step, 
     return height;
 }
 
-// In the frame of the mesh that is descended: between the nearest points so far, and where one triangle is compared,
-// from it to the middle of what is descended.
+// In the frame of the mesh that is descended: the direction between the nearest points so far. Where one triangle is
+// compared: from it to the middle of what is descended.
 HWY_INLINE void choose_directions(const MeshPair& pair, const Step& step, bool into_a, const QueryBox& box,
                                   const Nearest& nearest, Direction& global, Direction& own) {
     for (int i = 0; i < 3; ++i) global.way[i] = nearest.direction[i];

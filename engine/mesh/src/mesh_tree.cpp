@@ -33,8 +33,8 @@ struct Part {
     std::uint32_t count;
 };
 
-// The fewest children whose subtrees, one level lower, can all be full: empty lanes gather near the root, where few
-// nodes are, and not in the many above the leaves.
+// The fewest children whose subtrees, one level lower, can all be full. Empty lanes then gather near the root, where
+// few nodes are, and not in the many above the leaves.
 std::uint32_t child_count(std::size_t leaves) {
     std::size_t below = 1;
     while (below * kMeshNodeWidth < leaves) below *= kMeshNodeWidth;

@@ -15,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The hierarchy of aligned boxes, grown by the slop: for each axis where the ray meets the nearer face and the farther
-// one, seen from its start. The parameter is a fused or plain product less one made beforehand: what that one's
-// rounding does is to move a face by 2^-24 of the start, for which the slop has room.
+// The hierarchy of aligned boxes, grown by `slop`. Of each axis: where the ray meets the nearer face and the farther
+// one, seen from its start. The parameter is a fused or plain product less one made beforehand. The latter's rounding
+// moves a face by 2^-24 of the start, for which `slop` has room.
 class AlignedBoxes {
   public:
     using Node = BoxNode;

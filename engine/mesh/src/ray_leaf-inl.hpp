@@ -70,7 +70,7 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
     return ~lanes & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle
 }
 
-// Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it: a
+// Where the line meets the planes of the triangles, kept between the nearest and the farthest vertex along it. A
 // triangle that is hit is hit there, also where the line lies so close to its plane that rounding leaves nothing of the
 // quotient.
 HWY_INLINE VD parameters(DD d, const VD (&p)[3][3], const VD* direction) {

@@ -48,7 +48,7 @@ class PacketBoxes {
         }
     }
 
-    // The lanes that some ray may meet before `limit`, of rays that lie together: the reciprocals of an axis have one
+    // The lanes that some ray may meet before `limit`, of rays that lie together. The reciprocals of an axis have one
     // sign, so a product is least or greatest at one of their ends.
     HWY_INLINE std::uint32_t lanes(const BoxNode& node, float limit) const {
         const hn::CappedTag<float, kBoxNodeWidth> d;

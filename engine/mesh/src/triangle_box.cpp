@@ -40,8 +40,8 @@ glm::dmat3 frame_of(const Triangle& t) {
 
 }  // namespace
 
-// As the tree's own boxes: half extents are measured in double from the rounded centre along the rounded axes, and a
-// margin of 1e-6 of their sum covers that these axes are orthonormal only to 3e-7, and the rounding of the halves.
+// As the tree's own boxes. Half extents are measured in double from the rounded centre along the rounded axes. A margin
+// of 1e-6 of their sum covers that these axes are orthonormal only to 3e-7, and the rounding of the halves.
 mesh::MeshBox triangle_box(const mesh::MeshLeaf& leaf, std::uint32_t lane) {
     const Triangle t = triangle_of(leaf, lane);
     const glm::dmat3 frame = frame_of(t);

@@ -32,8 +32,8 @@ bool segment_meets_triangle_2d(const glm::dvec3& p, const glm::dvec3& q, const T
     return true;
 }
 
-// All on one plane: they meet iff their projections to all three coordinate planes do, for one of these is one-to-one
-// on the common plane and the others only lose distinctions.
+// All on one plane: they meet iff their projections to all three coordinate planes do. One of these is one-to-one on
+// the common plane; the others only lose distinctions.
 bool coplanar_segment_meets_triangle(const glm::dvec3& p, const glm::dvec3& q, const Triangle& t) {
     return segment_meets_triangle_2d(p, q, t, 0, 1) && segment_meets_triangle_2d(p, q, t, 1, 2) &&
            segment_meets_triangle_2d(p, q, t, 2, 0);

@@ -12,8 +12,8 @@ namespace crofton::occlude {
 
 using boxtree::ItemId;
 
-// One query at work in a VisibleSet's buffers: first what occluders and the picture's edge leave, then, of these few,
-// the exact verdicts of the frustum.
+// One query at work in a VisibleSet's buffers. First comes what occluders and the picture's edge leave, then, of these
+// few, the exact verdicts of the frustum.
 class VisibleQuery {
   public:
     VisibleQuery(const OcclusionBuffer& buffer, VisibleSet& visible, const VisibleOptions& options)

@@ -12,8 +12,8 @@ struct CutPlane {
     double form[4];  // value = form · (x − origin, 1), within `error` · Σ|form_k| |x_k| of it
 };
 
-// Coordinates are pixels from the middle of the picture. The window is shrunk by kGuard pixels on each side, so that
-// rays at the rim of the view, whatever the rounding of its planes, still fall into the picture.
+// Coordinates are pixels from the middle of the picture. The window is shrunk by kGuard pixels on each side. So rays at
+// the rim of the view still fall into the picture, whatever the rounding of its planes.
 struct PixelMap {
     static constexpr double kGuard = 0x1p-6;
 

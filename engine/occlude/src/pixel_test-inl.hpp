@@ -102,8 +102,8 @@ class PixelTest {
     HWY_INLINE PixelTest(const QueryView& view, const Projection& boxes, std::size_t box)
         : view_(view), shadow_(view, boxes, box), nearness_(boxes.nearness[box]) {}
 
-    // Whether the box is in the shadow of one of the bodies that cover a pixel of the tile; of those that cover one of
-    // `first` before others.
+    // Whether the box is in the shadow of one of the bodies that cover a pixel of the tile. Those that cover one of
+    // `first` are asked before others.
     HWY_INLINE bool is_in_shadow(std::size_t tile, std::uint64_t first) const {
         const TileCovers& covers = view_.covers[tile];
         std::uint32_t candidates = 0, there = 0;

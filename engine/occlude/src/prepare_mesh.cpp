@@ -188,8 +188,8 @@ class MeshPreparation {
         // The evaluation rounds, too.
         const double range = std::fabs(n.x) * map_.width + std::fabs(n.y) * map_.height + std::fabs(n.w);
         const double lower = plane.error + 0x1p-50 * range + 0.5 * (std::fabs(n.x) + std::fabs(n.y));
-        // How far from the triangle a centre may be, in units of its barycentric coordinates: the square around it,
-        // which reaches half a pixel, then still meets the triangle (docs/notes/occlude.md).
+        // How far from the triangle a centre may be, in units of its barycentric coordinates. The square around it,
+        // which extends half a pixel, then still meets the triangle (docs/notes/occlude.md).
         const double extent =
             std::max({points[0].x, points[1].x, points[2].x}) - std::min({points[0].x, points[1].x, points[2].x}) +
             std::max({points[0].y, points[1].y, points[2].y}) - std::min({points[0].y, points[1].y, points[2].y}) + 2.0;

@@ -97,8 +97,8 @@ struct MapSizes {
     double form[4];
     double cut[2];
 };
-// With u = 2^-53: a difference to the origin (u), a product with a row that is itself a product with a transform's
-// (3 u and 3 u), sums of up to seven terms (7 u): 14 u < 2^-49.
+// With u = 2^-53, these round: a difference to the origin (u), a product with a row that is itself a product with a
+// transform's (3 u and 3 u), sums of up to seven terms (7 u). In all 14 u < 2^-49.
 inline constexpr double kMapError = 0x1p-49;
 
 struct BodyFace {

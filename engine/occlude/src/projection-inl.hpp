@@ -27,8 +27,8 @@ using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;
 using VI = hn::Vec<DI>;
 
-// With u = 2^-24, a form at a corner: the centre (u), a half edge (u) and a coefficient (u) are rounded, a product is,
-// and sums of up to seven terms are: 10 u of the sum of the magnitudes, which itself is rounded; 2^-20 is 16 u.
+// With u = 2^-24, of a form at a corner the centre, a half edge and a coefficient are rounded (u each), a product is,
+// and sums of up to seven terms are. That is 10 u of the sum of the magnitudes, which itself is rounded; 2^-20 is 16 u.
 constexpr float kFormError = 0x1p-20f;
 
 // What is known of some lanes, a bit each. Lanes that are in none are visible.

@@ -12,7 +12,7 @@ namespace crofton::occlude {
 inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 // From a to b as `left` has it, counter-clockwise around it; `right` goes from b to a. An edge of one triangle, or of
-// more than two, or of two that go the same way, stands once for each of its triangles, without a right one.
+// more than two, or of two that go the same way, stands once for each of its triangles. It has no right triangle there.
 struct ShapeEdge {
     std::uint32_t a, b;
     std::uint32_t left, right;

@@ -39,7 +39,7 @@ inline constexpr double kTiny = 1e-200;
     return glm::dvec3(box.axes[k]) * static_cast<double>(box.half_extents[k]);
 }
 
-// The box's size along each axis of the world, in the units of `base`: Σ_k |slope[k]| ≤ Σ_j |normal_j| extents_j, both
+// The box's size along each axis of the world, in the units of `base`. Σ_k |slope[k]| ≤ Σ_j |normal_j| extents_j, both
 // exactly and, within 6u of the latter, as computed.
 [[nodiscard]] inline glm::dvec3 extents_of(const Obb& box) {
     return glm::abs(half_edge(box, 0)) + glm::abs(half_edge(box, 1)) + glm::abs(half_edge(box, 2));

@@ -9,8 +9,8 @@
 namespace crofton::cull {
 namespace {
 
-// u = 2^-53 times this bounds the error of a combination y · (slopes, base) + Σ|y · slope| relative to Σ y_i size_i:
-// entries 7u, at most three products and additions per entry 5u, four additions and absolute values 4u.
+// u = 2^-53 times this bounds the error of a combination y · (slopes, base) + Σ|y · slope| relative to Σ y_i size_i.
+// Entries have 7u, at most three products and additions per entry 5u, four additions and absolute values 4u.
 constexpr double kCombinationRounding = 32.0 * kUnit;
 
 struct Weighted {
@@ -30,7 +30,7 @@ bool separates(const Terms&... terms) {
 }
 
 // The separating axes of a frustum edge against a box edge: base + Σ|slope| of (1−y) i + y j is convex and piecewise
-// linear in y, so its minimum lies where one slope vanishes.
+// linear in y. So its minimum lies where one slope vanishes.
 bool edge_separates(const Constraint& i, const Constraint& j) {
     for (unsigned k = 0; k < 3; ++k)
         if (i.slope[k] * j.slope[k] < 0.0 &&
@@ -90,8 +90,8 @@ bool finds_witness(std::span<const Constraint> constraints, int rounds) {
 }
 
 // All rows (slope, base) of the polytope in t: the planes, then the cube's faces t_k + 1 ≥ 0 and 1 − t_k ≥ 0.
-// The polytope is bounded, so if it is not empty it has a vertex, where three independent rows vanish: the vertex, in
-// homogeneous coordinates, is their generalised cross product.
+// The polytope is bounded, so if it is not empty it has a vertex, where three independent rows vanish. In homogeneous
+// coordinates it is their generalised cross product.
 template <class Box>
 class Enumeration {
   public:

@@ -11,7 +11,7 @@
 
 namespace crofton::cull {
 
-// A double and a bound on its error: each operation passes its inputs' errors on and adds its own rounding, with a
+// A double and a bound on its error. Each operation passes its inputs' errors on and adds its own rounding, with a
 // little to spare for the rounding of the bound.
 class Bounded {
   public:

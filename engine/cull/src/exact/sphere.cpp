@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Ball against convex volume, exactly. A ball misses the volume iff some sum of its half-spaces with weights ≥ 0 does
-// not reach the ball: Σ λ_i s_i + r |Σ λ_i n_i| < 0, with s_i the value of plane i at the centre. The best weights are
-// those of the nearest point of the volume, which lies where at most three planes of independent normals vanish:
-// G λ = −s over these planes, G their normals' products. So it is enough to try all sets of one to three planes; the
-// adjugate of G stands for its inverse, and squares for roots, so that everything is sums and products. Planes that the
-// whole ball is inside of may be left out.
+// not reach the ball. That is Σ λ_i s_i + r |Σ λ_i n_i| < 0, with s_i the value of plane i at the centre. The best
+// weights are those of the nearest point of the volume, which lies where at most three planes of independent normals
+// vanish. There G λ = −s over these planes, G their normals' products. So it is enough to try all sets of one to three
+// planes. The adjugate of G stands for its inverse, and squares for roots, so that everything is sums and products.
+// Planes that the whole ball is inside of may be left out.
 #include <algorithm>
 #include <array>
 #include <cmath>

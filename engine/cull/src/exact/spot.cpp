@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Spot light against convex volume, exactly. If they share a point, so do the volume, the light's cone and the ball of
-// its range; then the point of volume and cone nearest to the apex is in that ball. It is the apex; or the foot of the
-// apex on a plane, on the line of two planes or the corner of three; or, on the cone's surface, the end of the shortest
-// way along it to a plane, or where the line of two planes pierces it. So it is enough to ask whether any of these
-// points lies in volume, cone and ball. Each is (X + Y √D) / W with sums and products for X, Y, D and W, and so is the
-// sign of A + B √D, by squares.
+// its range. Then the point of volume and cone nearest to the apex is in that ball. It is the apex; or the foot of the
+// apex on a plane, on the line of two planes or the corner of three. Or it is on the cone's surface: the end of the
+// shortest way along it to a plane, or where the line of two planes pierces it. So it is enough to ask whether any of
+// these points lies in volume, cone and ball. Each is (X + Y √D) / W with sums and products for X, Y, D and W, and so
+// is the sign of A + B √D, by squares.
 #include "exact/spot.hpp"
 
 #include <array>

@@ -3,12 +3,12 @@
 //
 // Error bounds. L ≥ the largest coordinate of any point of the light, s = spread ≥ 1 + |slope| of columns and of rows,
 // E = start. In the part of the slab that the light reaches, boundaries lie within s L + E. With u the type's rounding,
-// 2^-24 or 2^-53, a difference of a coordinate and a boundary is off by at most 6 u (s L + E): by the rounding of both,
-// of slope and start, of product and sums. Moving a point of the exact froxel into the one of the rounded numbers, or
-// back, first along w and then across, takes at most as much along each axis, the shift of a boundary by a shift in w
-// included. In doubles the frame adds its own errors: axes and planes are unit vectors of at most ten roundings, 2^-49
-// (s L + E). So δ = kLightRounding (s L + E), with kLightRounding = 2^-21 for floats and 2^-45 for doubles, bounds each
-// of them.
+// 2^-24 or 2^-53, a difference of a coordinate and a boundary is off by at most 6 u (s L + E). That covers the rounding
+// of both, of slope and start, of product and sums. Moving a point of the exact froxel into the one of the rounded
+// numbers, or back, first along w and then across, takes at most as much along each axis. That includes the shift of a
+// boundary by a shift in w. In doubles the frame adds its own errors: axes and planes are unit vectors of at most ten
+// roundings, 2^-49 (s L + E). So δ = kLightRounding (s L + E), with kLightRounding = 2^-21 for floats and 2^-45 for
+// doubles, bounds each of them.
 #include <hwy/highway.h>
 #include <cstdint>
 
@@ -130,9 +130,9 @@ struct NearestAt {
 };
 
 // The square of the distance to the froxel's section at depth w, F(w), is convex, F − w² too. So for any w no point of
-// the slab is nearer than F(w) − (F'(w)/2)², or than F(w) where the slope leads out of the slab; and one at F(w) there
-// is. F and F'²/4 ≤ s² F are off by 2 s² √F (δ + kLightTrifle √F) in all: where F ≥ R² that is below κ F, which the
-// first term of the bound gives up; where F < R² nothing is claimed. The slope's sign may be wrong where it is below s
+// the slab is nearer than F(w) − (F'(w)/2)², or than F(w) where the slope leads out of the slab. A point at F(w) there
+// is. F and F'²/4 ≤ s² F are off by 2 s² √F (δ + kLightTrifle √F) in all. Where F ≥ R² that is below κ F, which the
+// first term of the bound gives up. Where F < R² nothing is claimed. The slope's sign may be wrong where it is below s
 // δ, which η² covers.
 template <class D>
 HWY_INLINE Lit<D> test_ball(const FroxelLanes<D>& froxels, const LightLanes<D>& light) {

@@ -130,7 +130,7 @@ HWY_INLINE Vectors<D> farthest(const FroxelLanes<D>& froxels, const Vectors<D>& 
 }
 
 // Of the light's middle the nearest point of the froxel: if it is well inside the light it proves one answer. From
-// there the direction m to the nearest point of the light: if the froxel is further along m than the light, that proves
+// there the direction m to the nearest point of the light. If the froxel is further along m than the light, that proves
 // the other. Both sides, along three axes, are off by less than 4 δ |m|, and η ≥ 8 δ.
 template <class D>
 HWY_INLINE Lit<D> test_spot(const FroxelLanes<D>& froxels, const LightLanes<D>& light) {
@@ -156,8 +156,8 @@ HWY_INLINE Lit<D> test_spot(const FroxelLanes<D>& froxels, const LightLanes<D>& 
 }
 
 // A portal in each lane (Snethen: "XenoCollide: Complex Collision Made Simple", 2008). Let A be the set of all
-// differences of a point of the froxel and one of the light. A triangle of points of A, pierced by the ray from a point
-// v0 within A through the origin, is moved outwards until the origin is before it or A ends before the origin.
+// differences of a point of the froxel and one of the light. A triangle of points of A is pierced by the ray from a
+// point v0 within A through the origin. It is moved outwards until the origin is before it or A ends before the origin.
 template <class D>
 class Portal {
     using V = hn::Vec<D>;

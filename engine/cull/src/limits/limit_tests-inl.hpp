@@ -64,8 +64,8 @@ class LimitTester {
         return result;
     }
 
-    // A centre is within √3/2 of a position_unit of its lane's; half edges' components within half an edge_unit, and
-    // the rounding of origin − eye is below 2^-20 of the coordinates. Axes are orthonormal to 1e-4.
+    // A centre is within √3/2 of a position_unit of its lane's, half edges' components within half an edge_unit. The
+    // rounding of origin − eye is below 2^-20 of the coordinates. Axes are orthonormal to 1e-4.
     HWY_INLINE LimitTest test(const boxtree::Leaf& leaf, std::size_t l) {
         const DF d;
         const DU du;

@@ -29,8 +29,9 @@ struct BallRow {
     VF base, slack;
 };
 
-// Those of the wanted lanes that certainly have a point inside all planes: from the centre onto the plane that is
-// missed by most, a little beyond it, again and again. 2^-16 covers the roundings of |v|² and of the radius.
+// Those of the wanted lanes that certainly have a point inside all planes. The search steps from the centre onto the
+// plane that is missed by most, a little beyond it, again and again. 2^-16 covers the roundings of |v|² and of the
+// radius.
 HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigned count, MF wanted) {
     const DF d;
     VF v[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -59,7 +60,7 @@ HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigne
 
 // Those of the wanted lanes that two planes together certainly exclude: λ_a s_a + λ_b s_b + radius |λ_a n_a + λ_b n_b|
 // < 0 for some λ ≥ 0 (sphere.cpp). The square of the length rounds by less than 2^-20 (λ_a + λ_b)², the rest by less
-// than 2^-19 relative to each term; what underflow eats is far below 1e-30, and sums near overflow prove nothing.
+// than 2^-19 relative to each term. What underflow eats is far below 1e-30, and sums near overflow prove nothing.
 HWY_INLINE MF is_excluded(const SphereLanes& balls, const BallRow* rows, unsigned count, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), trifle = hn::Set(d, 0x1p-19f);

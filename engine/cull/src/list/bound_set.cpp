@@ -14,8 +14,8 @@
 namespace crofton::cull {
 namespace {
 
-// A radius of 4096 to 8192 quanta for a typical bound leaves room for others that are larger, and lets the centres'
-// extent choose the quantum wherever the chunk is wider than some ten bounds.
+// A radius of 4096 to 8192 quanta for a typical bound leaves room for others that are larger. The centres' extent
+// chooses the quantum wherever the chunk is wider than some ten bounds.
 constexpr double kTypicalRadius = 4096.0;
 // So many strays more than when a chunk was laid out, and it is laid out anew.
 constexpr std::uint32_t kTooManyStrays = kChunk / 16;

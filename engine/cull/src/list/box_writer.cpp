@@ -107,7 +107,7 @@ HWY_INLINE VF deviation(const VF (&axes)[9]) {
 
 // A box is taken if it certainly passes validate(Obb): its axes are orthonormal to 1e-4 even summed, no half extent is
 // negative, none beyond 1e18, the centre below 1e30. With half extents h the farthest corner is within
-// Σ h² · 1.0001 + 2 · 1e-4 · Σ h_i h_k ≤ 1.0003 · Σ h², squared: 1.0002 · √Σ h² covers that and the roundings; what
+// Σ h² · 1.0001 + 2 · 1e-4 · Σ h_i h_k ≤ 1.0003 · Σ h², squared. 1.0002 · √Σ h² covers that and the roundings; what
 // underflows is far below 1e-15. So no edge has more than 32766 units, each within 3 · 2^-24 · 32767 + 1/2.
 HWY_INLINE void write(const Boxes& boxes, Written& to) {
     const DF d;

@@ -85,8 +85,8 @@ struct DirectLanes {
 };
 
 // What a plane's value at the centre, with the box's extent along the normal added or taken away, may be off by for
-// each unit of |x| + |y| + |z| + Σ|edge components|: with u = 2^-24, local_plane's ten roundings of the evaluation, one
-// of the centre and one of each edge; 12 u < 20 u.
+// each unit of |x| + |y| + |z| + Σ|edge components|. With u = 2^-24 these are local_plane's ten roundings of the
+// evaluation, one of the centre and one of each edge; 12 u < 20 u.
 inline constexpr float kDirectError = 0x1.4p-20f;
 
 HWY_INLINE DirectLanes lanes_of_picked(const Picked<DirectBoxes>& picked) {
@@ -139,8 +139,8 @@ HWY_INLINE VF value_at(const DirectPlane& plane, const VF (&at)[3]) {
     return hn::MulAdd(hn::Set(d, plane.normal[0]), at[0], hn::MulAdd(hn::Set(d, plane.normal[1]), at[1], rest));
 }
 
-// Whether the kernel can take the boxes, from the sum of the squares of their axes' components, none of which exceeds 2
-// if that does not exceed 4. Numbers that are not finite make `squares` or `size` one as well.
+// Whether the kernel can take the boxes, from the sum of the squares of their axes' components. If that does not exceed
+// 4, none of them exceeds 2. Numbers that are not finite make `squares` or `size` one as well.
 HWY_INLINE MF are_valid(VF squares, VF size) {
     return hn::And(hn::Le(squares, hn::Set(DF(), 4.0f)), hn::Lt(size, hn::Set(DF(), 8e29f)));
 }

@@ -76,8 +76,8 @@ struct OpenCounts {
 inline constexpr std::size_t kRecordsAhead = 32;
 
 // One view's questions. What the records know of up to sixteen bounds, consecutive ones of those asked about, goes to
-// sink.sixteen(place of the first, their indices, bits outside, bits inside); the second stage's word of single ones to
-// sink.outside(i) and sink.undecided(i). The others are certainly straddling.
+// sink.sixteen(place of the first, their indices, bits outside, bits inside). What the second stage says of single ones
+// goes to sink.outside(i) and sink.undecided(i). The others are certainly straddling.
 template <class Record, class Sink, class Records = const Record*>
 class OpenRecords {
   public:
@@ -132,7 +132,7 @@ class OpenRecords {
     }
 
     // Hands sixteen at a time to `visit`: the place of the first, a function that applies a test to their lanes, and a
-    // bit for each that there is.
+    // bit for each.
     template <class Visit>
     HWY_INLINE void for_each_sixteen(std::uint32_t* indices, std::size_t count, const Visit& visit) {
         if (count == 0) return;

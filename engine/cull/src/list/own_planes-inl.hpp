@@ -78,9 +78,9 @@ class PlaneBits {
     VI bits_;
 };
 
-// All planes against the balls around the boxes: what a plane's value at the centre exceeds by its slack and the
-// radius, with a normal up to 1.0005 long, is certainly inside. The slacks have room for the roundings here: a box's
-// own, where it is far from the eye and the plane's slack does not know of it.
+// All planes against the balls around the boxes. A box is certainly inside a plane whose value at the centre exceeds
+// its slack and the radius, for normals up to 1.0005 long. The slacks have room for the roundings here. They include a
+// box's own, where it is far from the eye and the plane's slack does not know of it.
 HWY_INLINE PlaneBits planes_open(const PlaneTable& table, const BoxLanes& bounds) {
     const DF d;
     PlaneBits open(table.count());

@@ -75,7 +75,7 @@ AabbRecord record_of(const Aabb& box, const glm::dvec3& offset) {
     for (int j = 0; j < 3; ++j) {
         record.half[j] = static_cast<float>(half[j] / double{record.unit});
         // The share of the unit rounds by 2^-24 of at most 1, and so does each product and sum of the test, at most 6
-        // in all; centre and half extent in double by 2^-53 of the corners each.
+        // in all. Centre and half extent in double round by 2^-53 of the corners each.
         error += double{record.unit} * 0x1p-21 + size[j] * 0x1p-51;
     }
     record.error = float_at_least(error * 1.01);

@@ -10,8 +10,8 @@ namespace crofton::cull {
 inline constexpr int kRowNormalBits = 14;
 
 // s(x) = normal · x + offset for a row's integer centre x is within `slack` of 2^14 / quantum times the plane's exact
-// value at the bound's centre. So with the row's radius r, whose 2^-9 beyond the bound's radius covers normals that are
-// up to 1.0005 long, a bound is outside if s + 2^14 r < −slack, and inside of this plane if s − 2^14 r ≥ slack.
+// value at the bound's centre. The row's radius r is 2^-9 larger than the bound's, which covers normals that are up to
+// 1.0005 long. So a bound is outside if s + 2^14 r < −slack, and inside of this plane if s − 2^14 r ≥ slack.
 struct RowPlanes {
     std::uint32_t normal_xy[KernelView::kMaxPlanes];  // as RowBlock::xy
     std::uint32_t normal_z[KernelView::kMaxPlanes];   // upper half 0

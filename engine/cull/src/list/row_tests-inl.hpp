@@ -61,7 +61,7 @@ HWY_INLINE std::uint64_t bits_of_blocks(const M (&masks)[4], std::size_t l) {
     return bits;
 }
 
-// The indices of the set bits, which are few: eight are written for every word, whether it has them or not, and more
+// The indices of the set bits, which are few. Eight are written for every word, whether it has them or not, and more
 // where it has. Room for 8 beyond the last is needed.
 HWY_INLINE std::size_t list_sparse_bits(const std::uint64_t* bits, std::size_t words, std::uint32_t* ids) {
     std::size_t count = 0;

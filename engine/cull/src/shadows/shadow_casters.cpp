@@ -9,7 +9,7 @@
 namespace crofton::cull {
 namespace {
 
-// What is computed in doubles here is moved outwards by this share of the sizes that went into it: some twenty
+// What is computed in doubles here is moved outwards by this share of the sizes that went into it. That is some twenty
 // roundings of 2^-53 each, with much to spare.
 constexpr double kOutward = 0x1p-40;
 

@@ -9,15 +9,15 @@
 
 namespace crofton::cull {
 
-// In units of 2^-14 of the block's unit: a plane's value at integers x of the block is offset + pair_plane · x, and
-// `slack` bounds what that, and a box's reach added or taken away, may be off by (boxtree::rounding_of).
+// In units of 2^-14 of the block's unit. A plane's value at integers x of the block is offset + pair_plane · x. `slack`
+// bounds the error of that, with a box's reach added or taken away (boxtree::rounding_of).
 struct BlockPlane {
     std::int32_t offset, slack;
 };
 
 // For the blocks of a tree. The offset's seven roundings of 2^-53 of Σ|origin − view| + |plane offset| each, as in
-// local_plane, for any block whose origin lies in the root's bounds, or farther out by less than the block's reach: the
-// share of that in `rounding` has room for it.
+// local_plane, for any block whose origin lies in the root's bounds. It may lie farther out by less than the block's
+// reach: the share of that in `rounding` has room for it.
 inline void bring_before(const boxtree::Node& root, KernelView& view) {
     const LocalOrigin at = local_origin(view, root.origin, root.reach);
     for (std::uint32_t i = 0; i < view.plane_count; ++i)

@@ -12,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
-// A plane before a leaf: in units of 2^-14 of a position_unit, a box's centre is offset + normal · (x, y, z) inside of
-// it, and `slack` bounds what that, and the value at any other point of the box, may be off by.
+// A plane before a leaf, in units of 2^-14 of a position_unit. A box's centre is offset + normal · (x, y, z) inside of
+// it. `slack` bounds the error of that, and of the value at any other point of the box.
 struct LeafPlane {
     const PairPlane* normal;
     BlockPlane at;

@@ -41,7 +41,7 @@ void leave_all_undecided(std::size_t count, ListKernelOutput& output) {
     std::fill_n(output.inside, (count + 63) / 64, 0);
 }
 
-// A large tree is asked for subtree by subtree, two levels down, whether they are shared among threads or not: so the
+// A large tree is asked subtree by subtree, two levels down, whether they are shared among threads or not. So the
 // answer comes in the same order.
 Query::Tasks::Tasks(const TreeKernelInput& input, bool many) {
     const std::uint64_t root = tree_entry(0, (1u << input.view->plane_count) - 1);
@@ -198,7 +198,7 @@ void Query::run(const boxtree::BoxTree& tree, Executor& executor) {
     finish(tree, inside, straddling, executor);
 }
 
-// The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers; the parts are
+// The subtrees two levels down are the tasks. Each range of them writes to its own part of the buffers. The parts are
 // then put together in order, so that the answer does not depend on who did what.
 void Query::run_parallel(const boxtree::BoxTree& tree, const TreeKernelInput& input, const Tasks& tasks,
                          Executor& executor) {

@@ -25,8 +25,8 @@ struct SlotRun {
 };
 
 // Capacities: each list has room for all items and 16 more, `runs` for all leaves. `work` has room for kWorkLists lists
-// of `work_size`: the number of nodes and leaves that the entries name, and of those below them, and 16 more. The
-// `whole_count` items that a node above them accepted come first in `inside`; where `runs` is given they are named
+// of `work_size`. That is the number of nodes and leaves that the entries name, and of those below them, and 16 more.
+// The `whole_count` items that a node above them accepted come first in `inside`. Where `runs` is given they are named
 // there instead, as runs of the tree's slots.
 struct TreeKernelOutput {
     boxtree::ItemId* inside;

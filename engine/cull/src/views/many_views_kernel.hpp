@@ -29,7 +29,7 @@ struct ManyViewsOutput {
     std::size_t mask_bytes;  // 1, 2 or 4, with a bit for each view
     std::size_t count;
     // For its own use. By leaf, with room for 16 more: the views that see it whole, and those that must look into it,
-    // all 0 and left so; for each view the planes that the leaf straddles.
+    // all 0 and left so. For each view: the planes that the leaf straddles.
     std::uint32_t* whole;
     std::uint32_t* open;
     std::uint16_t* planes;

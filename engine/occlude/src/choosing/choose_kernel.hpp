@@ -19,8 +19,8 @@ struct ChooseView {
     std::array<float, 3> low{}, high{};  // of the objects, relative to the candidates' origin
 };
 
-// Writes the ids of those in view that cover at least `least` to `seen`, and what they cover, times the way behind them
-// where that is bounded, to `values`; both have room for all. Returns their number. Same bits for any instruction set.
+// Writes the ids of those in view that cover at least `least` to `seen`. `values` gets what they cover, times the way
+// behind them where that is bounded. Both have room for all. Returns their number. Same bits for any instruction set.
 std::size_t measure_cover(const float* const* columns, std::size_t count, const ChooseView& view, std::uint32_t* seen,
                           float* values);
 

@@ -188,8 +188,8 @@ TriangleMesh part_of(const PieceMesh& mesh, std::span<const std::uint32_t> trian
     return part;
 }
 
-// A connected closed surface whose every triangle lies in a supporting plane of all vertices, and that winds round an
-// inner point once, is the boundary of the hull.
+// Take a connected closed surface whose every triangle lies in a supporting plane of all vertices. If it winds round an
+// inner point once, it is the boundary of the hull.
 bool add_convex_piece(const Search& search, const Piece& piece, Vector<FoundOccluder>& found) {
     const PieceMesh& mesh = search.mesh;
     if (!piece.manifold || piece.end - piece.begin > kMostConvexTriangles) return false;

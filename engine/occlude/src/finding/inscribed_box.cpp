@@ -10,8 +10,8 @@
 namespace crofton::occlude {
 namespace {
 
-// What a triangle's share of the box's open prism along `axis` leaves of the way of the face on side `sign`: the
-// coordinate where it begins, or `reach` if it is not in the way.
+// How far the face on side `sign` may move along `axis` before it meets the triangle's part of the box's open prism:
+// the coordinate where that part begins, or `reach` if it is not in the way.
 double nearest_in_way(const Triangle& t, const FrameBox& box, int axis, int sign, double reach) {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
@@ -80,8 +80,8 @@ struct BoxShape {
 // Whether direction n separates: the triangle's extent along n begins where those of the box and of the hull end, or
 // ends where they begin. n itself is exact: any direction may serve. With u = 2^-53, offsets d = v − center are off by
 // u (|v| + |c|), a dot product with n by 3u Σ|n_i||d_i| more, the sum of three products with edges by 6u Σ|n_i|
-// |edge|_i, the comparison by 2u of both: all below 12u Σ|n_i| size_i, with the sizes of both bodies added. 32u also
-// covers that the bound is rounded itself.
+// |edge|_i, the comparison by 2u of both. All are below 12u Σ|n_i| size_i, with the sizes of both bodies added. 32u
+// also covers that the bound is rounded itself.
 bool separates(const glm::dvec3& n, const BoxShape& box, const Triangle& t, const std::array<glm::dvec3, 3>& offset) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const glm::dvec3& d : offset) {

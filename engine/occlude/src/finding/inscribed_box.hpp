@@ -48,8 +48,8 @@ struct FrameBox {
     }
 };
 
-// Pushes the faces of a box that no triangle meets outward, each until it meets the surface: the face first that adds
-// most to the mean shadow.
+// Pushes the faces of a box that no triangle meets outward, each until it meets the surface. The face that adds most to
+// the mean shadow goes first.
 void push_faces(const FramedPiece& piece, FrameBox& box);
 
 // As it is stored, and the hull of its corners rounded to float.
@@ -58,7 +58,7 @@ struct StoredBox {
     std::array<glm::vec3, 8> corners;
 };
 
-// The box a little smaller, if no triangle meets its interior or that of the hull of its corners: proven by a
+// The box a little smaller, if no triangle meets its interior or that of the hull of its corners. That is proven by a
 // separating direction for each triangle, evaluated with an error bound.
 [[nodiscard]] std::optional<StoredBox> certify(const FramedPiece& piece, const FrameBox& box);
 

@@ -122,7 +122,7 @@ Vector<std::uint32_t> list_pieces(PieceMesh& mesh, DisjointSets& sets) {
 }
 
 // Whether edge ab, seen along z, runs to the right of p. Half-open in y, so that of two edges that share a vertex at
-// p's height exactly one counts; the answer depends on the edge alone, so both its triangles agree.
+// p's height exactly one counts. The answer depends on the edge alone, so both its triangles agree.
 bool runs_right_of(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
     if ((a.y > p.y) == (b.y > p.y)) return false;
     const bool upward = a.y < b.y;

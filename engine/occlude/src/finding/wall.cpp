@@ -11,7 +11,7 @@ namespace crofton::occlude {
 namespace {
 
 // A side of a triangle, or a part of one: a stretch of a line. Lines along an axis are known by their other
-// coordinates, so that stretches of them can be compared; any other edge is a line by itself, known by both its ends.
+// coordinates, so that stretches of them can be compared. Any other edge is a line by itself, known by both its ends.
 struct Stretch {
     int axis = kNoAxis;
     std::array<float, 6> line{};

@@ -20,7 +20,7 @@ struct WallBox {
 }
 
 // Whether each straight path that enters the box through the inner part of the face, and goes on in the box to `inner`
-// beyond, meets a triangle that lies between the face and `inner`; with Sides::front, one whose front it meets. Decided
+// beyond, meets a triangle that lies between the face and `inner`. With Sides::front: one whose front it meets. Decided
 // exactly (docs/notes/occluder_finding.md, "Walls"); false where the proof does not apply.
 [[nodiscard]] bool is_walled(const PieceMesh& mesh, Sides sides, const WallBox& box, std::size_t face, float inner);
 

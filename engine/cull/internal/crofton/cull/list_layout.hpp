@@ -7,8 +7,8 @@
 
 namespace crofton::cull {
 
-// A list is cut into chunks of this many bounds, each with a frame of its own: integers of 15 bits are then fine enough
-// where neighbours in the list are neighbours in space, and serve where they are not.
+// A list is cut into chunks of this many bounds, each with a frame of its own. Integers of 15 bits are then fine enough
+// where neighbours in the list are neighbours in space, and right everywhere.
 inline constexpr std::size_t kChunk = 4096;
 inline constexpr std::int32_t kMaxRowCoordinate = 16383;
 inline constexpr std::uint32_t kUnboundedRadius = 65535;

@@ -28,8 +28,8 @@ struct BoxHierarchy {
     Vector<std::uint32_t> order;  // items
 };
 
-// Splits by surface area in sixteen bins: the chance that a uniform line meets a box inside another is the ratio of
-// their surface areas (theory.md, section 2), exactly, so this is the one criterion that fits. Leaves hold up to
+// Splits by surface area in sixteen bins. The chance that a uniform line meets a box inside another is exactly the
+// ratio of their surface areas (theory.md, section 2). So this is the one criterion that fits. Leaves hold up to
 // `leaf_size` items. The same hierarchy on every machine. Requires 1 to 2^30 boxes, none of them empty.
 [[nodiscard]] BoxHierarchy build_box_hierarchy(std::span<const FloatBox> boxes, std::uint32_t leaf_size);
 
