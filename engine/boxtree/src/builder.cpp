@@ -13,7 +13,7 @@ constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
 constexpr std::size_t kSmallCrowd = 32768;
 // A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis
 // follow.
-constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
+constexpr unsigned kItemBits = 30, kPassBits = 12, kPasses = 3, kFineBits = 10;
 constexpr double kCells = 1u << 20;
 constexpr std::size_t kCrowd = 256;  // more in one cell are sorted by smaller ones
 
@@ -71,7 +71,7 @@ void Builder::add(ItemId id, const Obb& box) {
     const std::uint64_t key =
         ((15 - size_class) << 3 * kFineBits | z_order(cell_of(box.center), kFineBits)) << kItemBits | id;
     for (unsigned pass = 0; pass < kPasses; ++pass)
-        ++histograms_[pass][key >> (kItemBits + pass * kDigitBits) & (histograms_[pass].size() - 1)];
+        ++histograms_[pass][key >> (kItemBits + pass * kPassBits) & (histograms_[pass].size() - 1)];
     keys_.push_back(key);
     keys_next_.push_back(0);
 }
@@ -127,7 +127,7 @@ std::size_t Builder::sort_pass(std::size_t budget) {
         std::uint32_t sum = 0;
         for (std::uint32_t& count : places) sum += std::exchange(count, sum);
     }
-    const unsigned shift = kItemBits + pass_ * kDigitBits;
+    const unsigned shift = kItemBits + pass_ * kPassBits;
     const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
     for (; next_ < end; ++next_) keys_next_[places[keys_[next_] >> shift & (places.size() - 1)]++] = keys_[next_];
     if (next_ < keys_.size()) return spent;

@@ -9,7 +9,7 @@ namespace crofton::boxtree {
 namespace {
 
 // Scattered items wait for memory: slots and boxes are asked for so many items ahead of their use, then leaves.
-constexpr std::size_t kAhead = 32, kNear = 12;
+constexpr std::size_t kFarAhead = 32, kNearAhead = 12;
 
 template <class T>
 void prefetch_all(const T& value) {
@@ -41,8 +41,8 @@ std::size_t Structure::find(std::span<const ItemId> items) {
     Vector<std::uint32_t>& found = scratch_.moved_slots;
     found.resize(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i + kAhead < items.size() && items[i + kAhead] < item_slots_.size())
-            hwy::Prefetch(slots + items[i + kAhead]);
+        if (i + kFarAhead < items.size() && items[i + kFarAhead] < item_slots_.size())
+            hwy::Prefetch(slots + items[i + kFarAhead]);
         if (!contains(items[i])) return i;
         found[i] = slots[items[i]];
     }
@@ -53,9 +53,9 @@ void Structure::move_found(std::span<const ItemId> items, std::span<const Obb> b
     const std::span<const std::uint32_t> slots = scratch_.moved_slots;
     marks_.mark(slots);
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i + kAhead < items.size()) prefetch_all(items_.boxes()[items[i + kAhead]]);
-        if (i + kNear < items.size() && marks_.has_few_changes(slots[i + kNear] / kWidth))
-            prefetch_all(leaves_[slots[i + kNear] / kWidth]);
+        if (i + kFarAhead < items.size()) prefetch_all(items_.boxes()[items[i + kFarAhead]]);
+        if (i + kNearAhead < items.size() && marks_.has_few_changes(slots[i + kNearAhead] / kWidth))
+            prefetch_all(leaves_[slots[i + kNearAhead] / kWidth]);
         const LeafId leaf = slots[i] / kWidth;
         if (items_.boxes()[items[i]].half_extents != boxes[i].half_extents) widen_leaf_radii(leaf, boxes[i]);
         items_.set_box(items[i], boxes[i]);

@@ -37,12 +37,41 @@ HWY_INLINE void mark(std::uint32_t id, std::uint64_t* bits) {
     bits[id / 64] |= std::uint64_t{1} << (id % 64);
 }
 
-void mark_ids(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
-    std::size_t i = 0;
+// Four parts of the list in turn: neighbours in the list are often in one word, and a word that was stored a moment ago
+// is slow to load.
+void mark_scattered(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
+    constexpr std::size_t kParts = 4;
+    const std::size_t part = count / kParts;
+    for (std::size_t i = 0; i < part; ++i)
+        for (std::size_t p = 0; p < kParts; ++p) mark(ids[p * part + i], bits);
+    for (std::size_t i = kParts * part; i < count; ++i) mark(ids[i], bits);
+}
+
 #if HWY_TARGET != HWY_SCALAR
+// Whether lanes of ids mostly lie within a word's length, judged by some of them: to ask each time is dear where the
+// answer changes.
+bool are_together(const std::uint32_t* ids, std::size_t count) {
     const DU du;
+    constexpr std::size_t kSamples = 16;
+    std::size_t together = 0;
+    for (std::size_t s = 0; s < kSamples; ++s) {
+        const std::uint32_t* const from = ids + s * (count / kSamples);
+        const VU positions = hn::Sub(hn::LoadU(du, from), hn::Set(du, from[0] < kBefore ? 0 : from[0] - kBefore));
+        together += hn::AllTrue(du, hn::Lt(positions, hn::Set(du, 64)));
+    }
+    return 4 * together >= 3 * kSamples;
+}
+#endif
+
+void mark_ids(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) {
+#if HWY_TARGET == HWY_SCALAR
+    mark_scattered(ids, count, bits);
+#else
+    const DU du;
+    if (count < 16 * hn::Lanes(du) || !are_together(ids, count)) return mark_scattered(ids, count, bits);
     const VU in_order = hn::Iota(du, kBefore), word_length = hn::Set(du, 64);
     const std::uint64_t run = ((std::uint64_t{1} << hn::Lanes(du)) - 1) << kBefore;
+    std::size_t i = 0;
     for (; i + hn::Lanes(du) <= count; i += hn::Lanes(du)) {
         const std::uint32_t first = ids[i] < kBefore ? 0 : ids[i] - kBefore;
         const VU positions = hn::Sub(hn::LoadU(du, ids + i), hn::Set(du, first));
@@ -59,8 +88,8 @@ void mark_ids(const std::uint32_t* ids, std::size_t count, std::uint64_t* bits) 
         to[0] |= word << (first % 64);
         to[1] |= word >> 1 >> (63 - first % 64);
     }
-#endif
     for (; i < count; ++i) mark(ids[i], bits);
+#endif
 }
 
 // Visits the ids of one word.

@@ -122,12 +122,12 @@ void PointCloud::sorted(Vector<glm::dvec3>& points) {
     float* const ranks = x + 3 * padded;
     kernels::find_ranks({x, x + padded, x + 2 * padded, count_}, ranks);
     // Duplicates share a rank; the ranks after it stay empty.
-    constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    order_.assign(count_, kNone);
+    constexpr std::uint32_t kNoPoint = ~std::uint32_t{0};
+    order_.assign(count_, kNoPoint);
     for (std::size_t i = 0; i < count_; ++i)
         order_[static_cast<std::size_t>(static_cast<int>(ranks[i]))] = static_cast<std::uint32_t>(i);
     for (const std::uint32_t i : order_)
-        if (i != kNone) points.push_back(normalised(i));
+        if (i != kNoPoint) points.push_back(normalised(i));
 }
 
 void PointCloud::project_boxes(const glm::dmat3& directions) {
