@@ -2,9 +2,12 @@
 // Files whose checksums are right and whose contents are not: one fault each, refused for that fault.
 #include <doctest/doctest.h>
 #include <array>
+#include <cmath>
 #include <crofton/bake/baked_scene.hpp>
 #include <error_of.hpp>
+#include <limits>
 
+#include <crofton/bake/occluder_sections.hpp>
 #include "forge.hpp"
 
 using namespace crofton;
@@ -51,6 +54,35 @@ Vector<std::byte> small_scene() {
     auto file = bake::bake(scene);
     REQUIRE(file);
     REQUIRE(BakedScene::from_memory(*file));
+    return std::move(*file);
+}
+
+// Two nodes; of three kinds one is empty.
+BakedOccluders three_kinds() {
+    BakedOccluders result;
+    occlude::FoundOccluder box, body, patch;
+    box.kind = occlude::OccluderKind::walled;
+    box.box.half_extents = {1, 2, 3};
+    box.eyes_within.max.y = 5.0;
+    body.box.half_extents = {1, 1, 1};
+    body.piece_bounds = {glm::dvec3(-2.0), glm::dvec3(2.0)};
+    body.mean_shadow = 1.5;
+    patch.kind = occlude::OccluderKind::patch;
+    patch.sides = occlude::Sides::front;
+    patch.surface.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    patch.surface.indices = {2, 1, 0};
+    result.kinds = {{box, body}, {}, {patch}};
+    result.nodes = {{1, 2}};
+    return result;
+}
+
+Vector<std::byte> with_occluders(const BakedOccluders& occluders) {
+    scene::Scene scene;
+    REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
+    REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
+    scene.update();
+    auto file = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &occluders);
+    REQUIRE(file);
     return std::move(*file);
 }
 
@@ -169,5 +201,79 @@ TEST_SUITE("bake/forged") {
             });
         };
         check_scene_refused(resized(sizeof(InstanceRecord)), "not over the instances");
+    }
+
+    TEST_CASE("occluders come back as they were, also those of an engine's own, and old files have none") {
+        const Vector<std::byte> file = with_occluders(three_kinds());
+        const auto baked = BakedScene::from_memory(file);
+        REQUIRE(baked);
+        REQUIRE(baked->occluders());
+        REQUIRE(baked->occluders()->kinds.size() == 3);
+        CHECK(baked->occluders()->kinds[0].size() == 2);
+        CHECK(baked->occluders()->kinds[1].empty());
+        const occlude::FoundOccluder& box = baked->occluders()->kinds[0][0];
+        CHECK(box.kind == occlude::OccluderKind::walled);
+        CHECK(box.box.half_extents == glm::vec3(1, 2, 3));
+        CHECK(box.eyes_within.max.y == 5.0);
+        CHECK(box.eyes_within.min.y == -std::numeric_limits<double>::infinity());
+        CHECK(box.piece_bounds.is_empty());
+        const occlude::FoundOccluder& patch = baked->occluders()->kinds[2][0];
+        CHECK(patch.surface.positions.size() == 3);
+        CHECK(patch.surface.indices == Vector<std::uint32_t>{2, 1, 0});
+        CHECK(patch.sides == occlude::Sides::front);
+        REQUIRE(baked->occluders()->nodes.size() == 1);
+        CHECK(baked->occluders()->nodes[0].node == 1);
+        CHECK(baked->occluders()->nodes[0].kind == 2);
+        CHECK_FALSE(BakedScene::from_memory(small_scene())->occluders());
+    }
+
+    TEST_CASE(
+        "occluders with numbers that are none, kinds that are not known, or a place that is not theirs are refused") {
+        const Vector<std::byte> file = with_occluders(three_kinds());
+        const auto record = [&](std::size_t at, auto change) {
+            return with_element<OccluderRecord>(file, "occluder", at, change);
+        };
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        using R = OccluderRecord;
+        check_scene_refused(record(0, [](R& r) { r.kind = 4; }), "kind that is not known");
+        check_scene_refused(record(0, [](R& r) { r.sides = 2; }), "kind that is not known");
+        check_scene_refused(record(0, [](R& r) { r.box.half_extents.x = -1.0f; }), "no box");
+        check_scene_refused(record(0, [&](R& r) { r.box.center.x = nan; }), "no box");
+        check_scene_refused(record(0, [&](R& r) { r.eyes_within.min.z = nan; }), "bounds are none");
+        check_scene_refused(record(0, [](R& r) { std::swap(r.eyes_within.min, r.eyes_within.max); }),
+                            "bounds are none");
+        check_scene_refused(record(1, [&](R& r) { r.piece_bounds.max.y = nan; }), "bounds are none");
+        check_scene_refused(record(1, [](R& r) { r.piece_bounds.min.y = -HUGE_VAL; }), "bounds are none");
+        check_scene_refused(record(1, [&](R& r) { r.gain = nan; }), "no measure");
+        check_scene_refused(record(1, [](R& r) { r.mean_shadow = -1.0; }), "no measure");
+        check_scene_refused(record(2, [](R& r) { r.index_count = 0; }), "no triangles");
+        check_scene_refused(record(2, [](R& r) { r.index_count = 2; }), "no mesh");
+        check_scene_refused(record(2, [](R& r) { r.index_count = 6; }), "not in their place");
+        check_scene_refused(record(2, [](R& r) { r.point_count = 4; }), "not in their place");
+        check_scene_refused(record(2, [](R& r) { r.first_point = 1; }), "not in their place");
+        check_scene_refused(record(2, [](R& r) { r.first_index = ~0ull; }), "not in their place");
+        check_scene_refused(with_element<std::uint32_t>(file, "occindex", 0, [](std::uint32_t& i) { i = 3; }),
+                            "no mesh");
+        check_scene_refused(
+            with_element<glm::vec3>(file, "occpoint", 1, [&](glm::vec3& p) { p.y = static_cast<float>(nan); }),
+            "no mesh");
+        const auto kind = [&](std::size_t at, auto change) {
+            return with_element<OccluderKindRecord>(file, "occkinds", at, change);
+        };
+        check_scene_refused(kind(2, [](OccluderKindRecord& k) { k.first = 0; }), "follow");
+        check_scene_refused(kind(2, [](OccluderKindRecord& k) { k.count = 2; }), "follow");
+        const auto node = [&](auto change) { return with_element<OccludingNode>(file, "occnodes", 0, change); };
+        check_scene_refused(node([](OccludingNode& n) { n.node = 2; }), "not there");
+        check_scene_refused(node([](OccludingNode& n) { n.kind = 3; }), "not there");
+        BakedOccluders twice = three_kinds();
+        twice.nodes.push_back(twice.nodes[0]);
+        scene::Scene scene;
+        REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
+        REQUIRE(scene.add_node(scene::kNone, {}, ~0u));
+        scene.update();
+        const auto refused = bake::bake(scene, serial_executor(), boxtree::Orientation::aligned, &twice);
+        REQUIRE_FALSE(refused);
+        CHECK(error_of(refused).message.find("ascend") != std::string::npos);
+        CHECK(error_of(refused).item == 1);
     }
 }

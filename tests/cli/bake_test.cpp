@@ -57,4 +57,34 @@ TEST_SUITE("cli/bake") {
         REQUIRE(run_cli("bake town --instances 400 --threads 3 -o " + two).status == 0);
         CHECK(contents_of(one) == contents_of(two));
     }
+
+    TEST_CASE("occluders that were baked are used in their place, and a file without them says so") {
+        const std::string path = scratch().file("hides.crofton"), bare = scratch().file("bare.crofton");
+        const CliRun baked = run_cli("bake town --instances 400 -o " + path + " --json -");
+        REQUIRE(baked.status == 0);
+        CHECK(baked.json()["occluders"].get<int>() > 100);
+        CHECK(run_cli("bake " + path + " --json -").json()["occluders"] == baked.json()["occluders"]);
+        const std::string frames =
+            "frames town --instances 400 --camera street --frames 3 --no-draw --occlude --json - ";
+        const CliRun found = run_cli(frames), known = run_cli(frames + "--baked " + path);
+        REQUIRE(found.status == 0);
+        REQUIRE(known.status == 0);
+        for (int i = 0; i < 3; ++i) {
+            const auto a = found.json()["frames"][i]["occlusion"], b = known.json()["frames"][i]["occlusion"];
+            CHECK(a["visible"] == b["visible"]);
+            CHECK(a["occluders"] == b["occluders"]);
+            CHECK(a["visible"] < found.json()["frames"][i]["visible"]);
+        }
+        const CliRun without = run_cli("bake town --instances 400 --no-occluders -o " + bare + " --json -");
+        REQUIRE(without.status == 0);
+        CHECK(without.json()["occluders"] == 0);
+        CHECK(without.json()["bytes"] < baked.json()["bytes"]);
+        const CliRun none = run_cli(frames + "--baked " + bare);
+        CHECK(none.status == 2);
+        CHECK(none.err.find("bare.crofton") != std::string::npos);
+        const CliRun other = run_cli("frames town --instances 400 --seed 2 --no-draw --occlude --baked " + path);
+        CHECK(other.status == 2);
+        CHECK(other.err.find("another scene") != std::string::npos);
+        CHECK(run_cli("frames town --baked " + path).status == 2);  // without --occlude
+    }
 }

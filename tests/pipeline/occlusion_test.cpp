@@ -77,6 +77,90 @@ TEST_SUITE("pipeline/occlusion") {
         }
     }
 
+    TEST_CASE("switched on, off and on again a pipeline answers as a new one, and finds its occluders once") {
+        Yard yard;
+        auto pipeline = Pipeline::create(yard.scene, {}, {}, serial_executor());
+        REQUIRE(pipeline.has_value());
+        CHECK_FALSE(pipeline->run(Camera{})->occlusion.has_value());
+        CHECK(pipeline->occluders() == nullptr);
+        const World* world = &pipeline->world();
+        REQUIRE(pipeline->set_options(kWithOcclusion).has_value());
+        const auto occluders = pipeline->occluders();
+        REQUIRE(occluders != nullptr);
+        const std::vector<std::uint32_t> expected{yard.wall, yard.beside};
+        CHECK(pipeline->run(Camera{})->occlusion->visible_ids == expected);
+        REQUIRE(pipeline->set_options({}).has_value());
+        const auto without = pipeline->run(Camera{});
+        CHECK_FALSE(without->occlusion.has_value());
+        CHECK(without->visible_ids == yard.all);
+        REQUIRE(pipeline->set_options({.cull = CullMode::flat, .occlusion = OcclusionOptions{}}).has_value());
+        const auto flat = pipeline->run(Camera{});
+        CHECK(flat->occlusion->visible_ids == expected);
+        CHECK(flat->nodes_tested == 0);
+        CHECK(pipeline->occluders() == occluders);
+        CHECK(&pipeline->world() == world);
+        // Known ones are taken: another pipeline with none of them hides nothing.
+        auto knows_none = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor(),
+                                           std::make_shared<const SceneOccluders>());
+        REQUIRE(knows_none.has_value());
+        CHECK(knows_none->run(Camera{})->occlusion->visible_ids == yard.all);
+    }
+
+    TEST_CASE("collisions switched off and on again are those of a new pipeline, and movers alone have them") {
+        scene::Scene scene;
+        const auto cube = scene.add_mesh(box_mesh(glm::vec3(0.5f)));
+        for (int i = 0; i < 4; ++i)
+            REQUIRE(scene.add_instance(*scene.add_node(scene::kNone, {glm::dmat3(1.0), {0.8 * i, 0.0, 0.0}}), *cube));
+        scene.update();
+        for (const BoundsKind kind : {BoundsKind::obb_perimeter, BoundsKind::aabb}) {
+            auto pipeline = Pipeline::create(scene, {0, 1, 2}, {.bounds = kind}, serial_executor());
+            REQUIRE(pipeline.has_value());
+            const auto before = pipeline->run(Camera{});
+            CHECK(before->colliding_pairs == 2);
+            REQUIRE(pipeline->set_options({.bounds = kind, .collide = false}).has_value());
+            const auto off = pipeline->run(Camera{});
+            CHECK(off->colliding_pairs == 0);
+            CHECK(off->pairs_tested == 0);
+            REQUIRE(pipeline->set_options({.bounds = kind}).has_value());
+            const auto again = pipeline->run(Camera{});
+            CHECK(again->colliding_ids == before->colliding_ids);
+            CHECK(again->pairs_tested == before->pairs_tested);
+        }
+    }
+
+    TEST_CASE("occluders that went through a file are the same, and hide the same") {
+        Yard yard;
+        const SceneOccluders found = find_scene_occluders(yard.scene, serial_executor());
+        const bake::BakedOccluders baked = to_baked(found);
+        const auto file = bake::bake(yard.scene, serial_executor(), boxtree::Orientation::aligned, &baked);
+        REQUIRE(file.has_value());
+        const auto loaded = bake::BakedScene::from_memory(*file);
+        REQUIRE(loaded.has_value());
+        REQUIRE(loaded->occluders().has_value());
+        const SceneOccluders back = scene_occluders_from(yard.scene, *loaded->occluders());
+        REQUIRE(back.objects.size() == found.objects.size());
+        REQUIRE(back.kinds.size() == found.kinds.size());
+        for (std::size_t k = 0; k < found.kinds.size(); ++k) {
+            const auto &a = found.kinds[k].found.occluders, &b = back.kinds[k].found.occluders;
+            REQUIRE(a.size() == b.size());
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                CHECK(a[i].kind == b[i].kind);
+                CHECK(a[i].surface.positions == b[i].surface.positions);
+                CHECK(a[i].surface.indices == b[i].surface.indices);
+                CHECK(a[i].box.center == b[i].box.center);
+                CHECK(a[i].box.half_extents == b[i].box.half_extents);
+                CHECK(a[i].eyes_within.min == b[i].eyes_within.min);
+                CHECK(a[i].piece_bounds.max == b[i].piece_bounds.max);
+                CHECK(a[i].edges == b[i].edges);
+                CHECK(a[i].gain == b[i].gain);
+            }
+        }
+        auto pipeline = Pipeline::create(yard.scene, {}, kWithOcclusion, serial_executor(),
+                                         std::make_shared<const SceneOccluders>(back));
+        REQUIRE(pipeline.has_value());
+        CHECK(pipeline->run(Camera{})->occlusion->visible_ids == std::vector<std::uint32_t>{yard.wall, yard.beside});
+    }
+
     TEST_CASE("meshes on one node are one occluding object, and what is not drawn is no part of it") {
         scene::Scene scene;
         const auto wall = scene.add_mesh(box_mesh({4.0f, 4.0f, 0.5f})),

@@ -16,11 +16,6 @@ std::uint64_t number(const json& entry, const char* name) {
 std::uint64_t hidden(const json& entry, const char* name) {
     return entry["occlusion"][name].get<std::uint64_t>();
 }
-std::uint64_t tinted(const json& entry, const char* name) {
-    for (const json& tint : entry["tints"])
-        if (tint["name"] == name) return tint["instances"].get<std::uint64_t>();
-    return 0;
-}
 
 // A wall of 8 m across the view, a small triangle behind it and one beside it; the eye is 10 m before the wall.
 std::string wall_obj() {
@@ -123,6 +118,43 @@ TEST_SUITE("viewer/occlusion") {
         CHECK(Pixels(scratch().file("red.png")).red() > 5000);
         CHECK_FALSE(picture(run, "off.png").contains("hidden_by"));
         CHECK(Pixels(scratch().file("off.png")).red() == 0);
+    }
+    TEST_CASE("baked occluders hide what found ones hide, also after another bound was asked for") {
+        const std::string file = scratch().file("town.crofton");
+        REQUIRE(run_cli("bake town --instances 400 -o " + file).status == 0);
+        const json events{set(0, {{"panels", false}, {"paused", true}, {"occlude", true}}),
+                          shot(1, "a.png"),
+                          set(2, {{"bounds_kind", "aabb"}}),
+                          shot(3, "aabb.png"),
+                          set(4, {{"bounds_kind", "obb-perimeter"}, {"cull", "flat"}, {"collisions", false}}),
+                          shot(5, "flat.png")};
+        const ViewRun found = view(events, {}, false), baked = view(events, "--baked '" + file + "'", false);
+        check_clean(found);
+        check_clean(baked);
+        for (const char* name : {"a.png", "aabb.png", "flat.png"}) {
+            CAPTURE(name);
+            const json &a = picture(found, name), &b = picture(baked, name);
+            REQUIRE(hidden(a, "hidden") > 20);
+            for (const char* count : {"hidden", "triangles_hidden", "occluders"})
+                CHECK(hidden(a, count) == hidden(b, count));
+            CHECK(number(a, "visible") == number(b, "visible"));
+        }
+        CHECK(picture(found, "flat.png")["occlusion"]["hidden"] == picture(found, "a.png")["occlusion"]["hidden"]);
+        CHECK(number(picture(found, "flat.png"), "colliding_pairs") == 0);
+    }
+    TEST_CASE("a file that was baked of another scene, has nothing to show, or is missing is refused by name") {
+        const std::string file = scratch().file("other.crofton"), bare = scratch().file("bare.crofton");
+        REQUIRE(run_cli("bake town --instances 400 --seed 2 -o " + file).status == 0);
+        REQUIRE(run_cli("bake town --instances 400 --no-occluders -o " + bare).status == 0);
+        for (const auto& [path, why] : {std::pair{file, "baked of another scene"},
+                                        {bare, "neither occluders"},
+                                        {scratch().file("none.crofton"), "none.crofton"}}) {
+            const ViewRun run = view({{{"frame", 0}, {"quit", true}}}, "--baked '" + path + "'", false);
+            CHECK(run.run.status == 2);
+            CAPTURE(run.run.err);
+            CHECK(run.run.err.find(why) != std::string::npos);
+            CHECK(run.run.err.find(".crofton") != std::string::npos);
+        }
     }
     TEST_CASE("compared, A without what is hidden and B with it have their own counts and times") {
         const ViewRun run = view({set(0, {{"panels", false}, {"paused", true}}), shot(1, "all.png"),

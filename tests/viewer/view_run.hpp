@@ -67,6 +67,13 @@ inline const json& picture(const ViewRun& result, const std::string& name) {
     return result.document;
 }
 
+// Instances of a picture that have a tint.
+inline std::uint64_t tinted(const json& picture, const char* name) {
+    for (const json& tint : picture["tints"])
+        if (tint["name"] == name) return tint["instances"].get<std::uint64_t>();
+    return 0;
+}
+
 }  // namespace crofton::test
 
 #define CROFTON_REQUIRE_DISPLAY()                      \

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include <crofton/bake/occluder_sections.hpp>
 #include "tree_section.hpp"
 
 namespace crofton::bake {
@@ -68,7 +69,8 @@ void add_arrays(const Arrays& arrays, Writer& writer) {
 
 }  // namespace
 
-Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, boxtree::Orientation tree) {
+Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, boxtree::Orientation tree,
+                               const BakedOccluders* occluders) {
     return detail::recover([&]() -> Result<Vector<std::byte>> {
         Arrays arrays;
         for (scene::MeshId mesh = 0; mesh < scene.mesh_count(); ++mesh) append_mesh(arrays, scene, mesh);
@@ -86,6 +88,9 @@ Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor, bo
         writer.add("nodes", std::span<const NodeRecord>(nodes));
         if (const auto added = add_tree(scene.world_boxes(), scene.layer_masks(), writer, executor, tree); !added)
             return tl::unexpected(added.error());
+        if (occluders != nullptr)
+            if (const auto added = add_occluders(*occluders, scene.node_count(), writer); !added)
+                return tl::unexpected(added.error());
         return writer.finish();
     });
 }

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include <crofton/bake/occluder_sections.hpp>
 #include "tree_section.hpp"
 
 namespace crofton::bake {
@@ -102,6 +103,9 @@ Result<BakedScene> BakedScene::from_memory(std::span<const std::byte> file, Exec
         if (!tree) return tl::unexpected(tree.error());
         baked.tree_.emplace(std::move(*tree));
         if (const auto good = baked.check_instances(); !good) return tl::unexpected(good.error());
+        auto occluders = read_occluders(*reader, baked.nodes_.size());
+        if (!occluders) return tl::unexpected(occluders.error());
+        baked.occluders_ = std::move(*occluders);
         return baked;
     });
 }

@@ -23,6 +23,11 @@ std::string name_of(const Section& section) {
     return "section '" + std::string(section.name, end) + "'";
 }
 
+bool is_named(const Section& section, std::string_view name) {
+    const char* end = std::find(section.name, section.name + sizeof section.name, '\0');
+    return std::string_view(section.name, static_cast<std::size_t>(end - section.name)) == name;
+}
+
 bool all_zero(std::span<const std::byte> bytes) {
     return std::all_of(bytes.begin(), bytes.end(), [](std::byte byte) { return byte == std::byte{0}; });
 }
@@ -124,10 +129,13 @@ Result<Reader> Reader::open(std::span<const std::byte> file, Executor& executor)
     });
 }
 
+bool Reader::has(std::string_view name) const {
+    return std::any_of(sections_.begin(), sections_.end(), [&](const Section& s) { return is_named(s, name); });
+}
+
 Result<std::span<const std::byte>> Reader::find(std::string_view name, std::size_t element_size) const {
     for (const Section& section : sections_) {
-        const char* end = std::find(section.name, section.name + sizeof section.name, '\0');
-        if (std::string_view(section.name, static_cast<std::size_t>(end - section.name)) != name) continue;
+        if (!is_named(section, name)) continue;
         if (section.element_size != element_size) return damaged(name_of(section) + " has elements of another size");
         return file_.subspan(section.offset, section.size);
     }

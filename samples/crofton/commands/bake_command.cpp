@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/scene_occluders.hpp"
 #include "read_options.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
@@ -28,13 +29,22 @@ struct BakeOptions {
     std::uint32_t instances = 0;
     std::uint64_t seed = 1;
     unsigned threads = 1;
+    bool no_occluders = false;
     ReadOptions read;
 };
 
 // Time on the wall, and on all of the process's cores: on a busy machine only the second one says much.
 struct Times {
     double milliseconds, cpu_milliseconds;
+    double occluder_milliseconds = 0.0;  // to find them, which is not in the others
 };
+
+std::uint64_t occluder_count(const bake::BakedScene& baked) {
+    std::uint64_t count = 0;
+    if (baked.occluders())
+        for (const auto& kind : baked.occluders()->kinds) count += kind.size();
+    return count;
+}
 
 int show(const BakeOptions& options, const char* verb, const Times& times, const std::string& path,
          const bake::BakedScene& baked, std::uintmax_t bytes) {
@@ -47,10 +57,12 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
         std::printf(
             "%s: %s in %.1f ms (%.1f ms of CPU); %zu instances of %zu meshes (%llu triangles, %llu triangulated "
             "polygons), %zu nodes, "
-            "a tree of height %u, %.1f MB\n",
+            "a tree of height %u, %llu occluders on %zu nodes, %.1f MB\n",
             path.c_str(), verb, times.milliseconds, times.cpu_milliseconds, baked.instances().size(),
             baked.mesh_count(), static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(polygons),
-            baked.nodes().size(), baked.tree().structure().height(), static_cast<double>(bytes) / 1e6);
+            baked.nodes().size(), baked.tree().structure().height(),
+            static_cast<unsigned long long>(occluder_count(baked)),
+            baked.occluders() ? baked.occluders()->nodes.size() : 0, static_cast<double>(bytes) / 1e6);
     if (options.json.empty()) return kSuccess;
     const auto written = write_json(options.json, {{"file", path},
                                                    {"version", bake::kVersion},
@@ -62,6 +74,8 @@ int show(const BakeOptions& options, const char* verb, const Times& times, const
                                                    {"triangles", triangles},
                                                    {"polygons", polygons},
                                                    {"nodes", baked.nodes().size()},
+                                                   {"occluders", occluder_count(baked)},
+                                                   {"occluder_milliseconds", times.occluder_milliseconds},
                                                    {"tree_height", baked.tree().structure().height()}});
     return written ? kSuccess : report_error("", written.error());
 }
@@ -99,9 +113,14 @@ class BakeRun {
         if (!source) return report_error("", source.error());
         print_warnings(source->warnings);
         source->scene.update(executor());
+        std::optional<bake::BakedOccluders> occluders;
+        const Stopwatch finding;
+        if (!options_.no_occluders)
+            occluders = pipeline::to_baked(pipeline::find_scene_occluders(source->scene, executor()));
+        const double finding_ms = finding.milliseconds();
         const Stopwatch watch;
-        const auto file = bake::bake(source->scene, executor(), *tree);
-        const Times times{watch.milliseconds(), watch.cpu_milliseconds()};
+        const auto file = bake::bake(source->scene, executor(), *tree, occluders ? &*occluders : nullptr);
+        const Times times{watch.milliseconds(), watch.cpu_milliseconds(), finding_ms};
         if (!file) return report_error(options_.scene, file.error());
         const std::string_view bytes(reinterpret_cast<const char*>(file->data()), file->size());
         if (const auto written = write_file(options_.output, bytes); !written) return report_error("", written.error());
@@ -120,7 +139,8 @@ class BakeRun {
 
 void add_bake_command(CommandLine& line) {
     auto options = std::make_shared<BakeOptions>();
-    Command command = line.command("bake", "Write a scene's boxes, tree and triangulations to a .crofton file");
+    Command command =
+        line.command("bake", "Write a scene's boxes, tree, triangulations and occluders to a .crofton file");
     command
         .option("scene", options->scene,
                 "town, room, or a .glb, .gltf, .obj or .wad file to bake with -o; without -o a .crofton file to check")
@@ -130,6 +150,8 @@ void add_bake_command(CommandLine& line) {
     command.option("--instances", options->instances, "Size of the town, roughly");
     command.option("--seed", options->seed, "Of the town").show_default();
     command.option("--tree", options->tree, "The tree's inner bounds: aligned, oriented or automatic").show_default();
+    command.flag("--no-occluders", options->no_occluders,
+                 "Do not look for what hides other things; a second or more for each mesh of 100,000 triangles");
     command.option("--threads", options->threads, "0: one per core").whole_between(0, 256).show_default();
     command.option("--json", options->json, "Write the figures as JSON to this file; - for standard output")
         .writable_file();
@@ -138,6 +160,7 @@ void add_bake_command(CommandLine& line) {
         "Examples:\n"
         "  crofton bake level.wad --map MAP01 -o map01.crofton\n"
         "  crofton bake map01.crofton\n"
+        "  crofton frames level.wad --map MAP01 --occlude --baked map01.crofton\n"
         "  crofton bake town --instances 1000000 -o town.crofton && crofton bake town.crofton --threads 0");
     add_read_options(command, options->read);
     command.action([options] { return BakeRun(*options).run(); });

@@ -17,6 +17,7 @@
 #include "html_report.hpp"
 #include "interrupt.hpp"
 #include "json/json.hpp"
+#include "pipeline/baked_parts.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
 #include "pipeline/pedestrian_path.hpp"
@@ -44,6 +45,7 @@ struct FramesOptions {
     bool occlude = false;
     std::string occlusion_size = "400x225";
     std::uint32_t occluders = 128;
+    std::string baked;  // a file with the scene's occluders; empty: they are found
     FramesOutput output;
     std::string report;  // a file of HTML; empty: not wanted
     std::string trace;   // a file of zones and counters; empty: not wanted
@@ -154,10 +156,23 @@ class FramesRun {
         }
         pipeline_options_.tree = *tree;
         if (trace_) pipeline_options_.trace = trace_->hooks();
-        auto frames = pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor());
+        const auto occluders = baked_occluders();
+        if (!occluders) return tl::unexpected(occluders.error());
+        auto frames =
+            pipeline::Pipeline::create(source_->scene, source_->movers, pipeline_options_, executor(), *occluders);
         if (!frames) return tl::unexpected(frames.error());
         pipeline_.emplace(std::move(*frames));
         return prepare_drawing(*size);
+    }
+
+    Result<std::shared_ptr<const pipeline::SceneOccluders>> baked_occluders() {
+        std::shared_ptr<const pipeline::SceneOccluders> none;
+        if (options_.baked.empty()) return none;
+        const auto parts = pipeline::load_baked_parts(options_.baked, source_->scene, options_.read.limits);
+        if (!parts) return tl::unexpected(parts.error());
+        if (!parts->occluders)
+            return fail(ErrorCode::empty, kNoItem, options_.baked + ": has no occluders: 'crofton bake' writes them");
+        return parts->occluders;
     }
 
     Result<void> prepare_drawing(const ImageSize& size) {
@@ -284,7 +299,8 @@ constexpr const char* kFramesExamples =
     "(hits) and draw.\n\n"
     "With --occlude: two columns each, of what is in the view and of what nothing hides as well. Instances;\n"
     "triangles submitted; milliseconds to find what to draw and to draw it, and what occlusion takes of that.\n"
-    "Occluders are found in the scene's meshes. --verify then also draws who owns which pixel: nothing that\n"
+    "Occluders are found in the scene's meshes, or come from --baked. --verify then also draws who owns which pixel: "
+    "nothing that\n"
     "does may be hidden, and both pictures must be the same.\n\n"
     "Exit status: 0 done, 1 --verify found a mismatch, 2 bad usage or input, or nothing could be written,\n"
     "130 interrupted: what was done by then is written.\n\n"
@@ -319,6 +335,8 @@ void add_frames_command(CommandLine& line) {
     command.option("--occluders", options->occluders, "How many occluders to draw, at most")
         .whole_between(0, 1000000)
         .show_default()
+        .needs(occlude);
+    command.option("--baked", options->baked, "Take the occluders from this .crofton file, by 'crofton bake'")
         .needs(occlude);
     command
         .option("--occlusion-size", options->occlusion_size, "Pixels of the occlusion buffer, WIDTHxHEIGHT, 8 to 4096")

@@ -59,6 +59,7 @@ constexpr const char* kViewExamples =
     "  crofton view                                        the town\n"
     "  crofton view level.wad --map MAP07\n"
     "  crofton view scene.glb --camera street --bounds aabb\n"
+    "  crofton pvs town --out sets.crofton && crofton view town --baked sets.crofton\n"
     "  crofton view --no-window --after 10 --screenshot town.png --json -\n"
     "  xvfb-run -a crofton view --script tour.json         no display: a virtual one\n";
 
@@ -82,6 +83,8 @@ void add_view_command(CommandLine& line) {
         .show_default();
     command.option("--cull", arguments->cull, "none, flat or tree").show_default();
     command.flag("--occlude", options.settings.method.occlude, "leave out what is hidden behind other things");
+    command.option("--baked", options.scene.baked,
+                   "what was baked of the scene: occluders by 'crofton bake', visible sets by 'crofton pvs'");
     command.option("--camera", options.camera, "replay a path: orbit, street, random or a JSON file");
     command.option("--after", options.frames, "quit after so many frames");
     command.option("--screenshot", options.screenshot, "the last frame as PNG").writable_file();

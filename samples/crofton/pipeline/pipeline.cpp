@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "object_counts.hpp"
-#include "scene_occluders.hpp"
 
 namespace crofton::pipeline {
 namespace {
@@ -54,7 +53,8 @@ struct Pipeline::State {
     std::vector<ObjectHandle> objects;    // by instance
     std::vector<ObjectHandle> colliders;  // by instance where it collides by another box than it is seen by; else empty
     WorldStatistics tests;                // of the last update in which anything moved: its pairs are still those
-    std::vector<ObjectHandle> occluding;  // by node; null: hides nothing
+    std::shared_ptr<const SceneOccluders> occluders;
+    std::vector<ObjectHandle> occluding;  // by node; null: hides nothing. Empty until occlusion is first asked for
     VisibleObjects visible, not_hidden;
     cull::VisibleSet visible_in_list;  // CullMode::flat
     std::vector<cull::Verdict> verdicts;
@@ -62,13 +62,14 @@ struct Pipeline::State {
     ObjectCounter counter;
 
     State(const scene::Scene& the_scene, std::vector<scene::InstanceId> the_movers, const PipelineOptions& the_options,
-          Executor& the_executor)
+          Executor& the_executor, std::shared_ptr<const SceneOccluders> the_occluders)
         : scene(the_scene),
           movers(std::move(the_movers)),
           options(the_options),
           executor(the_executor),
           bounds(the_scene, the_options.bounds),
-          world({.pairs = the_options.collide, .tree = the_options.tree, .trace = the_options.trace}),
+          world({.tree = the_options.tree, .trace = the_options.trace}),
+          occluders(std::move(the_occluders)),
           verdicts(the_scene.instance_count(), cull::Verdict::outside) {
         std::sort(movers.begin(), movers.end());
     }
@@ -81,6 +82,7 @@ struct Pipeline::State {
     [[nodiscard]] std::uint32_t collider_layer(scene::InstanceId instance) const {
         return !collides_apart() && std::binary_search(movers.begin(), movers.end(), instance) ? kColliderLayer : 0;
     }
+    [[nodiscard]] std::uint32_t collides_with(std::uint32_t layer) const { return options.collide ? layer : 0; }
     [[nodiscard]] std::uint32_t layers_of(scene::InstanceId instance) const {
         return (scene.layer_masks()[instance] != 0 ? kSeenLayer : 0) | collider_layer(instance);
     }
@@ -92,7 +94,7 @@ struct Pipeline::State {
             const auto object = world.add({.bound = removed ? Obb{} : bounds.boxes()[i],
                                            .user = i,
                                            .layers = removed ? 0 : layers_of(i),
-                                           .collides_with = collider_layer(i)});
+                                           .collides_with = collides_with(collider_layer(i))});
             if (!object) return fail(object.error().code, i, object.error().message);
             objects.push_back(*object);
         }
@@ -107,7 +109,7 @@ struct Pipeline::State {
             const auto object = world.add({.bound = scene.world_boxes()[mover],
                                            .user = mover,
                                            .layers = kColliderLayer,
-                                           .collides_with = kColliderLayer});
+                                           .collides_with = collides_with(kColliderLayer)});
             if (!object) return fail(object.error().code, mover, object.error().message);
             colliders[mover] = *object;
         }
@@ -116,12 +118,12 @@ struct Pipeline::State {
 
     // Objects that hide others and are in no answer: instances are seen by their bounds, nodes hide as a whole.
     Result<void> add_occluders() {
-        if (!options.occlusion) return {};
-        const SceneOccluders occluders = find_scene_occluders(scene, executor);
-        std::vector<MeshHandle> meshes(occluders.kinds.size());
+        if (!options.occlusion || !occluding.empty()) return {};
+        if (!occluders) occluders = std::make_shared<const SceneOccluders>(find_scene_occluders(scene, executor));
+        std::vector<MeshHandle> meshes(occluders->kinds.size());
         occluding.resize(scene.node_count());
-        for (const SceneOccluders::Object& object : occluders.objects) {
-            const SceneOccluders::Kind& kind = occluders.kinds[object.kind];
+        for (const SceneOccluders::Object& object : occluders->objects) {
+            const SceneOccluders::Kind& kind = occluders->kinds[object.kind];
             MeshHandle& mesh = meshes[object.kind];
             if (mesh.is_null()) {
                 const auto added = world.add_mesh(
@@ -140,6 +142,18 @@ struct Pipeline::State {
             occluding[object.node] = *added;
         }
         return {};
+    }
+
+    // Movers are in pairs only while collisions are of interest.
+    Result<void> set_collide() {
+        for (const scene::InstanceId mover : movers) {
+            const ObjectHandle object = colliders.empty() ? objects[mover] : colliders[mover];
+            if (object.is_null() || scene.is_removed(mover)) continue;
+            if (auto set = world.set_collides_with(object, collides_with(kColliderLayer)); !set) return set;
+        }
+        auto updated = update_world();
+        tests = world.statistics();
+        return updated;
     }
 
     [[nodiscard]] ObjectHandle occluder_of(scene::InstanceId instance) const {
@@ -252,14 +266,29 @@ Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 Result<Pipeline> Pipeline::create(const scene::Scene& scene, std::vector<scene::InstanceId> movers,
-                                  const PipelineOptions& options, Executor& executor) {
+                                  const PipelineOptions& options, Executor& executor,
+                                  std::shared_ptr<const SceneOccluders> occluders) {
     for (const scene::InstanceId mover : movers)
         if (mover >= scene.instance_count())
             return fail(ErrorCode::out_of_range, mover, "pipeline: a mover is not an instance");
-    auto state = std::make_unique<State>(scene, std::move(movers), options, executor);
+    auto state = std::make_unique<State>(scene, std::move(movers), options, executor, std::move(occluders));
     for (const auto step : {&State::add_objects, &State::add_colliders, &State::add_occluders, &State::update_world})
         if (auto done = (*state.*step)(); !done) return tl::unexpected(done.error());
     return Pipeline(std::move(state));
+}
+
+Result<void> Pipeline::set_options(const PipelineOptions& options) {
+    State& s = *state_;
+    const PipelineOptions old = s.options;
+    s.options = options;
+    s.options.bounds = old.bounds, s.options.tree = old.tree, s.options.trace = old.trace;
+    auto done = s.add_occluders();
+    if (done && options.collide != old.collide) done = s.set_collide();
+    return done ? s.update_world() : done;
+}
+
+std::shared_ptr<const SceneOccluders> Pipeline::occluders() const {
+    return state_->occluders;
 }
 
 Result<FrameStatistics> Pipeline::run(const Camera& camera) {

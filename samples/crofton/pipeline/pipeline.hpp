@@ -12,6 +12,7 @@
 
 #include "bounds.hpp"
 #include "frame_statistics.hpp"
+#include "scene_occluders.hpp"
 
 namespace crofton::pipeline {
 
@@ -27,7 +28,8 @@ struct PipelineOptions {
     bool count_triangles = true;  // triangles_passed and improper, which cost more than the culling itself
     cull::CullMode mode = cull::CullMode::exact;
     bool collide = true;
-    // Also asks what is not hidden, with occluders found in the scene's meshes: FrameStatistics::occlusion.
+    // Also asks what is not hidden: FrameStatistics::occlusion. Occluders are found in the scene's meshes when this is
+    // first set, and kept.
     std::optional<OcclusionOptions> occlusion = {};
     boxtree::Orientation tree = boxtree::Orientation::aligned;
     TraceHooks trace = {};
@@ -40,13 +42,21 @@ inline constexpr std::uint32_t kSeenLayer = 1;
 // it.
 class Pipeline {
   public:
-    // `movers`: the instances whose collisions are of interest. The scene has been updated.
+    // `movers`: the instances whose collisions are of interest. The scene has been updated. `occluders`: known ones of
+    // this scene, as find_scene_occluders() gives them; without, they are found.
     // Errors: a bound that the World refuses, named by its instance.
     [[nodiscard]] static Result<Pipeline> create(const scene::Scene& scene, std::vector<scene::InstanceId> movers,
-                                                 const PipelineOptions& options, Executor& executor);
+                                                 const PipelineOptions& options, Executor& executor,
+                                                 std::shared_ptr<const SceneOccluders> occluders = nullptr);
     ~Pipeline();
     Pipeline(Pipeline&&) noexcept;
     Pipeline& operator=(Pipeline&&) noexcept;
+
+    // Takes over all options but `bounds`, `tree` and `trace`, which stay as they were created. The World stays, and
+    // the occluders that it has. Errors: as create().
+    [[nodiscard]] Result<void> set_options(const PipelineOptions& options);
+    // That it has, for another pipeline of the same scene; nullptr before occlusion is first asked for.
+    [[nodiscard]] std::shared_ptr<const SceneOccluders> occluders() const;
 
     // Follows scene.moved_instances(), then answers for the camera. Fills all of FrameStatistics but index, update_us
     // of the scene itself, triangles_clipped, gpu and draw_us. Errors: an invalid camera.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What hides other objects in a scene that does not say so itself.
 #pragma once
+#include <crofton/bake/baked_scene.hpp>
 #include <crofton/core/executor.hpp>
 #include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
@@ -26,5 +27,9 @@ struct SceneOccluders {
 // Looks at each set of meshes once, however many nodes have it. Faces count from their front alone, which is right
 // however they are drawn. Meshes in which no occluder is found hide nothing.
 [[nodiscard]] SceneOccluders find_scene_occluders(const scene::Scene& scene, Executor& executor);
+
+// The same from what was baked of this scene, without finding anything.
+[[nodiscard]] SceneOccluders scene_occluders_from(const scene::Scene& scene, const bake::BakedOccluders& baked);
+[[nodiscard]] bake::BakedOccluders to_baked(const SceneOccluders& occluders);
 
 }  // namespace crofton::pipeline

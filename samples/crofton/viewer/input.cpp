@@ -51,10 +51,11 @@ void Session::handle(const Event& event) {
 }
 
 // The switches that a key flips.
-constexpr std::array<std::pair<const char*, bool Settings::*>, 13> kFlips{{{"F", &Settings::freeze},
+constexpr std::array<std::pair<const char*, bool Settings::*>, 14> kFlips{{{"F", &Settings::freeze},
                                                                            {"I", &Settings::inset},
                                                                            {"O", &Settings::outside},
                                                                            {"B", &Settings::bounds},
+                                                                           {"U", &Settings::hulls},
                                                                            {"J", &Settings::depth_buffer},
                                                                            {"X", &Settings::wireframe},
                                                                            {"K", &Settings::collisions},
@@ -184,9 +185,7 @@ void Session::perform(const Action& action) {
 void Session::click(const glm::dvec2& pixel) {
     const glm::dvec2 size(wanted_size_.width, wanted_size_.height);
     const glm::dvec2 place(2.0 * (pixel.x + 0.5) / size.x - 1.0, 1.0 - 2.0 * (pixel.y + 0.5) / size.y);
-    const auto meshes = loaded_->mesh_world();
-    if (!meshes) return report(meshes.error());
-    pick_ = pick((*meshes)->world(), drawn_ids_, controller_.camera, place);
+    pick_ = pick(loaded_->pipeline().world(), loaded_->bodies(), drawn_ids_, controller_.camera, place);
     selected_ = pick_ ? pick_->instance : scene::kNone;
 }
 

@@ -67,6 +67,9 @@ void InstanceColoring::classify(const LoadedScene& loaded, const pipeline::Frame
         case Coloring::occlusion:
             classify_occlusion(loaded, frame);
             break;
+        case Coloring::visible_set:
+            classify_visible_set(loaded, frame);
+            break;
         case Coloring::collision:
             count("calm", palette::kCalm);
             count("colliding", palette::kColliding);
@@ -115,6 +118,22 @@ void InstanceColoring::classify_occlusion(const LoadedScene& loaded, const pipel
     if (loaded.occlusion() == nullptr) return;
     tint_nodes(loaded.scene(), frame.visible_ids, hiding_nodes(loaded.pipeline()), 1);
     for (const scene::InstanceId i : loaded.occlusion()->hidden()) tint_of_[i] = 2;
+}
+
+// By the set of the eye's cell; what has none is grey.
+void InstanceColoring::classify_visible_set(const LoadedScene& loaded, const pipeline::FrameStatistics& frame) {
+    count("seen from the cell", palette::kInside);
+    count("unseen, not proved hidden", palette::kUnseen);
+    count("proved hidden", palette::kHidden);
+    count("in no set", palette::kCalm);
+    const pvs::Pvs* pvs = loaded.pvs();
+    const std::uint32_t cell = pvs != nullptr ? pvs->find_cell(frame.camera.position) : pvs::kNoCell;
+    for (const scene::InstanceId i : frame.visible_ids) {
+        tint_of_[i] = 3;
+        if (cell == pvs::kNoCell || !pvs->is_baked(i)) continue;
+        const pvs::PairState state = pvs->state(cell, i);
+        tint_of_[i] = state == pvs::PairState::seen ? 0 : state == pvs::PairState::unseen ? 1 : 2;
+    }
 }
 
 void InstanceColoring::paint(const pipeline::DrawList& list, bool wireframe) {

@@ -21,6 +21,7 @@ inline constexpr glm::vec3 kColliding{0.90f, 0.02f, 0.02f};
 inline constexpr glm::vec3 kCalm{0.32f, 0.34f, 0.36f};
 inline constexpr glm::vec3 kHidden{0.75f, 0.02f, 0.60f};
 inline constexpr glm::vec3 kHides{0.85f, 0.42f, 0.01f};
+inline constexpr glm::vec3 kUnseen{0.85f, 0.42f, 0.01f};
 inline constexpr glm::vec3 kHidesSelected{0.90f, 0.02f, 0.02f};
 inline constexpr glm::vec3 kSelected{0.05f, 0.45f, 0.95f};
 }  // namespace palette
@@ -52,6 +53,7 @@ class InstanceColoring {
     // Those of the instances that are on one of the nodes. Returns how many.
     std::uint64_t tint_nodes(const scene::Scene& scene, std::span<const scene::InstanceId> instances,
                              std::span<const scene::NodeId> nodes, std::uint8_t tint);
+    void classify_visible_set(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
     void classify_occlusion(const LoadedScene& loaded, const pipeline::FrameStatistics& frame);
 
     std::vector<std::uint8_t> tint_of_;  // by instance: index into counts_, kPlain for the vertices' own colours

@@ -22,6 +22,7 @@ constexpr KeyHelp kSeeing[] = {
     {"C", "C", "next colouring; what it means is said beside the statistics"},
     {"B", "B", "bounds of what is visible, as boxes"},
     {"O", "O", "culled, as boxes: red outside, violet hidden"},
+    {"U", "U", "convex hulls of what is visible; of movers also contact points, normals, manifolds"},
     {"T", "T", "bounds of the tree's nodes, level by level"},
     {"J", "J", "the occluders' depth buffer, as a picture"},
     {"X", "X", "triangles as wires"},

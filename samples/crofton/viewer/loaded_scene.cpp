@@ -52,7 +52,7 @@ bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b
 }  // namespace
 
 Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& request, const Method& method,
-                                                       const Settings& settings) {
+                                                       const Settings& settings, const LoadedScene* like) {
     const auto criterion = pipeline::criterion_for(method.bounds, typical_camera());
     if (!criterion) return tl::unexpected(criterion.error());
     assets::LoadOptions options;
@@ -76,9 +76,25 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
         loaded->triangle_count_ += scene.mesh(scene.mesh_of(i)).triangle_count();
     }
     loaded->focus_ = pipeline::focus_of(scene);
+    loaded->bodies_.emplace(scene);
+    if (auto taken = loaded->take_baked(request, method, like); !taken) return tl::unexpected(std::move(taken.error()));
     if (auto configured = loaded->configure(method, settings); !configured)
         return tl::unexpected(std::move(configured.error()));
     return loaded;
+}
+
+Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& method, const LoadedScene* like) {
+    const bool same = like != nullptr && like->method_.triangulation == method.triangulation;
+    if (same) {
+        baked_ = like->baked_;
+        if (auto found = like->pipeline_->occluders()) baked_.occluders = std::move(found);
+    } else if (!request.baked.empty()) {
+        auto parts = pipeline::load_baked_parts(request.baked, source_.scene, request.limits);
+        // Occluders lie within the triangles as they were loaded; cut in another way they may be others.
+        if (!parts && method.triangulation == Triangulation::loaded) return tl::unexpected(std::move(parts.error()));
+        if (parts) baked_ = std::move(*parts);
+    }
+    return {};
 }
 
 bool LoadedScene::needs_reload(const Method& method) const {
@@ -89,13 +105,15 @@ bool LoadedScene::needs_reload(const Method& method) const {
 
 Result<void> LoadedScene::configure(const Method& method, const Settings& settings) {
     const pipeline::PipelineOptions wanted = options_of(method, settings);
-    const bool shows_contacts = settings.coloring == Coloring::collision && settings.collisions;
-    mesh_world_is_old_ = mesh_world_is_old_ || shows_contacts != shows_contacts_;
-    shows_contacts_ = shows_contacts;
     if (pipeline_ && same(wanted, options_)) return {};
-    auto made = pipeline::Pipeline::create(source_.scene, source_.movers, wanted, serial_executor());
-    if (!made) return tl::unexpected(std::move(made.error()));
-    pipeline_.emplace(std::move(*made));
+    if (pipeline_ && wanted.bounds == options_.bounds) {
+        if (auto set = pipeline_->set_options(wanted); !set) return set;
+    } else {
+        const auto occluders = pipeline_ && pipeline_->occluders() ? pipeline_->occluders() : baked_.occluders;
+        auto made = pipeline::Pipeline::create(source_.scene, source_.movers, wanted, serial_executor(), occluders);
+        if (!made) return tl::unexpected(std::move(made.error()));
+        pipeline_.emplace(std::move(*made));
+    }
     method_ = method;
     options_ = wanted;
     return {};
@@ -105,22 +123,8 @@ void LoadedScene::animate(std::uint32_t frame) {
     const auto start = std::chrono::steady_clock::now();
     source_.animate(frame);
     source_.scene.update();
-    mesh_world_is_old_ = true;
+    scene_frame_ = frame;
     update_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-Result<MeshWorld*> LoadedScene::mesh_world() {
-    if (!mesh_world_) {
-        auto made = MeshWorld::create(source_.scene, source_.movers);
-        if (!made) return tl::unexpected(std::move(made.error()));
-        mesh_world_.emplace(std::move(*made));
-        mesh_world_is_old_ = true;
-    }
-    if (mesh_world_is_old_)
-        if (auto updated = mesh_world_->update(shows_contacts_); !updated)
-            return tl::unexpected(std::move(updated.error()));
-    mesh_world_is_old_ = false;
-    return &*mesh_world_;
 }
 
 Result<pipeline::FrameStatistics> LoadedScene::run(const Camera& camera) {

@@ -6,8 +6,9 @@
 #include <string>
 
 #include "assets/scene_source.hpp"
-#include "mesh_world.hpp"
+#include "instance_bodies.hpp"
 #include "occlusion.hpp"
+#include "pipeline/baked_parts.hpp"
 #include "pipeline/pipeline.hpp"
 #include "settings.hpp"
 
@@ -16,6 +17,7 @@ namespace crofton::viewer {
 struct SceneRequest {
     std::string source = "town";
     std::string map;
+    std::string baked = {};  // a .crofton file with occluders or visible sets of the scene
     std::uint64_t seed = 1;
     std::uint32_t instances = 0;
     assets::ReadLimits limits = {};
@@ -24,24 +26,29 @@ struct SceneRequest {
 
 class LoadedScene {
   public:
-    // Loads the scene, fits its boxes and cuts its triangles as the method asks. Errors: as assets::load_scene.
+    // Loads the scene, fits its boxes and cuts its triangles as the method asks. `like`: the same scene, loaded before;
+    // where its triangles are the same its occluders are taken. Errors: as assets::load_scene and
+    // pipeline::load_baked_parts.
     [[nodiscard]] static Result<std::unique_ptr<LoadedScene>> load(const SceneRequest& request, const Method& method,
-                                                                   const Settings& settings);
+                                                                   const Settings& settings,
+                                                                   const LoadedScene* like = nullptr);
     [[nodiscard]] const Method& method() const { return method_; }
     // True where `method` needs other boxes or triangles than the scene was loaded with: then load() anew.
     [[nodiscard]] bool needs_reload(const Method& method) const;
-    // Takes over switches that need no reload; rebuilds the tree only where one changed.
+    // Takes over switches that need no reload. The World is made anew for another kind of bound alone; occluders are
+    // found once.
     [[nodiscard]] Result<void> configure(const Method& method, const Settings& settings);
 
     // Moves what moves to the given time and follows it.
     void animate(std::uint32_t frame);
+    [[nodiscard]] std::uint32_t scene_frame() const { return scene_frame_; }
     [[nodiscard]] Result<pipeline::FrameStatistics> run(const Camera& camera);
 
     // What run() found hidden; nullptr where the method does not ask.
     [[nodiscard]] const Occlusion* occlusion() const { return method_.occlude ? &occlusion_ : nullptr; }
-    // The scene's meshes as they stand now, with contacts between movers where the settings show them. Made when first
-    // asked for: most visits need it late or never. Errors: as MeshWorld::create.
-    [[nodiscard]] Result<MeshWorld*> mesh_world();
+    // Potentially visible sets that were baked of the scene; nullptr: none.
+    [[nodiscard]] const pvs::Pvs* pvs() const { return baked_.pvs.get(); }
+    [[nodiscard]] InstanceBodies& bodies() { return *bodies_; }
 
     [[nodiscard]] const assets::SceneSource& source() const { return source_; }
     [[nodiscard]] const scene::Scene& scene() const { return source_.scene; }
@@ -53,17 +60,19 @@ class LoadedScene {
 
   private:
     explicit LoadedScene(assets::SceneSource source) : source_(std::move(source)) {}
+    [[nodiscard]] Result<void> take_baked(const SceneRequest& request, const Method& method, const LoadedScene* like);
 
     assets::SceneSource source_;
     std::optional<pipeline::Pipeline> pipeline_;
-    std::optional<MeshWorld> mesh_world_;
-    bool mesh_world_is_old_ = false, shows_contacts_ = false;
+    std::optional<InstanceBodies> bodies_;
+    pipeline::BakedParts baked_;
     Occlusion occlusion_;
     Method method_;
     pipeline::PipelineOptions options_;
     Aabb extent_, focus_;
     std::uint64_t triangle_count_ = 0;
     double update_us_ = 0.0;
+    std::uint32_t scene_frame_ = 0;
 };
 
 }  // namespace crofton::viewer

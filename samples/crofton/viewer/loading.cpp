@@ -104,12 +104,13 @@ Result<void> Session::recover() {
 }
 
 Result<void> Session::load(const SceneRequest& request) {
-    auto loaded = LoadedScene::load(request, settings_.method, settings_);
-    if (!loaded) return tl::unexpected(std::move(loaded.error()));
     const bool same_scene = loaded_ && request.source == request_.source && request.map == request_.map;
+    auto loaded = LoadedScene::load(request, settings_.method, settings_, same_scene ? loaded_.get() : nullptr);
+    if (!loaded) return tl::unexpected(std::move(loaded.error()));
     // What refers to the old scene goes first.
     list_.reset();
     contacts_ = {};
+    sight_.reset();
     hiders_.clear();
     drawn_ids_.clear();
     pick_.reset();
@@ -158,7 +159,7 @@ Result<void> Session::follow_settings() {
     if (!settings_.compare) {
         other_.reset();
     } else if (!other_ || other_->needs_reload(settings_.other)) {
-        auto other = LoadedScene::load(request_, settings_.other, settings_);
+        auto other = LoadedScene::load(request_, settings_.other, settings_, loaded_.get());
         if (other) {
             other_ = std::move(*other);
         } else {

@@ -43,17 +43,17 @@ std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
 }
 
 void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene& loaded,
-                   const pipeline::FrameStatistics& frame, std::span<const Contact> contacts,
+                   const pipeline::FrameStatistics& frame, const FoundContacts& contacts,
                    std::span<const Cascade> cascades, scene::InstanceId selected, bool show_frustum) {
     const scene::Scene& scene = loaded.scene();
     legend_.clear();
     draw_bounds(lines, settings, loaded, frame);
     if (settings.tree_level >= 0) draw_tree_level(lines, loaded.pipeline().world().tree(), settings.tree_level);
-    contacts_ = separations_ = 0;
+    contacts_ = separations_ = hulls_ = manifold_points_ = 0;
     if (settings.coloring == Coloring::collision && settings.collisions) {
         legend_.push_back({"boxes that meet, and their centres", kPair});
         draw_pairs(lines, loaded, frame);
-        draw_contacts(lines, scene, contacts);
+        draw_contacts(lines, scene, contacts.triangles());
         legend_.push_back({"contacts between triangles", kContact, contacts_});
         draw_separations(lines, loaded, frame);
         legend_.push_back({"near misses, separating axis", kSeparation, separations_});
@@ -147,12 +147,12 @@ void Overlay::draw_pairs(LineList& lines, const LoadedScene& loaded, const pipel
     }
 }
 
-void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, std::span<const Contact> contacts) {
-    for (const Contact& contact : contacts) contacts_ += contact.triangles.size();
-    for (const Contact& contact : contacts.first(std::min(contacts.size(), kMaxPairs))) {
-        const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[contact.first.user].half_extents));
+void Overlay::draw_contacts(LineList& lines, const scene::Scene& scene, std::span<const TriangleContacts> contacts) {
+    for (const TriangleContacts& contact : contacts) contacts_ += contact.triangles.size();
+    for (const TriangleContacts& contact : contacts.first(std::min(contacts.size(), kMaxPairs))) {
+        const double size = 0.05 * glm::length(glm::dvec3(scene.world_boxes()[contact.first].half_extents));
         for (const mesh::MeshContact& found :
-             contact.triangles.first(std::min(contact.triangles.size(), kMaxContactsOfPair))) {
+             std::span(contact.triangles).first(std::min(contact.triangles.size(), kMaxContactsOfPair))) {
             lines.segment(found.segment.begin, found.segment.end, kContact);
             lines.cross(0.5 * (found.segment.begin + found.segment.end), size, kContact);
         }

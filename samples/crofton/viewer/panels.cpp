@@ -59,6 +59,13 @@ void shape_legend() {
     ImGui::TextUnformatted("equilateral: 1");
 }
 
+void visible_set_hint(const PanelInput& input) {
+    if (input.loaded.pvs() == nullptr)
+        ImGui::TextWrapped("no visible sets: bake them with 'crofton pvs', and show them with --baked FILE");
+    else if (input.loaded.pvs()->find_cell(input.frame.camera.position) == pvs::kNoCell)
+        ImGui::TextWrapped("no cell holds the eye: everything is drawn from here");
+}
+
 void legend(const PanelInput& input) {
     for (const InstanceColoring::Count& tint : input.instance_coloring.counts()) {
         if (tint.instances == 0 && input.settings.coloring == Coloring::depth) continue;
@@ -80,6 +87,7 @@ void legend(const PanelInput& input) {
                         cascade.camera.far_distance, with_thousands(cascade.visible).c_str());
         }
     if (input.settings.coloring == Coloring::shape) shape_legend();
+    if (input.settings.coloring == Coloring::visible_set) visible_set_hint(input);
 }
 
 void heading(const PanelInput& input) {

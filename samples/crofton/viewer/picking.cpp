@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "pipeline/pipeline.hpp"
+
 namespace crofton::viewer {
 namespace {
 
@@ -23,16 +25,21 @@ Ray ray_through(const Camera& camera, const glm::dvec2& cursor) {
 
 }  // namespace
 
-std::optional<Pick> pick(const World& world, std::span<const scene::InstanceId> candidates, const Camera& camera,
-                         const glm::dvec2& cursor) {
-    Vector<ObjectHit> hits;
-    world.raycast_all(ray_through(camera, cursor), hits);
+std::optional<Pick> pick(const World& world, InstanceBodies& bodies, std::span<const scene::InstanceId> candidates,
+                         const Camera& camera, const glm::dvec2& cursor) {
+    Ray ray = ray_through(camera, cursor);
+    Vector<ObjectHit> hits;  // of bounds, the nearest first
+    world.raycast_all(ray, hits, pipeline::kSeenLayer);
+    std::optional<Pick> nearest;
     for (const ObjectHit& hit : hits) {
+        if (nearest && hit.t > nearest->distance) break;
         const auto instance = static_cast<scene::InstanceId>(hit.user);
-        if (std::binary_search(candidates.begin(), candidates.end(), instance))
-            return Pick{instance, hit.triangle, hit.t, hit.point};
+        if (!std::binary_search(candidates.begin(), candidates.end(), instance)) continue;
+        const auto found = bodies.raycast(ray, instance);
+        if (!found || (nearest && found->t >= nearest->distance)) continue;
+        nearest = Pick{instance, found->triangle, found->t, ray.origin + found->t * ray.direction};
     }
-    return std::nullopt;
+    return nearest;
 }
 
 }  // namespace crofton::viewer

@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "instance_bodies.hpp"
+
 namespace crofton::viewer {
 
 struct Pick {
@@ -15,9 +17,10 @@ struct Pick {
     glm::dvec3 at{0.0};
 };
 
-// The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. `world` has the
-// instances' meshes and their numbers as user data. Candidates ascend.
-[[nodiscard]] std::optional<Pick> pick(const World& world, std::span<const scene::InstanceId> candidates,
-                                       const Camera& camera, const glm::dvec2& cursor);
+// The nearest triangle of `candidates` on the ray through `cursor`, given in [−1, 1]² with y up. `world` has bounds of
+// the instances as its objects of pipeline::kSeenLayer, with their numbers as user data. Candidates ascend.
+[[nodiscard]] std::optional<Pick> pick(const World& world, InstanceBodies& bodies,
+                                       std::span<const scene::InstanceId> candidates, const Camera& camera,
+                                       const glm::dvec2& cursor);
 
 }  // namespace crofton::viewer

@@ -168,8 +168,10 @@ Result<void> Session::cull() {
     hiders_.clear();
     if (loaded_->occlusion() && selected_ < loaded_->scene().instance_count())
         hiders_ = nodes_that_hide(loaded_->pipeline(), selected_);
+    sight_ = settings_.coloring == Coloring::visible_set ? look_up(loaded_->pvs(), frame_) : std::nullopt;
     instance_coloring_.classify(*loaded_, frame_, settings_.coloring, selected_, hiders_);
-    return find_contacts();
+    find_contacts();
+    return {};
 }
 
 // What is hidden is drawn where its colour is asked for: from elsewhere it is seen.
@@ -182,19 +184,17 @@ void Session::list_drawn() {
     std::inplace_merge(drawn_ids_.begin(), drawn_ids_.begin() + middle, drawn_ids_.end());
 }
 
-Result<void> Session::find_contacts() {
-    contacts_ = {};
-    if (settings_.coloring != Coloring::collision || !settings_.collisions) return {};
-    const auto meshes = loaded_->mesh_world();
-    if (!meshes) return tl::unexpected(meshes.error());
-    contacts_ = (*meshes)->world().contacts();
-    return {};
+void Session::find_contacts() {
+    const bool triangles = settings_.coloring == Coloring::collision && settings_.collisions;
+    contacts_.update(loaded_->bodies(), loaded_->scene_frame(), frame_.colliding_ids, triangles, settings_.hulls);
 }
 
 Result<void> Session::submit_view(const Camera& camera, std::uint32_t picture, bool show_frustum) {
     list_->select(drawn_ids_, camera);
     lines_.clear(camera.position);
     overlay_.draw(lines_, settings_, *loaded_, frame_, contacts_, cascades_, selected_, show_frustum);
+    if (settings_.hulls) overlay_.draw_hulls(lines_, loaded_->bodies(), loaded_->scene(), frame_, contacts_.hulls());
+    if (sight_) overlay_.draw_cell(lines_, *sight_);
     return submit(camera, picture);
 }
 
@@ -297,10 +297,13 @@ Result<void> Session::save_screenshots() {
                              {"views", std::move(views)},
                              {"contacts", overlay_.contact_count()},
                              {"separations", overlay_.separation_count()},
+                             {"hulls", overlay_.hull_count()},
+                             {"manifold_points", overlay_.manifold_point_count()},
                              {"lines", lines_.vertices().size() / 2}});
         if (other_) pictures_.back()["other"] = pipeline::to_json(other_frame_, false);
         if (loaded_->occlusion()) pictures_.back()["occlusion"] = to_json(loaded_->occlusion()->counts());
         if (other_ && other_->occlusion()) pictures_.back()["other_occlusion"] = to_json(other_->occlusion()->counts());
+        if (sight_) pictures_.back()["visible_set"] = to_json(*sight_);
         if (selected_ != scene::kNone) pictures_.back()["selected"] = selected_;
         if (!hiders_.empty()) pictures_.back()["hidden_by"] = hiders_;
         pictures_.back()["messages"] = Json::array();

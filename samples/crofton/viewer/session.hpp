@@ -71,7 +71,7 @@ class Session {
     [[nodiscard]] Result<void> follow_scale();
     void advance(double seconds);
     [[nodiscard]] Result<void> cull();
-    [[nodiscard]] Result<void> find_contacts();
+    void find_contacts();
     void list_drawn();
     [[nodiscard]] Result<void> draw_other();
     [[nodiscard]] Result<void> start_drawing();
@@ -107,7 +107,8 @@ class Session {
     std::vector<scene::InstanceId> drawn_ids_;  // in this frame: what is visible, and what is hidden where it is shown
     std::vector<scene::NodeId> hiders_;         // that hide the selected instance
     DepthPicture depth_picture_;
-    std::span<const Contact> contacts_;  // between triangles, until the scene next moves
+    FoundContacts contacts_;          // of the scene as it stands
+    std::optional<CellSight> sight_;  // of the camera that culls
     std::vector<Cascade> cascades_;
     VisibleObjects cascade_visible_;
     InstanceColoring instance_coloring_;

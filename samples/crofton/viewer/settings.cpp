@@ -9,13 +9,14 @@
 namespace crofton::viewer {
 namespace {
 
-constexpr std::array<std::pair<const char*, bool Settings::*>, 14> kFlags{{{"compare", &Settings::compare},
+constexpr std::array<std::pair<const char*, bool Settings::*>, 15> kFlags{{{"compare", &Settings::compare},
                                                                            {"exact", &Settings::exact},
                                                                            {"collisions", &Settings::collisions},
                                                                            {"freeze", &Settings::freeze},
                                                                            {"inset", &Settings::inset},
                                                                            {"outside", &Settings::outside},
                                                                            {"bounds", &Settings::bounds},
+                                                                           {"hulls", &Settings::hulls},
                                                                            {"depth_buffer", &Settings::depth_buffer},
                                                                            {"wireframe", &Settings::wireframe},
                                                                            {"panels", &Settings::panels},

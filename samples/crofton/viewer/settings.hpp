@@ -11,9 +11,9 @@
 
 namespace crofton::viewer {
 
-enum class Coloring : std::uint8_t { lit, verdict, improper, occlusion, collision, depth, shape };
-inline constexpr const char* kColoringNames[] = {"lit",       "verdict", "improper", "occlusion",
-                                                 "collision", "depth",   "shape"};
+enum class Coloring : std::uint8_t { lit, verdict, improper, occlusion, visible_set, collision, depth, shape };
+inline constexpr const char* kColoringNames[] = {"lit",         "verdict",   "improper", "occlusion",
+                                                 "visible-set", "collision", "depth",    "shape"};
 
 // How polygons and the planar patches of meshes are cut into triangles; `loaded`: as the scene came.
 enum class Triangulation : std::uint8_t { loaded, ear, delaunay, minimum_weight };
@@ -48,6 +48,7 @@ struct Settings {
     bool inset = false;         // a second view, from outside
     bool outside = false;       // what is culled, as wire boxes
     bool bounds = false;        // the visible instances' bounds
+    bool hulls = false;         // their convex hulls, and where those of movers touch
     bool depth_buffer = false;  // of the occluders, as a picture
     int tree_level = -1;        // bounds of the tree's nodes at this depth; −1: none
     bool wireframe = false;

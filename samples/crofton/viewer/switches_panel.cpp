@@ -67,7 +67,8 @@ void flags(Settings& s) {
     flag("wires (X)", s.wireframe, "X", 2);
     flag("collide (K)", s.collisions, "K", 0);
     flag("compare (G)", s.compare, "G", 1);
-    flag("help (F1)", s.help, "F1", 2);
+    flag("hulls (U)", s.hulls, "U", 2);
+    flag("help (F1)", s.help, "F1", 0);
 }
 
 void sliders(const PanelInput& input) {

@@ -4,6 +4,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/core/error.hpp>
 #include <crofton/core/executor.hpp>
+#include <crofton/occlude/occluder.hpp>
 #include <crofton/scene/scene.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -71,9 +72,23 @@ struct PolygonRecord {
 };
 static_assert(sizeof(MeshRecord) == 120 && sizeof(NodeRecord) == 104 && sizeof(PolygonRecord) == 96);
 
-// The scene as of its last update(). Deterministic. Errors: what BoxTree::build refuses; more than 2^32 − 1 name bytes.
+// What hides others, found at build time (occlude::find_occluders). Nodes with the same meshes are of one kind, whose
+// occluders are in the node's frame and within what the node's instances draw together.
+struct OccludingNode {
+    scene::NodeId node = scene::kNone;
+    std::uint32_t kind = 0;
+};
+struct BakedOccluders {
+    Vector<Vector<occlude::FoundOccluder>> kinds;
+    Vector<OccludingNode> nodes;  // ascending, each once; others hide nothing
+};
+
+// The scene as of its last update(), and what hides others where it is given. Deterministic. Errors: what
+// BoxTree::build refuses; more than 2^32 − 1 name bytes; occluders that BakedScene would refuse (item: the occluder,
+// counted through all kinds).
 [[nodiscard]] Result<Vector<std::byte>> bake(const scene::Scene& scene, Executor& executor = serial_executor(),
-                                             boxtree::Orientation tree = boxtree::Orientation::aligned);
+                                             boxtree::Orientation tree = boxtree::Orientation::aligned,
+                                             const BakedOccluders* occluders = nullptr);
 
 struct MeshView {
     std::string_view name;
@@ -104,6 +119,9 @@ class BakedScene {
     [[nodiscard]] std::optional<PolygonView> polygon(scene::MeshId mesh) const;
     [[nodiscard]] std::span<const InstanceRecord> instances() const { return instances_; }
     [[nodiscard]] std::span<const NodeRecord> nodes() const { return nodes_; }
+    // None: the file was baked without, and they can be found again. Copied from the file, each number checked; that
+    // they lie within the meshes is for who baked them to know.
+    [[nodiscard]] const std::optional<BakedOccluders>& occluders() const { return occluders_; }
     // Over the instances: item i is instance i; its boxes() and layer masks are theirs. Yours to change.
     [[nodiscard]] boxtree::BoxTree& tree() { return *tree_; }
     [[nodiscard]] const boxtree::BoxTree& tree() const { return *tree_; }
@@ -120,6 +138,7 @@ class BakedScene {
     std::span<const std::uint32_t> indices_, rings_;
     std::span<const glm::dvec2> points_;
     std::span<const char> names_;
+    std::optional<BakedOccluders> occluders_;
     std::optional<boxtree::BoxTree> tree_;
 };
 

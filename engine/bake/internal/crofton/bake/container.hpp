@@ -70,6 +70,7 @@ class Reader {
         return std::span(reinterpret_cast<const T*>(bytes->data()), bytes->size() / sizeof(T));
     }
     [[nodiscard]] std::span<const Section> sections() const { return sections_; }
+    [[nodiscard]] bool has(std::string_view name) const;
 
   private:
     [[nodiscard]] Result<std::span<const std::byte>> find(std::string_view name, std::size_t element_size) const;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "baked_parts.hpp"
+
+#include <algorithm>
+#include <crofton/bake/container.hpp>
+
+namespace crofton::pipeline {
+namespace {
+
+tl::unexpected<Error> of_another_scene(const char* what, std::uint64_t item = kNoItem) {
+    return fail(ErrorCode::invalid_argument, item,
+                std::string("was baked of another scene (") + what +
+                    "): bake this one, with the same --map, --seed and --instances");
+}
+
+// Occluders lie within these meshes, on these nodes: all must be the same. Where nodes stand does not matter.
+Result<void> check_same(const bake::BakedScene& baked, const scene::Scene& scene) {
+    if (baked.mesh_count() != scene.mesh_count() || baked.instances().size() != scene.instance_count() ||
+        baked.nodes().size() != scene.node_count())
+        return of_another_scene("it has another number of meshes, nodes or instances");
+    for (scene::MeshId i = 0; i < scene.mesh_count(); ++i) {
+        const bake::MeshView mesh = baked.mesh(i);
+        const TriangleMesh& own = scene.mesh(i);
+        if (!std::equal(mesh.positions.begin(), mesh.positions.end(), own.positions.begin(), own.positions.end()) ||
+            !std::equal(mesh.indices.begin(), mesh.indices.end(), own.indices.begin(), own.indices.end()))
+            return of_another_scene("a mesh differs", i);
+    }
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        if (baked.instances()[i].mesh != scene.mesh_of(i) || baked.instances()[i].node != scene.node_of(i))
+            return of_another_scene("an instance differs", i);
+    return {};
+}
+
+Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene& scene) {
+    const auto reader = bake::Reader::open(file);
+    if (!reader) return tl::unexpected(reader.error());
+    BakedParts parts;
+    if (reader->has("occluder")) {
+        const auto baked = bake::BakedScene::from_memory(file);
+        if (!baked) return tl::unexpected(baked.error());
+        if (auto same = check_same(*baked, scene); !same) return tl::unexpected(same.error());
+        parts.occluders = std::make_shared<const SceneOccluders>(scene_occluders_from(scene, *baked->occluders()));
+    }
+    if (reader->has("pvs_head")) {
+        auto sets = pvs::Pvs::from_memory(file);
+        if (!sets) return tl::unexpected(sets.error());
+        if (sets->object_count() != scene.instance_count())
+            return of_another_scene("its sets are of another number of instances");
+        parts.pvs = std::make_shared<const pvs::Pvs>(std::move(*sets));
+    }
+    if (!parts.occluders && !parts.pvs)
+        return fail(ErrorCode::empty, kNoItem,
+                    "has neither occluders ('crofton bake' writes them) nor potentially visible sets ('crofton pvs')");
+    return parts;
+}
+
+}  // namespace
+
+Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
+                                    const assets::ReadLimits& limits) {
+    const auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = limits.bytes});
+    if (!file) return tl::unexpected(file.error());
+    auto parts = parts_of(file->bytes(), scene);
+    if (!parts) return fail(parts.error().code, parts.error().item, path + ": " + parts.error().message);
+    return parts;
+}
+
+}  // namespace crofton::pipeline
