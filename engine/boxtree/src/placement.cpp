@@ -12,14 +12,6 @@
 #include "turned_bounds.hpp"
 
 namespace crofton::boxtree {
-namespace {
-
-bool same(const Aabb& a, const Aabb& b) {
-    return a.min == b.min && a.max == b.max;
-}
-
-}  // namespace
-
 // The leaf's last item moves into the gap.
 void Placement::vacate(ItemId item) {
     const std::uint32_t slot = structure_.item_slots_[item];
@@ -53,7 +45,7 @@ void Placement::place(ItemId item) {
     structure_.write_item(item);
     structure_.leaf_radii_[l] = united(structure_.leaf_radii_[l], radius_range_of(structure_.items_.boxes()[item]));
     invalidate_item_count(leaf.parent);
-    refresh_path(leaf.parent);
+    refresh_above(l | kLeafBit);
 }
 
 LeafId Placement::add_leaf() {
@@ -71,33 +63,41 @@ LeafId Placement::add_leaf() {
     return fresh;
 }
 
-// Down from the root into the child whose criterion grows least.
-LeafId Placement::best_leaf(const Obb& box) const {
+// The lane for the box to go to: the one whose criterion grows least, and the smallest of those.
+unsigned Placement::best_lane(const Node& node, const Aabb& box) const {
     const Cost cost(structure_.criterion_);
-    const auto of = [&](const Aabb& b) {
-        return b.is_empty() ? 0.0 : cost.of(b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z);
-    };
-    NodeId n = 0;
+    LaneBounds lanes;
+    bounds_of_lanes(node, structure_.axes_of(node), lanes);
+    double sizes[kWidth], growths[kWidth];
+    for (unsigned lane = 0; lane < kWidth; ++lane) {
+        double old[3], grown[3];
+        for (unsigned j = 0; j < 3; ++j) {
+            const double low = lanes.min[j][lane], high = lanes.max[j][lane];
+            const double box_low = box.min[static_cast<int>(j)], box_high = box.max[static_cast<int>(j)];
+            old[j] = high < low ? 0.0 : high - low;
+            grown[j] = (high < box_high ? box_high : high) - (box_low < low ? box_low : low);
+        }
+        sizes[lane] = cost.of(old[0], old[1], old[2]);
+        growths[lane] = cost.of(grown[0], grown[1], grown[2]) - sizes[lane];
+    }
+    unsigned best = 0;
+    for (unsigned lane = 1; lane < node.count; ++lane) {
+        const bool same = growths[lane] == growths[best], smaller = sizes[lane] < sizes[best];
+        if (growths[lane] < growths[best] || (same && smaller)) best = lane;
+    }
+    return best;
+}
+
+// Down from the root into the best lanes.
+LeafId Placement::best_leaf(const Obb& box) const {
     std::uint32_t axes = nodes_[0].axes;
     Aabb bounds = bounds_along(structure_.axes_of(nodes_[0]), box);
-    for (;;) {
+    for (NodeId n = 0;;) {
         const Node& node = nodes_[n];
         if (std::exchange(axes, node.axes) != node.axes) bounds = bounds_along(structure_.axes_of(node), box);
-        unsigned best = 0;
-        double best_growth = std::numeric_limits<double>::infinity(), best_size = best_growth;
-        for (unsigned lane = 0; lane < node.count; ++lane) {
-            const Aabb old = bounds_of_lane(node, lane, structure_.axes_of(node));
-            Aabb grown = bounds;
-            if (!old.is_empty()) grown.include(old);
-            const double size = of(old), growth = of(grown) - size;
-            if (growth < best_growth || (growth == best_growth && size < best_size)) {
-                best = lane;
-                best_growth = growth;
-                best_size = size;
-            }
-        }
-        if (node.child[best] & kLeafBit) return node.child[best] & ~kLeafBit;
-        n = node.child[best];
+        const std::uint32_t child = node.child[best_lane(node, bounds)];
+        if (child & kLeafBit) return child & ~kLeafBit;
+        n = child;
     }
 }
 
@@ -128,8 +128,8 @@ void Placement::split_leaf(LeafId l) {
         make_leaf(both[side], std::span(ids).first(count), parent, lane_in_parent);
     }
     add_child(parent, fresh | kLeafBit);
-    refresh_path(leaves_[l].parent);
-    refresh_path(leaves_[fresh].parent);
+    refresh_above(l | kLeafBit);
+    refresh_above(fresh | kLeafBit);
 }
 
 void Placement::make_leaf(LeafId l, std::span<const ItemId> items, NodeId parent, std::uint32_t lane_in_parent) {
@@ -216,8 +216,8 @@ NodeId Placement::split_node(NodeId n) {
     structure_.refresh_node(n);
     structure_.refresh_node(fresh);
     add_child(parent, fresh);
-    refresh_path(nodes_[n].parent);
-    refresh_path(nodes_[fresh].parent);
+    refresh_above(n);
+    refresh_above(fresh);
     return n;
 }
 
@@ -232,33 +232,31 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
     for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
 }
 
-// All lanes of the node. Above it the contents of those on the path, and the bounds if the child's are no longer what
-// they were. Where bounding a child along other axes is dear, only those on the path. Up to the first node that nothing
-// changes in: those above depend on it alone.
-void Placement::refresh_path(NodeId n) {
-    const auto bounds = [&](NodeId node) { return bounds_of(nodes_[node], structure_.axes_of(nodes_[node])); };
-    const bool turned = structure_.axes_.size() > 1;
-    Aabb before = bounds(n);  // as the node above knows them: a child that has just come is still empty
-    structure_.refresh_node(n);
-    bool changed = !same(before, bounds(n));
-    for (NodeId child = n; (n = nodes_[child].parent) != kNone; child = n) {
-        const unsigned lane = nodes_[child].lane_in_parent;
-        const Node node_before = nodes_[n];
+// The lanes on the path from a leaf or a node whose bound or contents have changed, up to the first node in which
+// nothing changes: those above depend on it alone. As in a refit, other lanes and the frame stay where the frame takes
+// the bound.
+void Placement::refresh_above(std::uint32_t child) {
+    for (Place place = place_of(child); place.node != kNone; place = place_of(child)) {
+        const NodeId n = place.node;
+        const Node before = nodes_[n];
         const NodeRadii radii_before = structure_.node_radii_[n];
-        if (turned) {
-            if (!write_lane(nodes_[n], lane, structure_.bounds_below(child, nodes_[n].axes),
-                            structure_.axes_of(nodes_[n])))
-                structure_.refresh_bounds(n);
-        } else if (changed) {
-            before = bounds(n);
+        const Axes& axes = structure_.axes_of(nodes_[n]);
+        if (!write_lane(nodes_[n], place.lane, structure_.bounds_below(child, nodes_[n].axes), axes))
             structure_.refresh_bounds(n);
-            changed = !same(before, bounds(n));
-        }
-        structure_.refresh_contents(n, lane);
-        if (std::memcmp(&node_before, &nodes_[n], sizeof(Node)) == 0 &&
+        structure_.refresh_contents(n, place.lane);
+        if (std::memcmp(&before, &nodes_[n], sizeof(Node)) == 0 &&
             std::memcmp(&radii_before, &structure_.node_radii_[n], sizeof(NodeRadii)) == 0)
             return;
+        child = n;
     }
+}
+
+Placement::Place Placement::place_of(std::uint32_t child) const {
+    if (child & kLeafBit) {
+        const Leaf& leaf = leaves_[child & ~kLeafBit];
+        return {leaf.parent, leaf.lane_in_parent};
+    }
+    return {nodes_[child].parent, nodes_[child].lane_in_parent};
 }
 
 // The items of a leaf below here are no longer as many as they were.

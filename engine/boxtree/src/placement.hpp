@@ -16,6 +16,12 @@ class Placement {
     void vacate(ItemId item);
 
   private:
+    struct Place {
+        NodeId node;
+        unsigned lane;
+    };
+
+    [[nodiscard]] unsigned best_lane(const Node& node, const Aabb& box) const;
     [[nodiscard]] LeafId best_leaf(const Obb& box) const;
     LeafId add_leaf();
     void split_leaf(LeafId l);
@@ -25,7 +31,8 @@ class Placement {
     NodeId split_node(NodeId n);
     void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,
                    std::uint32_t axes);
-    void refresh_path(NodeId n);
+    void refresh_above(std::uint32_t child);
+    [[nodiscard]] Place place_of(std::uint32_t child) const;
     void invalidate_item_count(NodeId n);
 
     Structure& structure_;
