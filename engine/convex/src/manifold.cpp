@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/convex/query.hpp>
 
+#include "box_pair.hpp"
 #include "core_query.hpp"
 #include "gather.hpp"
 #include "part_manifold.hpp"
@@ -20,6 +21,16 @@ Manifold finish(Gatherer& gatherer, const Touch& touch, int most) {
     if (gatherer.points.count > 0)
         thin_out(manifold, gatherer.points.point, gatherer.points.count, std::clamp(most, 1, 8));
     return manifold;
+}
+
+// What the touch's patches have in common, clipped against the face of a (1) or of b (2).
+Manifold gather_clipped(const Placed& a, const Placed& b, const Pair& pair, const Touch& touch, const Clipped& clipped,
+                        int reference, const ManifoldOptions& options) {
+    GatheredPoints points;
+    Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
+    gatherer.add(clipped, reference == 1);
+    if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
+    return finish(gatherer, touch, options.max_points);
 }
 
 // a is the half-space.
@@ -68,18 +79,19 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
     if (is_half_space(a)) return is_half_space(b) ? Manifold{} : on_half_space(a, b, options);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options));
     const Pair pair(a, b);
+    if (a.body.kind() == Kind::box && b.body.kind() == Kind::box) {
+        BoxTouchOf found;
+        const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, found);
+        if (answer == Warm::apart) return {};
+        if (answer == Warm::touching)
+            return gather_clipped(a, b, pair, found.touch, found.clipped, found.reference, options);
+    }
     Touch touch;
     Clipped clipped;
     if (cache != nullptr && cache->reference != 0) {
         const Warm warm = touch_at_face(a, b, pair, options.margin, *cache, kKeptDepth, touch, clipped);
         if (warm == Warm::apart) return {};
-        if (warm == Warm::touching) {
-            GatheredPoints points;
-            Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
-            gatherer.add(clipped, cache->reference == 1);
-            if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
-            return finish(gatherer, touch, options.max_points);
-        }
+        if (warm == Warm::touching) return gather_clipped(a, b, pair, touch, clipped, cache->reference, options);
         touch = {};
     }
     if (!find_touch(pair, options.margin, cache, touch)) return {};
