@@ -15,11 +15,10 @@ Gathering gathering_of(const Placed& a, const Placed& b, double margin) {
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
 
-Manifold finish(Gatherer& gatherer, const Touch& touch, int most) {
+Manifold finish(const GatheredPoints& points, const Touch& touch, int most) {
     Manifold manifold;
     manifold.normal = touch.normal;
-    if (gatherer.points.count > 0)
-        thin_out(manifold, gatherer.points.point, gatherer.points.count, std::clamp(most, 1, 8));
+    if (points.count > 0) thin_out(manifold, points.point, points.count, std::clamp(most, 1, 8));
     return manifold;
 }
 
@@ -30,7 +29,7 @@ Manifold gather_clipped(const Placed& a, const Placed& b, const Pair& pair, cons
     Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
     gatherer.add(clipped, reference == 1);
     if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
-    return finish(gatherer, touch, options.max_points);
+    return finish(points, touch, options.max_points);
 }
 
 // a is the half-space.
@@ -60,7 +59,7 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
         touch.feature_b = patch.self;
         gatherer.add_deepest();
     }
-    return finish(gatherer, touch, options.max_points);
+    return finish(points, touch, options.max_points);
 }
 
 }  // namespace
@@ -80,11 +79,11 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
     if (is_half_space(b)) return flipped(on_half_space(b, a, options));
     const Pair pair(a, b);
     if (a.body.kind() == Kind::box && b.body.kind() == Kind::box) {
-        BoxTouchOf found;
-        const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, found);
+        Touch touch;
+        GatheredPoints points;
+        const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);
         if (answer == Warm::apart) return {};
-        if (answer == Warm::touching)
-            return gather_clipped(a, b, pair, found.touch, found.clipped, found.reference, options);
+        if (answer == Warm::touching) return finish(points, touch, options.max_points);
     }
     Touch touch;
     Clipped clipped;
@@ -111,7 +110,7 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
         name_features(a.body, b.body, patch_a, patch_b, touch);
         gatherer.add_deepest();
     }
-    return finish(gatherer, touch, options.max_points);
+    return finish(points, touch, options.max_points);
 }
 
 }  // namespace crofton::convex
