@@ -66,7 +66,7 @@ bool BoxToucher::at_face(bool of_a, int face, double extent, double kept) {
     touch_.depth = extent + rounding_;
     if (least <= kSameFace * pair_.size) {
         clip.gather(touch_, margin_, points_);
-        return true;
+        return points_.count > 0;  // none where rounding tells of more than the margin
     }
     // The deepest corner itself may be of another face than the one that was clipped.
     int corner = 0;
@@ -82,7 +82,7 @@ bool BoxToucher::at_face(bool of_a, int face, double extent, double kept) {
     if (!(least <= kept)) return false;
     touch_.depth -= std::max(0.0, least);
     clip.gather(touch_, margin_, points_);
-    return true;
+    return points_.count > 0;
 }
 
 bool BoxToucher::at_edges() {
@@ -93,8 +93,9 @@ bool BoxToucher::at_edges() {
     const glm::dvec3 &u = a_.pose.rotation[i], &v = b_.pose.rotation[j];
     const double half_a = a_.body.half_extents()[i], half_b = b_.body.half_extents()[j];
     // The middles of the edges that face each other, and where the edges cross, seen along the axis.
-    const glm::dvec3 from_a = deepest_corner(true, corner_a) - ((corner_a >> i & 1) != 0 ? half_a : -half_a) * u,
-                     from_b = deepest_corner(false, corner_b) - ((corner_b >> j & 1) != 0 ? half_b : -half_b) * v;
+    const glm::dvec3 end_a = deepest_corner(true, corner_a), end_b = deepest_corner(false, corner_b);
+    const glm::dvec3 from_a = end_a - ((corner_a >> i & 1) != 0 ? half_a : -half_a) * u,
+                     from_b = end_b - ((corner_b >> j & 1) != 0 ? half_b : -half_b) * v;
     const glm::dvec3 across = glm::cross(u, v), between = from_b - from_a;
     const double squared = glm::dot(across, across);
     const double s = glm::dot(glm::cross(between, v), across) / squared,
