@@ -59,8 +59,10 @@ class Contacts final : public btActivatingCollisionAlgorithm {
     void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo&,
                           btManifoldResult* result) override {
         const RigidTransform pose_a = to_pose(a->getWorldTransform()), pose_b = to_pose(b->getWorldTransform());
-        convex::Manifold found = convex::contact_manifold({*body_a_->body, pose_a}, {*body_b_->body, pose_b},
-                                                          {.margin = static_cast<double>(threshold_)}, &cache_);
+        // Points begin with a touch: only those that are there may have a gap.
+        const double margin = fills_ && count_ == 0 ? kLeastGap : static_cast<double>(threshold_);
+        convex::Manifold found =
+            convex::contact_manifold({*body_a_->body, pose_a}, {*body_b_->body, pose_b}, {.margin = margin}, &cache_);
         // Pairs that do not touch are many: their manifolds are not even looked at.
         if (fills_ && found.count == 0 && count_ == 0) return;
         result->setPersistentManifold(manifold_);
@@ -244,7 +246,8 @@ void skip_pairs_apart(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
     for (int k = 0; k < 3; ++k) apart |= a.m_aabbMin[k] > b.m_aabbMax[k] || b.m_aabbMin[k] > a.m_aabbMax[k];
     if (apart) {
         if (pair.m_algorithm == nullptr) return;
-        btManifoldArray manifolds;
+        thread_local btManifoldArray manifolds;  // its memory stays
+        manifolds.resize(0);
         pair.m_algorithm->getAllContactManifolds(manifolds);
         bool touched = false;
         for (int i = 0; i < manifolds.size(); ++i) touched |= manifolds[i]->getNumContacts() > 0;

@@ -70,11 +70,17 @@ Feature reference_feature(const Feature& self, const std::uint16_t* vertex, cons
 
 }  // namespace
 
+// An edge without length, of a face of a flat box, bounds the face along its length.
 void find_sides(const Patch& polygon, const glm::dvec3& direction, Prism& sides) {
     sides.count = polygon.count;
     for (int k = 0; k < polygon.count; ++k) {
         const glm::dvec3 &p = polygon.point[k], &q = polygon.point[k + 1 < polygon.count ? k + 1 : 0];
         sides.outward[k] = glm::cross(q - p, direction);
+        if (p == q) {
+            glm::dvec3 middle(0.0);
+            for (int i = 0; i < polygon.count; ++i) middle += polygon.point[i] / static_cast<double>(polygon.count);
+            sides.outward[k] = p - middle;
+        }
         sides.level[k] = glm::dot(sides.outward[k], p);
     }
 }

@@ -66,9 +66,11 @@ glm::dvec3 product(const glm::dvec3& e, const glm::dvec3& f, double reach, doubl
 
 void offer_faces(const Body& body, const glm::dmat3& rotation, double side, Axes& axes, const Pair& pair) {
     for (const auto& t : triangles_of(body)) {
-        const glm::dvec3 a = body.vertex(t[0]), e = body.vertex(t[1]) - a, f = body.vertex(t[2]) - a;
+        // Edges are turned, not normals: a pose is rigid to 1e-6 alone.
+        const glm::dvec3 a = body.vertex(t[0]), e = rotation * (body.vertex(t[1]) - a),
+                         f = rotation * (body.vertex(t[2]) - a);
         double turn = 0.0;
-        glm::dvec3 n = rotation * product(e, f, body.reach(), turn);
+        glm::dvec3 n = product(e, f, body.reach(), turn);
         if (turn > 1e-11) {
             const Placed placed{body, &body == &pair.a ? pair.pose_a : pair.pose_b};
             n = exact_edge_normal(Pair(placed, placed), t[0], t[1], t[0], t[2]);

@@ -58,6 +58,10 @@ void round_patch(const Body& body, const Frame& place, const glm::dvec3& local, 
 
 }  // namespace
 
+glm::dvec3 turned_normal(const glm::dmat3& r, const glm::dvec3& n) {
+    return glm::normalize(n.x * glm::cross(r[1], r[2]) + n.y * glm::cross(r[2], r[0]) + n.z * glm::cross(r[0], r[1]));
+}
+
 int face_along(const Body& body, const glm::dvec3& d) {
     if (body.kind() == Kind::box) {
         const glm::dvec3 m = glm::abs(d);
@@ -79,12 +83,14 @@ void patch_of_face(const Placed& placed, int face, const glm::dvec3& origin, Pat
     patch.self = {FeatureKind::face, static_cast<std::uint16_t>(face)};
     if (body.kind() == Kind::box) {
         const auto& corners = kBoxFaces[face];
-        patch.normal = (face & 1) != 0 ? place.rotation[face / 2] : -place.rotation[face / 2];
+        glm::dvec3 outward(0.0);
+        outward[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
+        patch.normal = turned_normal(place.rotation, outward);
         for (int k = 0; k < 4; ++k)
             add(patch, place(body.vertex(corners[k])), corners[k], box_edge(corners[k], corners[(k + 1) % 4]));
     } else if (body.kind() == Kind::hull) {
         const auto vertices = body.hull()->face_vertices(face), edges = body.hull()->face_edges(face);
-        patch.normal = place.rotation * body.hull()->face_normal(face);
+        patch.normal = turned_normal(place.rotation, body.hull()->face_normal(face));
         for (std::size_t k = 0; k < vertices.size(); ++k)
             add(patch, place(body.vertex(vertices[k])), vertices[k], edges[k]);
     } else {

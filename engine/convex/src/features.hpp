@@ -37,6 +37,9 @@ inline constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0,
     return static_cast<std::uint16_t>(4 * k + j);
 }
 
+// The unit normal of a body's image under a rotation that is rigid to 1e-6 alone: the cofactors turn normals.
+[[nodiscard]] glm::dvec3 turned_normal(const glm::dmat3& rotation, const glm::dvec3& normal);
+
 // The face of a polytope that looks most along a direction of the body's frame; −1 where it has none.
 [[nodiscard]] int face_along(const Body& body, const glm::dvec3& local);
 

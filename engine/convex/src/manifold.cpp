@@ -3,6 +3,7 @@
 #include <cmath>
 #include <crofton/convex/query.hpp>
 
+#include "box_pair.hpp"
 #include "core_query.hpp"
 #include "gather.hpp"
 #include "part_manifold.hpp"
@@ -14,12 +15,21 @@ Gathering gathering_of(const Placed& a, const Placed& b, double margin) {
     return {a.pose.translation, a.body.radius(), b.body.radius(), margin};
 }
 
-Manifold finish(Gatherer& gatherer, const Touch& touch, int most) {
+Manifold finish(const GatheredPoints& points, const Touch& touch, int most) {
     Manifold manifold;
     manifold.normal = touch.normal;
-    if (gatherer.points.count > 0)
-        thin_out(manifold, gatherer.points.point, gatherer.points.count, std::clamp(most, 1, 8));
+    if (points.count > 0) thin_out(manifold, points.point, points.count, std::clamp(most, 1, 8));
     return manifold;
+}
+
+// What the touch's patches have in common, clipped against the face of a (1) or of b (2).
+Manifold gather_clipped(const Placed& a, const Placed& b, const Pair& pair, const Touch& touch, const Clipped& clipped,
+                        int reference, const ManifoldOptions& options) {
+    GatheredPoints points;
+    Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
+    gatherer.add(clipped, reference == 1);
+    if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
+    return finish(points, touch, options.max_points);
 }
 
 // a is the half-space.
@@ -49,7 +59,7 @@ Manifold on_half_space(const Placed& a, const Placed& b, const ManifoldOptions& 
         touch.feature_b = patch.self;
         gatherer.add_deepest();
     }
-    return finish(gatherer, touch, options.max_points);
+    return finish(points, touch, options.max_points);
 }
 
 }  // namespace
@@ -68,18 +78,19 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
     if (is_half_space(a)) return is_half_space(b) ? Manifold{} : on_half_space(a, b, options);
     if (is_half_space(b)) return flipped(on_half_space(b, a, options));
     const Pair pair(a, b);
+    if (a.body.kind() == Kind::box && b.body.kind() == Kind::box) {
+        Touch touch;
+        GatheredPoints points;
+        const Warm answer = touch_of_boxes(a, b, pair, options.margin, cache, touch, points);
+        if (answer == Warm::apart) return {};
+        if (answer == Warm::touching) return finish(points, touch, options.max_points);
+    }
     Touch touch;
     Clipped clipped;
     if (cache != nullptr && cache->reference != 0) {
         const Warm warm = touch_at_face(a, b, pair, options.margin, *cache, kKeptDepth, touch, clipped);
         if (warm == Warm::apart) return {};
-        if (warm == Warm::touching) {
-            GatheredPoints points;
-            Gatherer gatherer(gathering_of(a, b, options.margin), touch, points);
-            gatherer.add(clipped, cache->reference == 1);
-            if (gatherer.lacks_deepest(1e-9 * pair.size)) gatherer.add_deepest();
-            return finish(gatherer, touch, options.max_points);
-        }
+        if (warm == Warm::touching) return gather_clipped(a, b, pair, touch, clipped, cache->reference, options);
         touch = {};
     }
     if (!find_touch(pair, options.margin, cache, touch)) return {};
@@ -99,7 +110,7 @@ Manifold contact_manifold(const Placed& a, const Placed& b, const ManifoldOption
         name_features(a.body, b.body, patch_a, patch_b, touch);
         gatherer.add_deepest();
     }
-    return finish(gatherer, touch, options.max_points);
+    return finish(points, touch, options.max_points);
 }
 
 }  // namespace crofton::convex

@@ -113,14 +113,15 @@ Warm touch_at_face(const Placed& a, const Placed& b, const Pair& pair, double ma
     Patch face, other;
     const bool on_box = body.kind() == Kind::box;
     if (on_box) {
-        const glm::dvec3& axis = reference.pose.rotation[cache.face / 2];
-        face.normal = (cache.face & 1) != 0 ? axis : -axis;
+        glm::dvec3 outward(0.0);
+        outward[cache.face / 2] = (cache.face & 1) != 0 ? 1.0 : -1.0;
+        face.normal = turned_normal(reference.pose.rotation, outward);
         face.self = {FeatureKind::face, cache.face};
     } else {
         patch_of_face(reference, cache.face, a.pose.translation, face);
     }
     if (face.normal == glm::dvec3(0.0)) return Warm::unknown;  // a triangle without area
-    const glm::dvec3 out = face.normal / glm::length(face.normal);
+    const glm::dvec3 out = face.normal;
     touch.normal = on_a ? out : -out;
     double depth = 0.0;
     const Corner deepest = pair.support(touch.normal, depth);

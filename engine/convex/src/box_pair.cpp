@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "box_pair.hpp"
+
+#include <cmath>
+#include <crofton/geometry/expansion.hpp>
+#include <limits>
+
+namespace crofton::convex {
+namespace {
+
+constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};
+constexpr double kParallel = 1e-9;  // squared: below, two edges make a sliver
+
+// a b − c d within 2 u of its size.
+double difference_of_products(double a, double b, double c, double d) {
+    const auto p = detail::two_product(a, b), q = detail::two_product(c, d);
+    return (p.high - q.high) + (p.low - q.low);
+}
+
+glm::dvec3 careful_cross(const glm::dvec3& u, const glm::dvec3& v) {
+    return {difference_of_products(u.y, v.z, u.z, v.y), difference_of_products(u.z, v.x, u.x, v.z),
+            difference_of_products(u.x, v.y, u.y, v.x)};
+}
+
+// Σ half_k |n_k|.
+double radius_along(const glm::dvec3& half, const glm::dvec3& n) {
+    return half.x * std::abs(n.x) + half.y * std::abs(n.y) + half.z * std::abs(n.z);
+}
+
+}  // namespace
+
+BoxPair::BoxPair(const Pair& pair)
+    : pair_(pair),
+      half_a_(pair.a.half_extents()),
+      half_b_(pair.b.half_extents()),
+      slack_(kSameDepth * pair.size),
+      error_(4.0 * pair.error) {
+    const glm::dmat3& r = pair.pose_a.rotation;
+    const glm::dvec3 x = glm::cross(r[1], r[2]), y = glm::cross(r[2], r[0]), z = glm::cross(r[0], r[1]);
+    const double share = 1.0 / glm::dot(r[0], x);
+    to_a_[0] = share * x, to_a_[1] = share * y, to_a_[2] = share * z;
+    for (int k = 0; k < 3; ++k) at_[k] = glm::dot(to_a_[k], pair.offset);
+}
+
+bool BoxPair::try_faces(double far, BoxAxis& least) {
+    const glm::dmat3& rb = pair_.pose_b.rotation;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3& row = to_a_[k];
+        for (int j = 0; j < 3; ++j) edge_[j][k] = glm::dot(row, rb[j]);
+        const double share = 1.0 / std::sqrt(glm::dot(row, row));
+        const double radius =
+            half_b_.x * std::abs(edge_[0][k]) + half_b_.y * std::abs(edge_[1][k]) + half_b_.z * std::abs(edge_[2][k]);
+        reach_[0][k] = (half_a_[k] + radius) * share;
+        along_[0][k] = at_[k] * share;
+        const double extent = reach_[0][k] - std::abs(along_[0][k]);
+        if (k == 0 || extent < least.extent - slack_) least = {k, extent};
+        if (extent < far) return false;
+    }
+    for (int j = 0; j < 3; ++j) across_[j] = glm::cross(edge_[kNext[j]], edge_[kLast[j]]);
+    const double determinant = glm::dot(across_[0], edge_[0]);
+    share_ = 1.0 / determinant;
+    for (int j = 0; j < 3; ++j) {
+        const glm::dvec3 &n = across_[j], world = n.x * to_a_[0] + n.y * to_a_[1] + n.z * to_a_[2];
+        const double share = 1.0 / std::sqrt(glm::dot(world, world));
+        reach_[1][j] = (std::abs(determinant) * half_b_[j] + radius_along(half_a_, n)) * share;
+        along_[1][j] = glm::dot(n, at_) * share;
+        const double extent = reach_[1][j] - std::abs(along_[1][j]);
+        if (extent < least.extent - slack_) least = {3 + j, extent};
+        if (extent < far) return false;
+    }
+    return true;
+}
+
+// The product of edge i of a with edge j of b has m_u = −e_v, m_v = e_u, where e is b's edge; its product with another
+// edge of b is a component of the one across both.
+void BoxPair::try_edges(BoxAxis& least) {
+    for (int i = 0; i < 3; ++i) {
+        const int u = kNext[i], v = kLast[i];
+        const double uu = glm::dot(to_a_[u], to_a_[u]), uv = 2.0 * glm::dot(to_a_[u], to_a_[v]),
+                     vv = glm::dot(to_a_[v], to_a_[v]);
+        for (int j = 0; j < 3; ++j) {
+            const double mu = -edge_[j][v], mv = edge_[j][u];
+            const double squared = (uu * mu * mu + vv * mv * mv) + uv * mu * mv;
+            const double radius_a = half_a_[u] * std::abs(mu) + half_a_[v] * std::abs(mv);
+            const double radius_b =
+                half_b_[kNext[j]] * std::abs(across_[kLast[j]][i]) + half_b_[kLast[j]] * std::abs(across_[kNext[j]][i]);
+            const double extent = (radius_a + radius_b) - std::abs(mu * at_[u] + mv * at_[v]);
+            const double best = least.extent - slack_;
+            if (!(squared > kParallel)) {
+                slivers_ |= 1 << (3 * i + j);
+                sliver_width_ =
+                    std::max(sliver_width_, 2.0 * std::min(half_a_[i], half_b_[j]) * (std::sqrt(squared) + 1e-15));
+                continue;
+            }
+            // Most axes are deeper, which needs no root to be seen.
+            if (best >= 0.0 && extent >= 0.0 && extent * extent >= best * best * squared) continue;
+            if (const double world = extent / std::sqrt(squared); world < best) least = {6 + 3 * i + j, world};
+        }
+    }
+}
+
+void BoxPair::try_slivers(BoxAxis& least) const {
+    for (int n = 0; n < 9; ++n) {
+        if ((slivers_ >> n & 1) == 0) continue;
+        const glm::dvec3 m = careful_cross(pair_.pose_a.rotation[n / 3], pair_.pose_b.rotation[n % 3]);
+        const double length = glm::length(m);
+        if (!(length > 0.0)) continue;
+        const double extent = std::min(pair_.extent(m), pair_.extent(-m)) / length;
+        if (extent < least.extent - slack_) least = {6 + n, extent};
+    }
+}
+
+BoxAxis BoxPair::least(double far) {
+    BoxAxis least;
+    if (try_faces(far, least)) try_edges(least);
+    return least;
+}
+
+double BoxPair::face_extent(bool of_a, int face) const {
+    const int side = of_a ? 0 : 1, k = face / 2;
+    // b's face looks back at a where a's looks on at b.
+    const double sign = ((face & 1) != 0) == of_a ? 1.0 : -1.0;
+    return reach_[side][k] - sign * along_[side][k];
+}
+
+glm::dvec3 BoxPair::normal(int axis) const {
+    const glm::dmat3 &ra = pair_.pose_a.rotation, &rb = pair_.pose_b.rotation;
+    const glm::dvec3 n = axis < 3   ? to_a_[axis]
+                         : axis < 6 ? glm::cross(rb[kNext[axis - 3]], rb[kLast[axis - 3]])
+                                    : careful_cross(ra[(axis - 6) / 3], rb[(axis - 6) % 3]);
+    return (glm::dot(n, pair_.offset) < 0.0 ? -1.0 : 1.0) / glm::length(n) * n;
+}
+
+BoxPair::Seen BoxPair::seen_by(bool a) const {
+    if (a) return {at_, {edge_[0], edge_[1], edge_[2]}};
+    Seen seen;
+    for (int j = 0; j < 3; ++j) {
+        seen.center[j] = -share_ * glm::dot(across_[j], at_);
+        for (int k = 0; k < 3; ++k) seen.edge[k][j] = share_ * across_[j][k];
+    }
+    return seen;
+}
+
+glm::dvec3 BoxPair::into_frame(bool of_a, const glm::dvec3& direction) const {
+    const glm::dvec3 d(glm::dot(to_a_[0], direction), glm::dot(to_a_[1], direction), glm::dot(to_a_[2], direction));
+    if (of_a) return d;
+    return share_ * glm::dvec3(glm::dot(across_[0], d), glm::dot(across_[1], d), glm::dot(across_[2], d));
+}
+
+}  // namespace crofton::convex

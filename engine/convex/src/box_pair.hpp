@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Two boxes, closely: along which of their fifteen axes do they overlap least, and where?
+#pragma once
+#include "gather.hpp"
+
+namespace crofton::convex {
+
+// A separating axis: 0-2 across the faces of a, 3-5 of b, 6 + 3i + j across edge i of a and edge j of b.
+struct BoxAxis {
+    int number = -1;
+    double extent = 0.0;  // of the difference body along it: how deep the boxes overlap; negative: a gap
+};
+
+// Boxes are parallelepipeds, since poses are rigid to 1e-6 alone. Axes are covectors m of a's frame, of length
+// √(mᵀ G m) in the world, G = R⁻¹ R⁻ᵀ. Three of a, three of b and nine products of edges are all the normals that the
+// difference body has, also where half extents are 0. With u = 2^-53, entries of the matrices below are off by 20 u,
+// so that a face's extent is off by 60 u of the size, which is below `error`. A product of edges is off by 40 u / |m|
+// in direction. Below |m| = 3e-5 it is left to try_slivers(), which goes without cancellation. Such an axis is across a
+// parallelogram of width 2 |m| times the shorter half edge, whose neighbours are across other axes; so the least of
+// these is at most `sliver_width` above the least of all.
+class BoxPair {
+  public:
+    explicit BoxPair(const Pair& pair);
+
+    // Of all axes but slivers. Faces come first, and another axis must be less deep by more than rounding, so that the
+    // choice does not flicker. Ends early, with an axis that is surely below `far`, where there is one.
+    [[nodiscard]] BoxAxis least(double far);
+    [[nodiscard]] double sliver_width() const { return sliver_width_; }
+    void try_slivers(BoxAxis& least) const;
+
+    // The rest is known after least() has not ended early. Along the outward normal of face 2k + s of one box.
+    [[nodiscard]] double face_extent(bool of_a, int face) const;
+    // The face across axis 0 to 5 that looks at the other box.
+    [[nodiscard]] int face_towards_other(int axis) const {
+        const double along = along_[axis / 3][axis % 3];
+        return 2 * (axis % 3) + ((axis < 3 ? along >= 0.0 : along < 0.0) ? 1 : 0);
+    }
+    // Unit, from a to b.
+    [[nodiscard]] glm::dvec3 normal(int axis) const;
+    [[nodiscard]] double error() const { return error_; }
+
+    // A box as the other one sees it, in that one's frame.
+    struct Seen {
+        glm::dvec3 center, edge[3];  // edges of unit length
+    };
+    [[nodiscard]] Seen seen_by(bool a) const;
+    [[nodiscard]] glm::dvec3 into_frame(bool of_a, const glm::dvec3& direction) const;  // times R⁻¹
+
+  private:
+    [[nodiscard]] bool try_faces(double far, BoxAxis& least);
+    void try_edges(BoxAxis& least);
+
+    const Pair& pair_;
+    const glm::dvec3 &half_a_, &half_b_;
+    double slack_, error_, sliver_width_ = 0.0;
+    int slivers_ = 0;                   // bit 3i + j
+    glm::dvec3 to_a_[3];                // rows of the inverse of a's rotation
+    glm::dvec3 edge_[3];                // of b in a's frame
+    glm::dvec3 across_[3];              // products of the other two edges
+    double share_ = 1.0;                // 1 / determinant of the edges
+    glm::dvec3 at_;                     // b's center
+    double reach_[2][3], along_[2][3];  // of a's and b's faces: sum of the boxes' radii, and where b's center is
+};
+
+// A face of one box, the other box's face that looks against it, and what they have in common along a direction.
+class BoxClip {
+  public:
+    // `direction`: unit, from a to b. The face is that of the reference.
+    BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool reference_is_a, int face,
+            const glm::dvec3& direction);
+    [[nodiscard]] int count() const { return count_; }
+    // How deep point i is, without roundings.
+    [[nodiscard]] double depth(int i) const { return -corner_[i].height; }
+    void gather(const Touch& touch, double margin, GatheredPoints& to) const;
+    // How far a corner of the other box is within the sides of the prism: the least distance, negative outside.
+    [[nodiscard]] double corner_within(int corner) const;
+
+  private:
+    // A corner of the clipped polygon: its shadow on the face, and how far it is above along the direction. The lines
+    // that meet in it: edges of the incident face (from 0) or sides of the reference (−1 − number).
+    struct FlatCorner {
+        double x, y, height;
+        int before, after;
+    };
+    static int clip_side(const FlatCorner* from, int count, int side, double level, int face, FlatCorner* to);
+    void find_corners(int incident_face);
+    void clip();
+    [[nodiscard]] Feature on_reference(const FlatCorner& corner) const;
+    [[nodiscard]] Feature on_incident(const FlatCorner& corner) const;
+
+    const Placed &reference_, &other_;
+    const glm::dvec3& origin_;
+    BoxPair::Seen seen_;
+    glm::dvec3 direction_;  // unit, out of the reference, in its frame
+    bool reference_is_a_;
+    int face_, incident_ = 0, k_, u_, v_, count_ = 0;
+    FlatCorner corner_[8];
+};
+
+// The manifold of two boxes up to thinning out. The touch's depth and normal are proven, as the least of all axes. The
+// face that the cache names stays while it is the least deep within kKeptDepth of the size. `unknown`: nearer to a
+// touch than rounding tells, or apart where neither a face nor two edges decide.
+[[nodiscard]] Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double margin, PairCache* cache,
+                                  Touch& touch, GatheredPoints& points);
+
+}  // namespace crofton::convex

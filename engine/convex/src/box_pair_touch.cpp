@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "box_pair.hpp"
+
+namespace crofton::convex {
+namespace {
+
+// As deep as the least axis, for a face that nothing speaks for but its depth: of the size.
+constexpr double kSameFace = 0.25e-9;
+
+class BoxToucher {
+  public:
+    BoxToucher(const Placed& a, const Placed& b, const Pair& pair, double margin, Touch& touch, GatheredPoints& points)
+        : a_(a), b_(b), pair_(pair), axes_(pair), margin_(margin), touch_(touch), points_(points) {
+        rounding_ = a.body.radius() + b.body.radius();
+    }
+
+    // The answer, and for the cache whose face of which number the touch is at: 0 where it is at edges.
+    [[nodiscard]] Warm ask(int& reference, int& face);
+    [[nodiscard]] glm::dvec3 separating_normal() const { return axes_.normal(least_.number); }
+
+  private:
+    // Where the boxes touch at a face, of this extent. False if nothing above the face is as deep, but for `kept`: then
+    // the nearest points lie elsewhere.
+    [[nodiscard]] bool at_face(bool of_a, int face, double extent, double kept);
+    // At the crossing of two edges. False if the boxes are apart and other points are nearer.
+    [[nodiscard]] bool at_edges();
+    void add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Feature feature_a, Feature feature_b);
+    // The corner of a or b that is farthest into the other, around a's origin.
+    [[nodiscard]] glm::dvec3 deepest_corner(bool of_a, int& corner) const;
+
+    const Placed &a_, &b_;
+    const Pair& pair_;
+    BoxPair axes_;
+    BoxAxis least_;
+    double margin_, rounding_;
+    Touch& touch_;
+    GatheredPoints& points_;
+};
+
+glm::dvec3 BoxToucher::deepest_corner(bool of_a, int& corner) const {
+    const Placed& box = of_a ? a_ : b_;
+    const Support s = core_support(box.body, Pair::local(box.pose.rotation, of_a ? touch_.normal : -touch_.normal));
+    corner = s.vertex;
+    return box.pose.rotation * s.point + (of_a ? glm::dvec3(0.0) : pair_.offset);
+}
+
+void BoxToucher::add_deepest(const glm::dvec3& on_a, const glm::dvec3& on_b, Feature feature_a, Feature feature_b) {
+    touch_.on_a = on_a;
+    touch_.on_b = on_b;
+    touch_.feature_a = feature_a;
+    touch_.feature_b = feature_b;
+    touch_.known = true;
+    Gatherer gatherer({a_.pose.translation, a_.body.radius(), b_.body.radius(), margin_}, touch_, points_);
+    if (gatherer.lacks_deepest(1e-9 * pair_.size)) gatherer.add_deepest();
+}
+
+bool BoxToucher::at_face(bool of_a, int face, double extent, double kept) {
+    touch_.normal = axes_.normal((of_a ? 0 : 3) + face / 2);
+    const BoxClip clip(a_, b_, axes_, of_a, face, touch_.normal);
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < clip.count(); ++i) least = std::min(least, extent - clip.depth(i));
+    touch_.depth = extent + rounding_;
+    if (least <= kSameFace * pair_.size) {
+        clip.gather(touch_, margin_, points_);
+        return points_.count > 0;  // none where rounding tells of more than the margin
+    }
+    // The deepest corner itself may be of another face than the one that was clipped.
+    int corner = 0;
+    const glm::dvec3 x = deepest_corner(!of_a, corner);
+    if (clip.corner_within(corner) >= 0.0) {
+        clip.gather(touch_, margin_, points_);
+        const Feature self{FeatureKind::face, static_cast<std::uint16_t>(face)},
+            other{FeatureKind::vertex, static_cast<std::uint16_t>(corner)};
+        add_deepest(of_a ? x + extent * touch_.normal : x, of_a ? x : x - extent * touch_.normal, of_a ? self : other,
+                    of_a ? other : self);
+        return true;
+    }
+    if (!(least <= kept)) return false;
+    touch_.depth -= std::max(0.0, least);
+    clip.gather(touch_, margin_, points_);
+    return points_.count > 0;
+}
+
+bool BoxToucher::at_edges() {
+    const int i = (least_.number - 6) / 3, j = (least_.number - 6) % 3;
+    touch_.normal = axes_.normal(least_.number);
+    touch_.depth = least_.extent + rounding_;
+    int corner_a = 0, corner_b = 0;
+    const glm::dvec3 &u = a_.pose.rotation[i], &v = b_.pose.rotation[j];
+    const double half_a = a_.body.half_extents()[i], half_b = b_.body.half_extents()[j];
+    // The middles of the edges that face each other, and where the edges cross, seen along the axis.
+    const glm::dvec3 end_a = deepest_corner(true, corner_a), end_b = deepest_corner(false, corner_b);
+    const glm::dvec3 from_a = end_a - ((corner_a >> i & 1) != 0 ? half_a : -half_a) * u,
+                     from_b = end_b - ((corner_b >> j & 1) != 0 ? half_b : -half_b) * v;
+    const glm::dvec3 across = glm::cross(u, v), between = from_b - from_a;
+    const double squared = glm::dot(across, across);
+    const double s = glm::dot(glm::cross(between, v), across) / squared,
+                 t = glm::dot(glm::cross(between, u), across) / squared;
+    if (least_.extent < 0.0 && !(std::abs(s) <= half_a && std::abs(t) <= half_b)) return false;
+    // Faces nearly along the normal touch as well: the reference is the one that looks along it more.
+    const glm::dvec3 facing_a = glm::abs(Pair::local(a_.pose.rotation, touch_.normal)),
+                     facing_b = glm::abs(Pair::local(b_.pose.rotation, touch_.normal));
+    const double most_a = std::max(facing_a.x, std::max(facing_a.y, facing_a.z)),
+                 most_b = std::max(facing_b.x, std::max(facing_b.y, facing_b.z));
+    const bool of_a = most_a >= most_b - 1e-3;
+    const int face = face_along((of_a ? a_ : b_).body,
+                                Pair::local((of_a ? a_ : b_).pose.rotation, of_a ? touch_.normal : -touch_.normal));
+    BoxClip(a_, b_, axes_, of_a, face, touch_.normal).gather(touch_, margin_, points_);
+    const int on_a = corner_a & ~(1 << i), on_b = corner_b & ~(1 << j);
+    add_deepest(from_a + std::min(std::max(s, -half_a), half_a) * u,
+                from_b + std::min(std::max(t, -half_b), half_b) * v, {FeatureKind::edge, box_edge(on_a, on_a | 1 << i)},
+                {FeatureKind::edge, box_edge(on_b, on_b | 1 << j)});
+    return true;
+}
+
+Warm BoxToucher::ask(int& reference, int& face) {
+    const double limit = -(rounding_ + margin_) - axes_.error();
+    least_ = axes_.least(limit);
+    if (std::isnan(least_.extent)) return Warm::unknown;
+    if (least_.extent < limit) return Warm::apart;
+    const double kept = kKeptDepth * pair_.size;
+    const bool sure = std::abs(least_.extent) > axes_.error() + axes_.sliver_width();
+    if (reference != 0 && sure) {
+        const double extent = axes_.face_extent(reference == 1, face);
+        if (extent + axes_.sliver_width() <= least_.extent + kept && at_face(reference == 1, face, extent, kept))
+            return Warm::touching;
+    }
+    if (axes_.sliver_width() > 0.1 * kSameFace * pair_.size || !sure) axes_.try_slivers(least_);
+    if (least_.extent < limit) return Warm::apart;
+    // Contacts nearer than rounding tells are decided exactly by the other way.
+    if (std::abs(least_.extent) <= axes_.error()) return Warm::unknown;
+    if (least_.number >= 6) {
+        reference = 0;
+        return at_edges() ? Warm::touching : Warm::unknown;
+    }
+    reference = least_.number < 3 ? 1 : 2;
+    face = axes_.face_towards_other(least_.number);
+    return at_face(reference == 1, face, least_.extent, kSameFace * pair_.size) ? Warm::touching : Warm::unknown;
+}
+
+}  // namespace
+
+Warm touch_of_boxes(const Placed& a, const Placed& b, const Pair& pair, double margin, PairCache* cache, Touch& touch,
+                    GatheredPoints& points) {
+    if (!(pair.size < std::numeric_limits<double>::infinity())) return Warm::unknown;
+    const double rounding = a.body.radius() + b.body.radius(), limit = -(rounding + margin);
+    if (cache != nullptr && cache->reference == 0 && cache->axis != glm::dvec3(0.0) &&
+        pair.extent(cache->axis) < limit * (1.0 + 0x1p-50) - pair.error)
+        return Warm::apart;
+    int reference = cache != nullptr && cache->face < 6 ? cache->reference : 0;
+    int face = reference != 0 ? cache->face : 0;
+    BoxToucher toucher(a, b, pair, margin, touch, points);
+    const Warm answer = toucher.ask(reference, face);
+    if (answer == Warm::unknown || (answer == Warm::touching && !(touch.depth >= -margin))) return Warm::unknown;
+    if (cache != nullptr) {
+        cache->axis = answer == Warm::apart ? toucher.separating_normal() : touch.normal;
+        cache->reference = static_cast<std::uint16_t>(answer == Warm::apart ? 0 : reference);
+        cache->face = static_cast<std::uint16_t>(face);
+    }
+    return answer;
+}
+
+}  // namespace crofton::convex

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// Manifolds of two boxes, which have a way of their own, beside distance and penetration, which have not.
+#include <doctest/doctest.h>
+#include <algorithm>
+#include <cmath>
+#include <crofton/convex/query.hpp>
+
+#include "random_bodies.hpp"
+
+using namespace crofton;
+using namespace crofton::convex;
+using namespace crofton::testing;
+
+namespace {
+
+constexpr double kOffsets[] = {0.0, 1e3, 1e7};
+
+// Cubes, plates, rods, rectangles, segments; one in eight is rounded.
+Body random_box(RandomBodies& random) {
+    glm::dvec3 half(random.number(0.1, 1), random.number(0.1, 1), random.number(0.1, 1));
+    const int form = random.index(8);
+    if (form == 0) half.y *= 1e-4;
+    if (form == 1) half.y *= 1e-3, half.z *= 1e-3;
+    if (form == 2) half.x = 0.0;
+    if (form == 3) half *= std::pow(10.0, random.number(-3, 3));
+    const Body box = Body::box(glm::vec3(half)).value();
+    return random.index(8) == 0 ? Body::rounded(box, 0.1f).value() : box;
+}
+
+// Turned a little against a, so that edges are parallel, nearly or not at all.
+glm::dmat3 nearly(RandomBodies& random, const glm::dmat3& rotation) {
+    if (random.index(4) == 0) return rotation;
+    const double angle = std::pow(10.0, random.number(-13, 0));
+    const glm::dvec3 axis = random.index(2) == 0 ? rotation[1] : random.direction();
+    return glm::mat3_cast(glm::angleAxis(angle, axis)) * rotation;
+}
+
+// As far from a rotation as a valid pose may be.
+void skew(RandomBodies& random, glm::dmat3& rotation) {
+    for (int k = 0; k < 3; ++k) rotation[k] += 2e-7 * random.direction();
+}
+
+struct BoxCase {
+    Body a, b;
+    RigidTransform pose_a, pose_b;
+    double gap, size;
+};
+BoxCase random_case(RandomBodies& random) {
+    BoxCase c{random_box(random), random_box(random), {}, {}, 0.0, 0.0};
+    c.gap = std::pow(10.0, -random.number(1, 12)) * (random.index(2) == 0 ? 1.0 : -1.0);
+    const CasePair where = nearly_touching(random, c.a, c.b, c.gap, kOffsets[random.index(3)]);
+    c.pose_a = where.pose_a;
+    c.pose_b = where.pose_b;
+    if (random.index(2) == 0) c.pose_b.rotation = nearly(random, c.pose_a.rotation);
+    if (random.index(2) == 0) skew(random, c.pose_a.rotation);
+    if (random.index(2) == 0) skew(random, c.pose_b.rotation);
+    c.size = c.a.reach() + c.b.reach() + c.a.radius() + c.b.radius() +
+             glm::length(c.pose_b.translation - c.pose_a.translation);
+    return c;
+}
+
+double off(double value, double low, double high) {
+    return std::max(0.0, std::max(low - value, value - high));
+}
+
+// How far the manifold's depth is beyond what is proven of the pair, and its points outside of the bodies.
+double wrong_depth(const BoxCase& c, const Manifold& m) {
+    const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
+    if (const Penetration p = penetration(a, b); p.overlapping) return off(m.depth, p.lower, p.upper);
+    const Distance d = distance(a, b);
+    return off(-m.depth, d.lower, d.upper);
+}
+
+double wrong_place(const BoxCase& c, const ContactPoint& p) {
+    // Midway between the surfaces, along the normal.
+    const double allowed = 0.5 * std::abs(p.depth);
+    return std::max(closest_point({c.a, c.pose_a}, p.position).distance,
+                    closest_point({c.b, c.pose_b}, p.position).distance) -
+           allowed;
+}
+
+}  // namespace
+
+TEST_SUITE("convex/box_pair") {
+    TEST_CASE(
+        "boxes of all forms have points iff they meet, as deep as is proven, cold and warm, skewed poses or not") {
+        RandomBodies random(11);
+        int meeting = 0, edges = 0, gaps = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const BoxCase c = random_case(random);
+            CAPTURE(i);
+            const Placed a{c.a, c.pose_a}, b{c.b, c.pose_b};
+            const bool meet = intersects(a, b), rounded = c.a.radius() + c.b.radius() > 0.0;
+            const Manifold tight = contact_manifold(a, b);
+            if (!rounded) CHECK((tight.count > 0) == meet);
+            meeting += meet;
+            const double margin = 2.0 * std::abs(c.gap) + 1e-9;
+            PairCache cache;
+            const Manifold cold = contact_manifold(a, b, {.margin = margin, .max_points = 8}, &cache);
+            const Manifold warm = contact_manifold(a, b, {.margin = margin, .max_points = 8}, &cache);
+            const Distance d = distance(a, b);
+            if (d.upper <= margin) CHECK(cold.count > 0);
+            if (d.lower > margin) CHECK(cold.count == 0);
+            CHECK((warm.count > 0) == (cold.count > 0));
+            if (cold.count == 0) continue;
+            gaps += !meet;
+            CHECK(wrong_depth(c, cold) <= 1e-9 * c.size);
+            CHECK(std::abs(warm.depth - cold.depth) <= 1.1e-4 * c.size);
+            CHECK(glm::length(cold.normal) == doctest::Approx(1.0).epsilon(1e-12));
+            const double reach = 1e-9 * c.size + 1e-15 * glm::length(c.pose_a.translation);
+            for (int k = 0; k < cold.count; ++k) {
+                CHECK(cold.points[k].depth <= cold.depth);
+                CHECK(wrong_place(c, cold.points[k]) <= reach + 1e-6 * c.size);
+                edges += cold.points[k].on_a.kind == FeatureKind::edge && cold.points[k].on_b.kind == FeatureKind::edge;
+            }
+        }
+        MESSAGE(meeting, " meet, ", gaps, " gaps, ", edges, " points of two edges");
+        CHECK(meeting > 5000);
+        CHECK(gaps > 1000);
+        CHECK(edges > 1000);
+    }
+
+    TEST_CASE("the face of the frame before stays while nothing is less deep by 1e-4, and is given up beyond") {
+        const Body cube = Body::box(glm::vec3(1.0f)).value();
+        PairCache cache;
+        const RigidTransform ground = at({});
+        // The overlap across x falls below that across y.
+        int kept = 0;
+        for (int i = 0; i <= 200; ++i) {
+            const RigidTransform place = at({1.9 + 1e-5 * i, 1.901, 0.0});
+            const Manifold m = contact_manifold({cube, ground}, {cube, place}, {}, &cache);
+            const double better = (2.0 - 1.901) - (2.0 - place.translation.x);
+            if (i == 0) CHECK(m.normal.y == doctest::Approx(1.0));
+            const double allowed = 1e-4 * (2.0 * std::sqrt(3.0) + glm::length(place.translation));
+            kept += better > 0.0 && m.normal.y > 0.5;
+            if (m.normal.y > 0.5) CHECK(better <= allowed * 1.001);
+        }
+        CHECK(kept > 10);
+    }
+
+    TEST_CASE("a pose that is not quite a rotation: the normal is that of the face, warm and cold, boxes and hulls") {
+        const Body slab = Body::box({4, 1, 4}).value(), cube = Body::box(glm::vec3(0.5f)).value();
+        std::vector<glm::vec3> corners;
+        for (int i = 0; i < 8; ++i)
+            corners.emplace_back(i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f);
+        const Hull hull = Hull::build(corners).value();
+        RigidTransform ground = at({});
+        ground.rotation[1] += glm::dvec3(4e-7, 0, 0);
+        const glm::dvec3 across = glm::normalize(glm::cross(ground.rotation[2], ground.rotation[0]));
+        for (const Body& top : {cube, Body::hull(hull)}) {
+            PairCache cache;
+            for (int frame = 0; frame < 3; ++frame) {
+                const RigidTransform place = at({0.1, 1.49, 0.0});
+                const Manifold m = contact_manifold({slab, ground}, {top, place}, {}, &cache);
+                CHECK(glm::length(m.normal - across) < 1e-12);
+                const Penetration p = penetration({slab, ground}, {top, place});
+                CHECK(off(m.depth, p.lower, p.upper) <= 1e-9 * 8.0);
+            }
+        }
+    }
+}
