@@ -77,9 +77,14 @@ Result<BoxTree> BoxTree::build(std::span<const Obb> boxes, std::span<const std::
             if (!items.is_detached(item)) items.set_detached(item, true);
         }
         Builder builder(centers, items.count_in_leaves(), options.criterion, options.orientation);
-        for (ItemId item = 0; item < boxes.size(); ++item)
-            if (!items.is_detached(item)) builder.add(item, items.boxes()[item]);
-        while (!builder.prepare(~std::size_t{0} / 8, items.boxes(), {moves, moving.data()})) {
+        const Movers movers{moves, moving.data()};
+        if (executor.concurrency() > 1 && items.count_in_leaves() == boxes.size()) {
+            builder.prepare_all(items.boxes(), movers, executor);
+        } else {
+            for (ItemId item = 0; item < boxes.size(); ++item)
+                if (!items.is_detached(item)) builder.add(item, items.boxes()[item]);
+            while (!builder.prepare(~std::size_t{0} / 8, items.boxes(), movers)) {
+            }
         }
         build_subtrees(*tree.structure_, builder, executor);
         return tree;

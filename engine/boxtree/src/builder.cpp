@@ -9,19 +9,10 @@ namespace crofton::boxtree {
 namespace {
 
 constexpr std::uint32_t kClusterItems = kWidth * kWidth * kWidth;
-// Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
-constexpr std::size_t kSmallCrowd = 32768;
-// A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis
-// follow.
-constexpr unsigned kItemBits = 30, kPassBits = 12, kPasses = 3, kFineBits = 10;
 constexpr double kCells = 1u << 20;
 constexpr std::size_t kCrowd = 256;  // more in one cell are sorted by smaller ones
 
-constexpr ItemId item_of(std::uint64_t key) {
-    return static_cast<ItemId>(key & ((1u << kItemBits) - 1));
-}
-
-// Spreads 10 bits to every third.
+// Spreads ten bits to every third.
 std::uint32_t spread(std::uint32_t v) {
     v = (v | v << 16) & 0x030000ffu;
     v = (v | v << 8) & 0x0300f00fu;
@@ -31,7 +22,7 @@ std::uint32_t spread(std::uint32_t v) {
 
 std::uint64_t z_order(const std::array<std::uint32_t, 3>& cell, unsigned shift) {
     std::uint32_t code = 0;
-    for (unsigned j = 0; j < 3; ++j) code |= spread(cell[j] >> shift & ((1u << kFineBits) - 1)) << j;
+    for (unsigned j = 0; j < 3; ++j) code |= spread(cell[j] >> shift & 1023u) << j;
     return code;
 }
 
@@ -57,9 +48,13 @@ std::array<std::uint32_t, 3> Builder::cell_of(const glm::dvec3& center) const {
     return cell;
 }
 
+ItemId Builder::item_of(std::uint64_t key) {
+    return static_cast<ItemId>(key & ((std::uint64_t{1} << kItemBits) - 1));
+}
+
 // Large boxes first, by powers of two of their size in cells of the mean spacing: beside small ones they would blow up
 // bounds. Then a Z-order curve through the centres.
-void Builder::add(ItemId id, const Obb& box) {
+std::uint64_t Builder::key_of(ItemId id, const Obb& box) const {
     float reach = 0.0f;
     for (int j = 0; j < 3; ++j) {
         float sum = 0.0f;
@@ -68,10 +63,13 @@ void Builder::add(ItemId id, const Obb& box) {
     }
     std::uint64_t size_class = 0;
     for (float limit = 4.0f * cell_; reach > limit && size_class < 15; limit *= 2.0f) ++size_class;
-    const std::uint64_t key =
-        ((15 - size_class) << 3 * kFineBits | z_order(cell_of(box.center), kFineBits)) << kItemBits | id;
+    return ((15 - size_class) << 3 * kFineBits | z_order(cell_of(box.center), kFineBits)) << kItemBits | id;
+}
+
+void Builder::add(ItemId id, const Obb& box) {
+    const std::uint64_t key = key_of(id, box);
     for (unsigned pass = 0; pass < kPasses; ++pass)
-        ++histograms_[pass][key >> (kItemBits + pass * kPassBits) & (histograms_[pass].size() - 1)];
+        ++histograms_[pass][key >> (kItemBits + pass * kDigitBits) & (histograms_[pass].size() - 1)];
     keys_.push_back(key);
     keys_next_.push_back(0);
 }
@@ -127,7 +125,7 @@ std::size_t Builder::sort_pass(std::size_t budget) {
         std::uint32_t sum = 0;
         for (std::uint32_t& count : places) sum += std::exchange(count, sum);
     }
-    const unsigned shift = kItemBits + pass_ * kPassBits;
+    const unsigned shift = kItemBits + pass_ * kDigitBits;
     const std::size_t end = std::min(keys_.size(), next_ + 2 * budget), spent = (end - next_ + 1) / 2;
     for (; next_ < end; ++next_) keys_next_[places[keys_[next_] >> shift & (places.size() - 1)]++] = keys_[next_];
     if (next_ < keys_.size()) return spent;

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <crofton/boxtree/layout.hpp>
+#include <crofton/core/executor.hpp>
 #include <crofton/core/memory.hpp>
 #include <crofton/geometry/box.hpp>
 #include <crofton/measure/measure.hpp>
@@ -30,6 +31,8 @@ class Builder {
 
     // Notes where the item is.
     void add(ItemId id, const Obb& box);
+    // All of add() and prepare() for items 0 … boxes.size() − 1, shared among threads; the same result.
+    void prepare_all(std::span<const Obb> boxes, const Movers& movers, Executor& executor);
 
     // After the last add, a step of about `budget` items' worth; true when result() is ready. Same result for any
     // budgets, if the boxes of the items that were added stay as they are; they may change, to the result's
@@ -49,8 +52,20 @@ class Builder {
     [[nodiscard]] const Topology& result() const { return result_; }
 
   private:
+    // A key is four bits for the size, ten an axis for the cell, and thirty for the item, from which ten more an axis
+    // follow.
+    static constexpr unsigned kItemBits = 30, kDigitBits = 12, kPasses = 3, kFineBits = 10;
+    static constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+    // Up to here the whole crowd is split from the top: the best tree, at a cost that grows with n log n.
+    static constexpr std::size_t kSmallCrowd = 32768;
+
     enum class Phase : std::uint8_t { sort, crowding, gather, append, label, bound, ready };
 
+    [[nodiscard]] static ItemId item_of(std::uint64_t key);
+    [[nodiscard]] std::uint64_t key_of(ItemId id, const Obb& box) const;
+    void sort_keys(Executor& executor);
+    void label_items(Executor& executor);
+    void bound_clusters(std::span<const Obb> boxes, Executor& executor);
     std::size_t prepare_on(std::size_t budget, std::span<const Obb> boxes, const Movers& movers);
     [[nodiscard]] std::array<std::uint32_t, 3> cell_of(const glm::dvec3& center) const;
     std::size_t sort_pass(std::size_t budget);
@@ -71,7 +86,7 @@ class Builder {
     double half_size_ = 0.0, cells_per_unit_ = 0.0;
     float cell_ = 0.0f;
     Vector<std::uint64_t> keys_, keys_next_;
-    std::array<std::array<std::uint32_t, 4096>, 3> histograms_{};
+    std::array<std::array<std::uint32_t, kDigits>, kPasses> histograms_{};
     unsigned pass_ = 0;
     std::size_t crowded_ = 0;  // items that share a cell with others, and no smaller cells help
     Vector<ItemId> moving_;
