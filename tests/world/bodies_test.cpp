@@ -140,6 +140,29 @@ TEST_SUITE("world/bodies") {
         REQUIRE(world.update().has_value());
         CHECK(world.statistics().body_pairs_computed == 0);
         CHECK(world.body_contacts().size() == 1000);
+        // One that comes, one that goes, one with another body.
+        const ObjectHandle more = world.add({.bound = place(2000)}).value();
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().body_pairs_computed == 0);
+        Obb above = place(1);
+        above.center.y += 0.9;
+        REQUIRE(world.set_bound(more, above).has_value());
+        REQUIRE(world.set_body(more, &crate).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().body_pairs_computed == 1);
+        CHECK(world.body_contacts().size() == 1001);
+        REQUIRE(world.remove(more).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().body_pairs_computed == 0);
+        CHECK(world.body_contacts().size() == 1001);  // one has ended
+        const convex::Body small = convex::Body::box({0.25f, 0.25f, 0.25f}).value();
+        REQUIRE(world.set_body(objects[0], &small).has_value());
+        REQUIRE(world.set_user(objects[4], 7).has_value());
+        REQUIRE(world.update().has_value());
+        CHECK(world.statistics().body_pairs_computed == 1);
+        CHECK(world.body_contacts()[0].phase == ContactPhase::ended);
+        REQUIRE(world.update().has_value());
+        CHECK(world.body_contacts().size() == 999);
     }
 
     TEST_CASE("contacts, overlaps and casts are those of all objects one by one, while they move, come and go") {

@@ -210,7 +210,7 @@ void Polytope::finish(int nearest) {
         sum += s.weight[k];
     }
     result_.has_face = result_.normal == face.normal && least >= -1e-9 * sum;
-    for (double& weight : s.weight) weight = std::max(0.0, weight / sum);
+    for (int k = 0; k < 3; ++k) s.weight[k] = std::max(0.0, s.weight[k] / sum);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ std::optional<RigidTransform> pose_of(const Object& object, const Obb& box, cons
 
 void BodyContacts::set(std::uint32_t object, const convex::Body* body) {
     if (has(object)) --count_;
+    note(object);
     if (body == nullptr) {
         if (object < bodies_.size()) bodies_[object].reset();
         return;
@@ -44,19 +45,22 @@ void BodyContacts::list(std::span<const ObjectPair> pairs) {
     }
 }
 
-void BodyContacts::note_moved(const SpatialIndex& index, bool moved_only) {
-    all_moved_ = !moved_only;
-    if (all_moved_) return;
+void BodyContacts::note_moved(const SpatialIndex& index) {
     moved_.assign(bodies_.size(), 0);
-    for (const ItemId item : index.moved_items())
-        if (item < moved_.size()) moved_[item] = 1;
+    for (const auto items : {index.moved_items(), std::span<const std::uint32_t>(changed_)})
+        for (const std::uint32_t item : items)
+            if (item < moved_.size()) moved_[item] = 1;
+    changed_.clear();
 }
 
 void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
-                          const scene::Scene& scene, double margin, bool moved_only, Executor& executor) {
+                          const scene::Scene& scene, double margin, Executor& executor) {
     computed_ = 0;
-    if (count_ == 0 && states_.empty()) return contacts_.clear();
-    note_moved(index, moved_only);
+    if (count_ == 0 && states_.empty()) {
+        changed_.clear();
+        return contacts_.clear();
+    }
+    note_moved(index);
     list(pairs);
     workers_.resize(std::max<std::size_t>(workers_.size(), executor.concurrency()));
     for (Worker& worker : workers_) worker.points.clear();
@@ -74,7 +78,7 @@ void BodyContacts::update(std::span<const ObjectPair> pairs, const ObjectTable& 
                 const auto first = points_.begin() + before->first_point;
                 worker.pair_points.assign(first, first + before->point_count);
             }
-            if (!all_moved_ && before != nullptr && moved_[a] == 0 && moved_[b] == 0) {
+            if (before != nullptr && moved_[a] == 0 && moved_[b] == 0) {
                 for (convex::TrackedPoint& point : worker.pair_points) point.began = false;
             } else {
                 touch.computed = true;

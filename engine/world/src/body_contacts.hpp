@@ -16,9 +16,12 @@ class BodyContacts {
     [[nodiscard]] bool has(std::uint32_t object) const { return object < bodies_.size() && bodies_[object]; }
     [[nodiscard]] const convex::Body& body(std::uint32_t object) const { return *bodies_[object]; }
 
-    // `moved_only`: since the update before no more has changed than the boxes of the index's moved_items().
+    // Where the object's body stands has changed otherwise than by its box.
+    void note(std::uint32_t object) { changed_.push_back(object); }
+
+    // Pairs are computed that are new, or of an object among the index's moved_items(), or with another body, or noted.
     void update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,
-                const scene::Scene& scene, double margin, bool moved_only, Executor& executor);
+                const scene::Scene& scene, double margin, Executor& executor);
     void stay();  // nothing has changed
     [[nodiscard]] std::span<const BodyContact> contacts() const { return contacts_; }
     [[nodiscard]] std::size_t computed() const { return computed_; }  // pairs, in the last update or stay
@@ -43,15 +46,15 @@ class BodyContacts {
         Vector<convex::TrackedPoint> points, pair_points;
     };
     void list(std::span<const ObjectPair> pairs);
-    void note_moved(const SpatialIndex& index, bool moved_only);
+    void note_moved(const SpatialIndex& index);
     void gather(std::span<const ObjectPair> pairs);
     void add(const ObjectPair& pair, ContactPhase phase, std::uint32_t first_point, std::uint32_t count);
 
     Vector<std::optional<convex::Body>> bodies_;  // by object
     std::size_t count_ = 0;                       // bodies
     std::size_t computed_ = 0;
-    Vector<std::uint8_t> moved_;  // by object, in this update
-    bool all_moved_ = true;
+    Vector<std::uint32_t> changed_;  // noted since the last update
+    Vector<std::uint8_t> moved_;     // by object, in this update
     Vector<Touch> touches_;
     Vector<Worker> workers_;
     Vector<PairState> states_, next_states_;

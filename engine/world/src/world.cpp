@@ -79,12 +79,16 @@ void World::State::apply_changes() {
             object.mesh = scene.mesh_of(object.instance);
             show(change.object);
             pairs_changed = true;
+            body_contacts.note(change.object);
             continue;
         }
         index.set_layers(change.object, object.layers);
         index.set_shown(change.object, object.shown);
         if (!change.has_bound) continue;
-        pairs_changed |= object.kind != change.bound.kind || object.radius != change.bound.radius;
+        if (object.kind != change.bound.kind || object.radius != change.bound.radius) {
+            pairs_changed = true;
+            body_contacts.note(change.object);
+        }
         object.kind = change.bound.kind;
         object.radius = change.bound.radius;
         rebound.push_back(change.object);
@@ -158,8 +162,7 @@ Result<void> World::update(Executor& executor) {
         const world::TraceZone part(trace, "update: pairs and contacts");
         found = s.finder.update(s.table, s.index, s.scene, s.bodies, s.body_contacts, moved_only, executor);
         if (s.options.contacts)
-            s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, moved_only,
-                                   executor);
+            s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, executor);
     }
     if (!changed) s.finder.stay();
     if (!changed) s.body_contacts.stay();
