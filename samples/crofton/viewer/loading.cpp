@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "pipeline/camera_path.hpp"
-#include "pipeline/pedestrian_path.hpp"
+#include "pipeline/free_space.hpp"
 #include "session.hpp"
 #include "shape_colors.hpp"
 
@@ -127,7 +127,10 @@ Result<void> Session::load(const SceneRequest& request) {
     if (!same_scene) {
         controller_.frame_all(loaded_->focus(), loaded_->extent());
         const std::vector<glm::dvec3>& walk = loaded_->source().walk;
-        if (walk.size() > 1) controller_.stand(walk[0], walk[1]);
+        if (walk.size() > 1)
+            controller_.stand(walk[0], walk[1]);
+        else
+            stand_inside();
         culling_camera_ = controller_.camera;
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
@@ -137,6 +140,13 @@ Result<void> Session::load(const SceneRequest& request) {
         loaded_->scene(), loaded_->pipeline().spatial_order(), is_mover,
         pipeline::DrawList::Looks{loaded_->source().unlit, loaded_->source().one_sided});
     return upload_geometry();
+}
+
+// A level is looked at from where much of it is seen; what has no inside stays framed as a whole.
+void Session::stand_inside() {
+    const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus());
+    const auto stand = space ? space->best_stand() : std::nullopt;
+    if (stand) controller_.stand(stand->eye, stand->eye + stand->forward);
 }
 
 Result<void> Session::upload_geometry() {
@@ -183,7 +193,7 @@ Result<void> Session::load_replay() {
     path.limits = options_.scene.limits;
     std::vector<glm::dvec3> walk = loaded_->source().walk;
     if (walk.empty() && path.kind == "street")
-        walk = pipeline::find_pedestrian_path(loaded_->scene(), loaded_->focus());
+        if (const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus())) walk = space->walk();
     auto made = pipeline::make_camera_path(path, loaded_->focus(), walk);
     if (!made) return tl::unexpected(std::move(made.error()));
     path_ = std::move(*made);

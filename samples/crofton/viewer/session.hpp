@@ -44,6 +44,7 @@ class Session {
     [[nodiscard]] Result<void> start_ui_renderer();
     [[nodiscard]] Result<void> recover();
     [[nodiscard]] Result<void> load(const SceneRequest& request);
+    void stand_inside();
     [[nodiscard]] Result<void> upload_geometry();
     [[nodiscard]] Result<void> follow_settings();
     [[nodiscard]] Result<void> load_replay();
