@@ -92,6 +92,7 @@ Result<void> Session::start_ui_renderer() {
 // A device or a surface is gone: all that lived on it is made anew, the scene and the user's view stay.
 Result<void> Session::recover() {
     for (const std::string& message : device_->validation_messages()) lost_messages_.push_back(message);
+    device_->context().vk.vkDeviceWaitIdle(device_->context().device);
     ui_.reset();
     ui_commands_ = {};
     rasterizer_.reset();
@@ -150,10 +151,16 @@ void Session::stand_inside() {
 }
 
 Result<void> Session::upload_geometry() {
+    stale_geometry_ = true;
     shape_uploaded_ = settings_.coloring == Coloring::shape;
-    if (!shape_uploaded_) return rasterizer_->set_geometry(list_->vertices(), list_->indices());
-    const ShapeColored colored = color_by_shape(list_->vertices(), list_->indices());
-    return rasterizer_->set_geometry(colored.vertices, colored.indices);
+    const auto upload = [&] {
+        if (!shape_uploaded_) return rasterizer_->set_geometry(list_->vertices(), list_->indices());
+        const ShapeColored colored = color_by_shape(list_->vertices(), list_->indices());
+        return rasterizer_->set_geometry(colored.vertices, colored.indices);
+    };
+    auto uploaded = upload();
+    stale_geometry_ = !uploaded;
+    return uploaded;
 }
 
 Result<void> Session::follow_settings() {
@@ -164,7 +171,7 @@ Result<void> Session::follow_settings() {
             settings_.method = loaded_->method();
         }
     } else if (auto configured = loaded_->configure(settings_.method, settings_); !configured) {
-        return configured;
+        return lasting(std::move(configured));
     }
     if (!settings_.compare) {
         other_.reset();
@@ -177,9 +184,9 @@ Result<void> Session::follow_settings() {
             settings_.compare = false;
         }
     } else if (auto configured = other_->configure(settings_.other, settings_); !configured) {
-        return configured;
+        return lasting(std::move(configured));
     }
-    if (shape_uploaded_ != (settings_.coloring == Coloring::shape)) return upload_geometry();
+    if (stale_geometry_ || shape_uploaded_ != (settings_.coloring == Coloring::shape)) return upload_geometry();
     return {};
 }
 
