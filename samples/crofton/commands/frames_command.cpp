@@ -20,7 +20,7 @@
 #include "pipeline/baked_parts.hpp"
 #include "pipeline/camera_path.hpp"
 #include "pipeline/draw_list.hpp"
-#include "pipeline/pedestrian_path.hpp"
+#include "pipeline/free_space.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/verify.hpp"
 #include "progress_bar.hpp"
@@ -141,7 +141,7 @@ class FramesRun {
         source_->scene.update(executor());
         focus_ = pipeline::focus_of(source_->scene);
         if (source_->walk.empty() && options_.camera == "street")
-            source_->walk = pipeline::find_pedestrian_path(source_->scene, focus_);
+            if (const auto space = pipeline::FreeSpace::find(source_->scene, focus_)) source_->walk = space->walk();
         auto path = pipeline::make_camera_path(
             {options_.camera, options_.frames.value_or(0), options_.seed, aspect, options_.read.limits}, focus_,
             source_->walk);

@@ -52,7 +52,10 @@ Result<void> Session::build_interface() {
         inset != nullptr ? ImVec2(static_cast<float>(rasterizer_->width(1)), static_cast<float>(rasterizer_->height(1)))
                          : ImVec2(0.0f, 0.0f);
     const auto depth = show_depth();
-    if (!depth) return tl::unexpected(depth.error());
+    if (!depth) {
+        ImGui::EndFrame();
+        return tl::unexpected(depth.error());
+    }
     const pipeline::FrameStatistics* drawn =
         frame_history_.entries().empty() ? nullptr : &frame_history_.entries().back().frame;
     wish_ = draw_panels({settings_,
@@ -102,19 +105,27 @@ Result<void> Session::draw_interface() {
     return {};
 }
 
+void Session::save_what_there_is() {
+    if (is_recording_) toggle_recording();
+    if (auto finished = finish(); !finished) report(finished.error());
+}
+
 Result<void> Session::finish() {
-    if (options_.json.empty()) return {};
+    if (options_.json.empty() || !loaded_) return {};
     Json document = frame_history_.json();
     document["scene"] = {{"name", loaded_->source().name},
                          {"nodes", loaded_->scene().node_count()},
                          {"instances", loaded_->scene().instance_count()},
                          {"triangles", loaded_->triangle_count()}};
-    document["device"] = device_->name();
-    document["counts_exactly"] = device_->counts_exactly();
+    if (device_) {
+        document["device"] = device_->name();
+        document["counts_exactly"] = device_->counts_exactly();
+    }
     document["validation_messages"] = Json::array();
     for (const std::string& message : lost_messages_) document["validation_messages"].push_back(message);
-    for (const std::string& message : device_->validation_messages())
-        document["validation_messages"].push_back(message);
+    if (device_)
+        for (const std::string& message : device_->validation_messages())
+            document["validation_messages"].push_back(message);
     document["settings"] = to_json(settings_);
     document["pictures"] = pictures_;
     return assets::write_file(options_.json, document.dump(1) + "\n");

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "pipeline/camera_path.hpp"
-#include "pipeline/pedestrian_path.hpp"
+#include "pipeline/free_space.hpp"
 #include "session.hpp"
 #include "shape_colors.hpp"
 
@@ -92,6 +92,7 @@ Result<void> Session::start_ui_renderer() {
 // A device or a surface is gone: all that lived on it is made anew, the scene and the user's view stay.
 Result<void> Session::recover() {
     for (const std::string& message : device_->validation_messages()) lost_messages_.push_back(message);
+    device_->context().vk.vkDeviceWaitIdle(device_->context().device);
     ui_.reset();
     ui_commands_ = {};
     rasterizer_.reset();
@@ -127,7 +128,10 @@ Result<void> Session::load(const SceneRequest& request) {
     if (!same_scene) {
         controller_.frame_all(loaded_->focus(), loaded_->extent());
         const std::vector<glm::dvec3>& walk = loaded_->source().walk;
-        if (walk.size() > 1) controller_.stand(walk[0], walk[1]);
+        if (walk.size() > 1)
+            controller_.stand(walk[0], walk[1]);
+        else
+            stand_inside();
         culling_camera_ = controller_.camera;
         if (window_) window_->set_title("Crofton: " + loaded_->source().name + " (F1: help)");
     }
@@ -139,11 +143,24 @@ Result<void> Session::load(const SceneRequest& request) {
     return upload_geometry();
 }
 
+// A level is looked at from where much of it is seen; what has no inside stays framed as a whole.
+void Session::stand_inside() {
+    const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus());
+    const auto stand = space ? space->best_stand() : std::nullopt;
+    if (stand) controller_.stand(stand->eye, stand->eye + stand->forward);
+}
+
 Result<void> Session::upload_geometry() {
+    stale_geometry_ = true;
     shape_uploaded_ = settings_.coloring == Coloring::shape;
-    if (!shape_uploaded_) return rasterizer_->set_geometry(list_->vertices(), list_->indices());
-    const ShapeColored colored = color_by_shape(list_->vertices(), list_->indices());
-    return rasterizer_->set_geometry(colored.vertices, colored.indices);
+    const auto upload = [&] {
+        if (!shape_uploaded_) return rasterizer_->set_geometry(list_->vertices(), list_->indices());
+        const ShapeColored colored = color_by_shape(list_->vertices(), list_->indices());
+        return rasterizer_->set_geometry(colored.vertices, colored.indices);
+    };
+    auto uploaded = upload();
+    stale_geometry_ = !uploaded;
+    return uploaded;
 }
 
 Result<void> Session::follow_settings() {
@@ -154,7 +171,7 @@ Result<void> Session::follow_settings() {
             settings_.method = loaded_->method();
         }
     } else if (auto configured = loaded_->configure(settings_.method, settings_); !configured) {
-        return configured;
+        return lasting(std::move(configured));
     }
     if (!settings_.compare) {
         other_.reset();
@@ -167,9 +184,9 @@ Result<void> Session::follow_settings() {
             settings_.compare = false;
         }
     } else if (auto configured = other_->configure(settings_.other, settings_); !configured) {
-        return configured;
+        return lasting(std::move(configured));
     }
-    if (shape_uploaded_ != (settings_.coloring == Coloring::shape)) return upload_geometry();
+    if (stale_geometry_ || shape_uploaded_ != (settings_.coloring == Coloring::shape)) return upload_geometry();
     return {};
 }
 
@@ -183,7 +200,7 @@ Result<void> Session::load_replay() {
     path.limits = options_.scene.limits;
     std::vector<glm::dvec3> walk = loaded_->source().walk;
     if (walk.empty() && path.kind == "street")
-        walk = pipeline::find_pedestrian_path(loaded_->scene(), loaded_->focus());
+        if (const auto space = pipeline::FreeSpace::find(loaded_->scene(), loaded_->focus())) walk = space->walk();
     auto made = pipeline::make_camera_path(path, loaded_->focus(), walk);
     if (!made) return tl::unexpected(std::move(made.error()));
     path_ = std::move(*made);

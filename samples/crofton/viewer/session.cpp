@@ -46,6 +46,7 @@ Camera from_outside(const Camera& camera, double reach) {
 }  // namespace
 
 bool Session::running() const {
+    if (advanced_) return true;  // a turn is to be taken again
     if (quit_ || (window_ && window_->should_close())) return false;
     if (options_.frames > 0) return frame_index_ < options_.frames;
     return options_.script.empty() ? window_ != nullptr : !script_.empty();
@@ -53,7 +54,7 @@ bool Session::running() const {
 
 Result<void> Session::run_frame() {
     auto turned = try_turn();
-    if (turned || turned.error().code != ErrorCode::unavailable) return turned;
+    if (turned || std::exchange(is_lasting_, false)) return turned;
     if (recoveries_++ == kMaxRecoveries) return turned;
     report(turned.error());
     std::fprintf(stderr, "crofton: starting the device anew\n");
@@ -75,8 +76,9 @@ Result<void> Session::try_turn() {
     if (auto followed = follow_settings(); !followed) return followed;
     if (auto resized = resize(); !resized) return resized;
     if (auto scaled = follow_scale(); !scaled) return scaled;
-    advance(seconds);
-    if (auto culled = cull(); !culled) return culled;
+    // A turn that is taken again, after the device failed, shows the same moment.
+    if (!std::exchange(advanced_, true)) advance(seconds);
+    if (auto culled = cull(); !culled) return lasting(std::move(culled));
     if (auto started = start_drawing(); !started) return started;
     // The device draws; what needs no picture is done meanwhile.
     frame_.triangles_clipped = list_->predict_clipped();
@@ -89,12 +91,19 @@ Result<void> Session::try_turn() {
         const VkExtent2D size{rasterizer_->width(), rasterizer_->height()};
         if (auto shown = window_->present(rasterizer_->native_image()->handle, size); !shown) return shown;
     }
+    advanced_ = false;
     frame_.index = frame_index_++;
     const OcclusionCounts occlusion = loaded_->occlusion() ? loaded_->occlusion()->counts() : OcclusionCounts{};
     frame_history_.add({frame_, microseconds_since(start), ui_us_, occlusion, static_cast<std::uint32_t>(scene_time_)});
     // Presenting does not pace on every device: no more than 60 pictures a second.
     if (window_ && !unattended()) std::this_thread::sleep_until(start + std::chrono::microseconds(16'600));
     return {};
+}
+
+// The device is not to blame: another one would not help.
+Result<void> Session::lasting(Result<void> failed) {
+    is_lasting_ = true;
+    return failed;
 }
 
 Result<void> Session::resize() {
@@ -273,7 +282,7 @@ Result<void> Session::save_screenshots() {
     if (auto read = rasterizer_->read_pixels(image_); !read) return read;
     for (const std::string& file : screenshots_) {
         if (auto written = assets::write_file(file, pipeline::encode_png(image_)); !written) {
-            if (unattended()) return written;
+            if (unattended()) return lasting(std::move(written));
             report(written.error());
             continue;
         }

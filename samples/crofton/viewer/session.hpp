@@ -33,6 +33,8 @@ class Session {
     [[nodiscard]] Result<void> run_frame();
     // The last screenshot and the statistics.
     [[nodiscard]] Result<void> finish();
+    // After an error: the path that is being recorded, and the statistics so far.
+    void save_what_there_is();
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -44,6 +46,7 @@ class Session {
     [[nodiscard]] Result<void> start_ui_renderer();
     [[nodiscard]] Result<void> recover();
     [[nodiscard]] Result<void> load(const SceneRequest& request);
+    void stand_inside();
     [[nodiscard]] Result<void> upload_geometry();
     [[nodiscard]] Result<void> follow_settings();
     [[nodiscard]] Result<void> load_replay();
@@ -67,6 +70,7 @@ class Session {
     // One frame (session.cpp)
     [[nodiscard]] bool unattended() const { return options_.frames > 0 || !options_.script.empty(); }
     [[nodiscard]] Result<void> try_turn();
+    [[nodiscard]] Result<void> lasting(Result<void> failed);
     [[nodiscard]] Result<void> resize();
     [[nodiscard]] Result<void> follow_scale();
     void advance(double seconds);
@@ -122,7 +126,8 @@ class Session {
     pipeline::CameraPath path_, recording_;  // to be replayed, being recorded
     std::size_t replayed_ = 0;
     bool replaying_ = false, is_recording_ = false, quit_ = false, step_ = false, stale_size_ = true;
-    bool lose_device_ = false;
+    bool lose_device_ = false, is_lasting_ = false, advanced_ = false;
+    bool stale_geometry_ = false;  // what is on the device is of another scene, or nothing
     int recoveries_ = 0;
     std::vector<std::string> lost_messages_;  // validation's, of devices that are gone
     std::uint32_t frame_index_ = 0, exports_ = 0;

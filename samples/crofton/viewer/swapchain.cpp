@@ -29,7 +29,7 @@ Result<void> Window::attach(const render::VulkanContext& context) {
     const VkSemaphoreCreateInfo semaphore{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     result = vk.vkCreateSemaphore(context.device, &semaphore, nullptr, &acquired_);
     if (result == VK_SUCCESS) result = vk.vkCreateSemaphore(context.device, &semaphore, nullptr, &copied_);
-    if (result != VK_SUCCESS) return render::vulkan_failure(result, "what presenting needs");
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateSemaphore");
     return create_swapchain();
 }
 
@@ -67,7 +67,8 @@ Result<void> Window::create_swapchain() {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceSurfaceFormatsKHR(context_->physical_device, surface_, &count, nullptr);
     std::vector<VkSurfaceFormatKHR> formats(count);
-    vkGetPhysicalDeviceSurfaceFormatsKHR(context_->physical_device, surface_, &count, formats.data());
+    result = vkGetPhysicalDeviceSurfaceFormatsKHR(context_->physical_device, surface_, &count, formats.data());
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkGetPhysicalDeviceSurfaceFormatsKHR");
     if (formats.empty()) return fail(ErrorCode::unsupported, kNoItem, "the window offers no pixel format");
     // The picture's values are display values already: no second gamma.
     VkSurfaceFormatKHR format = formats.front();
@@ -98,10 +99,11 @@ Result<void> Window::create_swapchain() {
     if (swapchain_ != VK_NULL_HANDLE) vk.vkDestroySwapchainKHR(context_->device, swapchain_, nullptr);
     swapchain_ = made;
     if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkCreateSwapchainKHR");
-    vk.vkGetSwapchainImagesKHR(context_->device, swapchain_, &count, nullptr);
+    result = vk.vkGetSwapchainImagesKHR(context_->device, swapchain_, &count, nullptr);
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkGetSwapchainImagesKHR");
     images_.resize(count);
-    vk.vkGetSwapchainImagesKHR(context_->device, swapchain_, &count, images_.data());
-    return {};
+    result = vk.vkGetSwapchainImagesKHR(context_->device, swapchain_, &count, images_.data());
+    return result == VK_SUCCESS ? Result<void>{} : render::vulkan_failure(result, "vkGetSwapchainImagesKHR");
 }
 
 void Window::record_copy(VkCommandBuffer commands, VkImage picture, VkExtent2D size, VkImage onto) const {
