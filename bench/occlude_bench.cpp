@@ -2,6 +2,7 @@
 // Occlusion culling of a town: what is found hidden, what it costs, and Intel's MaskedOcclusionCulling beside it where
 // CROFTON_MASKED_OCCLUSION_CULLING names its sources.
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/occlude/occlusion.hpp>
@@ -85,6 +86,83 @@ void print(const char* name, const occlude::BufferSize& size, const Outcome& o, 
         1e3 * (o.draw + o.query));
 }
 
+// The same boxes at rest, in a tree.
+void run_rested(const OcclusionTown& town, const Camera& camera, int repeats) {
+    occlude::OccluderSet set;
+    for (const Obb& house : town.houses) (void)set.place(house);
+    const auto tree = *boxtree::BoxTree::build(town.objects);
+    const auto view = *occlude::occlusion_view_of(camera);
+    for (const occlude::BufferSize& size : {occlude::BufferSize{320, 180}, {640, 360}}) {
+        auto buffer = *occlude::OcclusionBuffer::create(size);
+        occlude::VisibleSet visible;
+        double draw = 1e9, query = 1e9;
+        for (int i = 0; i < repeats; ++i) {
+            draw = std::min(draw, seconds_of([&] { buffer.draw(set, view); }));
+            query = std::min(query, seconds_of([&] { occlude::find_visible(tree, buffer, visible); }));
+        }
+        std::printf(
+            "  the boxes in a tree,      %4ux%-4u  %5zu not hidden, draw %6.3f ms   query %6.3f ms   both %6.3f ms\n",
+            size.width, size.height, visible.size(), 1e3 * draw, 1e3 * query, 1e3 * (draw + query));
+    }
+}
+
+// A cube of half extent 1 whose faces are grids of n × n squares, closed.
+TriangleMesh cube_of_grids(std::uint32_t n) {
+    TriangleMesh mesh;
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (std::uint32_t i = 0; i <= n; ++i)
+            for (std::uint32_t j = 0; j <= n; ++j) {
+                glm::vec3 p;
+                p[axis] = face % 2 ? 1.0f : -1.0f;
+                p[u] = 2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f;
+                p[v] = 2.0f * static_cast<float>(j) / static_cast<float>(n) - 1.0f;
+                mesh.positions.push_back(p);
+            }
+        for (std::uint32_t i = 0; i < n; ++i)
+            for (std::uint32_t j = 0; j < n; ++j) {
+                const std::uint32_t a = first + i * (n + 1) + j, b = a + n + 1;
+                const std::uint32_t front[6] = {a, b, a + 1, a + 1, b, b + 1}, back[6] = {a, a + 1, b, a + 1, b + 1, b};
+                mesh.indices.insert(mesh.indices.end(), face % 2 ? front : back, (face % 2 ? front : back) + 6);
+            }
+    }
+    return mesh;
+}
+
+// The same houses as meshes of more and more triangles.
+void run_meshes(const OcclusionTown& town, const Camera& camera, int repeats) {
+    for (const std::uint32_t n : {1u, 4u, 16u}) {
+        occlude::OccluderSet set;
+        const auto mesh = set.add_mesh(cube_of_grids(n));
+        if (!mesh) {
+            std::printf("  %s\n", mesh.error().message.c_str());
+            return;
+        }
+        for (const Obb& house : town.houses) {
+            scene::Transform transform;
+            for (int k = 0; k < 3; ++k)
+                transform.linear[k] = glm::dvec3(house.axes[k]) * static_cast<double>(house.half_extents[k]);
+            transform.translation = house.center;
+            (void)set.place(*mesh, transform);
+        }
+        for (const occlude::BufferSize& size : {occlude::BufferSize{320, 180}, {640, 360}}) {
+            auto buffer = *occlude::OcclusionBuffer::create(size);
+            const auto view = *occlude::occlusion_view_of(camera);
+            std::vector<std::uint64_t> hidden((town.objects.size() + 63) / 64);
+            double draw = 1e9;
+            for (int i = 0; i < repeats; ++i) draw = std::min(draw, seconds_of([&] { buffer.draw(set, view); }));
+            buffer.find_hidden(town.objects, hidden);
+            std::size_t count = 0;
+            for (const std::uint64_t word : hidden) count += static_cast<std::size_t>(std::popcount(word));
+            std::printf(
+                "  houses as meshes of %4u triangles, %4ux%-4u  %7llu drawn, %5zu boxes hidden, draw %6.3f ms\n",
+                12 * n * n, size.width, size.height,
+                static_cast<unsigned long long>(buffer.statistics().triangles_drawn), count, 1e3 * draw);
+        }
+    }
+}
+
 // A tree of a million objects among 4,096 houses, seen from a street: with the nearest 256 houses as occluders, and
 // without.
 void run_tree(int repeats) {
@@ -143,6 +221,10 @@ int main(int argc, char** argv) {
         for (const auto& size : {sizes[2], sizes[4]})
             print("MaskedOcclusionCulling", size, run_peer(town, camera, reference, size, repeats), hidden);
 #endif
+        if (seed == 1) {
+            run_rested(town, camera, repeats);
+            run_meshes(town, camera, repeats);
+        }
     }
     run_tree(repeats);
     return 0;

@@ -70,6 +70,7 @@ void merge_patch(OcclusionBuffer::Data& data, const PreparedBodies& bodies, cons
     for (std::uint32_t row = std::max(first, patch.first_row); row < std::min(end, patch.end_row); ++row)
         for (std::uint32_t column = patch.first_column; column < patch.end_column; ++column) {
             const std::size_t from = std::size_t{row - patch.first_row} * columns + column - patch.first_column;
+            if (bodies.reached[patch.first_value / kTilePixels + from] == 0) continue;
             const std::size_t to = std::size_t{row} * data.tile_columns + column;
             const float* const values = bodies.values.data() + patch.first_value + from * kTilePixels;
             float* const pixels = data.pixels.data() + to * kTilePixels;

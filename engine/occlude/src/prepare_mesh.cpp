@@ -5,13 +5,11 @@
 
 #include "buffer_data.hpp"
 #include "map_bounds.hpp"
+#include "mesh_kernel.hpp"
 #include "prepared.hpp"
 
 namespace crofton::occlude {
 namespace {
-
-// Of a pixel, while a piece is drawn.
-constexpr std::uint8_t kReached = 1, kOnContour = 2;
 
 // Swamps what rounding in double does to rows and columns below 4096.
 constexpr double kLeastMargin = 0x1p-16;
@@ -101,12 +99,13 @@ class MeshPreparation {
         const std::size_t tiles =
             std::size_t{patch_.end_column - patch_.first_column} * (patch_.end_row - patch_.first_row);
         out_.values.resize(patch_.first_value + tiles * kTilePixels, HUGE_VALF);
-        out_.states.assign(tiles * kTilePixels, 0);
+        out_.reached.resize(patch_.first_value / kTilePixels + tiles, 0);
+        out_.contour.assign(tiles, 0);
+        set_target();
         for (std::size_t t = piece.first_triangle; t < piece.end_triangle; ++t)
             if (out_.facing[t]) add_triangle(t);
         for (std::size_t e = piece.first_edge; e < piece.end_edge; ++e) add_contour(shape_.edges[e]);
-        for (std::size_t i = 0; i < tiles * kTilePixels; ++i)
-            if (out_.states[i] != kReached) out_.values[patch_.first_value + i] = kUncovered;
+        finish_patch_kernel(target_, tiles);
         out_.patches.push_back(patch_);
     }
 
@@ -122,57 +121,20 @@ class MeshPreparation {
         ++out.triangles;
     }
 
-    // The pixel's place in the patch.
-    [[nodiscard]] std::size_t place_of(std::int64_t x, std::int64_t y) const {
-        const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
-        const std::size_t tile = (row / kTile - patch_.first_row) * (patch_.end_column - patch_.first_column) +
-                                 column / kTile - patch_.first_column;
-        return tile * kTilePixels + row % kTile * kTile + column % kTile;
-    }
-
-    // Calls visit(x, y) for the pixels of the patch whose squares the polygon's edges enclose or touch, or nearly
-    // touch.
-    template <std::size_t N, class Visit>
-    void for_each_touched(const PixelPoint (&p)[N], const Visit& visit) const {
-        double low_y = p[0].y, high_y = p[0].y;
-        for (const PixelPoint& q : p) {
-            low_y = std::min(low_y, q.y);
-            high_y = std::max(high_y, q.y);
-        }
-        const double last_row = std::min<double>(kTile * patch_.end_row, map_.height) - 1.0;
-        const double first_row = kTile * patch_.first_row;
-        const double last_column = std::min<double>(kTile * patch_.end_column, map_.width) - 1.0;
-        const double first_column = kTile * patch_.first_column;
-        const auto begin = static_cast<std::int64_t>(std::max(first_row, std::floor(low_y - margin_)));
-        const auto end = static_cast<std::int64_t>(std::min(last_row, std::floor(high_y + margin_)));
-        for (std::int64_t y = begin; y <= end; ++y) {
-            double left = HUGE_VAL, right = -HUGE_VAL;
-            for (std::size_t i = 0; i < (N == 2 ? 1 : N); ++i)
-                widen(p[i], p[(i + 1) % N], static_cast<double>(y), left, right);
-            const auto from =
-                static_cast<std::int64_t>(std::max(first_column, std::floor(std::min(left - margin_, 1e9))));
-            const auto to =
-                static_cast<std::int64_t>(std::min(last_column, std::floor(std::max(right + margin_, -1e9))));
-            for (std::int64_t x = from; x <= to; ++x) visit(x, y);
-        }
-    }
-
-    // By the part of the edge within a row.
-    void widen(const PixelPoint& a, const PixelPoint& b, double row, double& left, double& right) const {
-        const double from = std::max(row - margin_, std::min(a.y, b.y));
-        const double to = std::min(row + 1.0 + margin_, std::max(a.y, b.y));
-        if (from > to) return;
-        const double low = std::min(a.x, b.x), high = std::max(a.x, b.x), up = b.y - a.y;
-        if (std::fabs(up) < 0x1p-20) {
-            left = std::min(left, low);
-            right = std::max(right, high);
-            return;
-        }
-        for (const double y : {from, to}) {
-            const double x = std::clamp(a.x + (b.x - a.x) * ((y - a.y) / up), low, high);
-            left = std::min(left, x);
-            right = std::max(right, x);
-        }
+    void set_target() {
+        target_ = {out_.values.data() + patch_.first_value,
+                   out_.reached.data() + patch_.first_value / kTilePixels,
+                   out_.contour.data(),
+                   patch_.first_column,
+                   patch_.first_row,
+                   patch_.end_column - patch_.first_column,
+                   static_cast<double>(kTile * patch_.first_column),
+                   static_cast<double>(kTile * patch_.first_row),
+                   std::min<double>(kTile * patch_.end_column, map_.width) - 1.0,
+                   std::min<double>(kTile * patch_.end_row, map_.height) - 1.0,
+                   map_.half_width,
+                   map_.half_height,
+                   margin_};
     }
 
     void add_triangle(std::size_t t) {
@@ -194,29 +156,26 @@ class MeshPreparation {
             std::max({points[0].x, points[1].x, points[2].x}) - std::min({points[0].x, points[1].x, points[2].x}) +
             std::max({points[0].y, points[1].y, points[2].y}) - std::min({points[0].y, points[1].y, points[2].y}) + 2.0;
         const double limit = 0.05 * plane.determinant / extent;
-        const double weights[3] = {c.form[2], a.form[2], b.form[2]};
         ++out_.triangles;
-        for_each_touched(points, [&](std::int64_t column, std::int64_t row) {
-            const double x = static_cast<double>(column) + 0.5 - map_.half_width;
-            const double y = static_cast<double>(row) + 0.5 - map_.half_height;
-            const double depth = std::max(n.x * x + n.y * y + n.w - lower, farthest);
-            const std::size_t place = place_of(column, row);
-            float& value = out_.values[patch_.first_value + place];
-            value = std::min(value, static_cast<float>(depth - 0x1p-23 * std::fabs(depth)));
-            double beyond = 0.0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double inside = sides[k].x * x + sides[k].y * y + sides[k].w - bounds_.line;
-                beyond += inside < 0.0 ? -inside * weights[k] : 0.0;
-            }
-            if (beyond <= limit) out_.states[place] |= kReached;
-        });
+        draw_triangle_kernel({{points[0].x, points[1].x, points[2].x},
+                              {points[0].y, points[1].y, points[2].y},
+                              {n.x, n.y, n.w},
+                              lower,
+                              farthest,
+                              {{sides[0].x, sides[0].y, sides[0].w},
+                               {sides[1].x, sides[1].y, sides[1].w},
+                               {sides[2].x, sides[2].y, sides[2].w}},
+                              {c.form[2], a.form[2], b.form[2]},
+                              bounds_.line,
+                              limit},
+                             target_);
     }
 
     void add_contour(const ShapeEdge& edge) {
         const bool left = out_.facing[edge.left] != 0, right = edge.right != kNone && out_.facing[edge.right] != 0;
         if (left == right) return;
-        const PixelPoint ends[2] = {out_.pixels[edge.a], out_.pixels[edge.b]};
-        for_each_touched(ends, [&](std::int64_t x, std::int64_t y) { out_.states[place_of(x, y)] |= kOnContour; });
+        const PixelPoint &a = out_.pixels[edge.a], &b = out_.pixels[edge.b];
+        draw_contour_kernel({{a.x, b.x}, {a.y, b.y}}, target_);
     }
 
     const PixelMap& map_;
@@ -227,6 +186,7 @@ class MeshPreparation {
     Bounds bounds_;
     PreparedBodies& out_;
     PreparedPatch patch_{};
+    PatchTarget target_{};
     double margin_ = 0.0, nearness_error_ = 0.0;
 };
 

@@ -70,7 +70,8 @@ struct PreparedBodies {
     Vector<float> shadows;  // groups of planes: eight of each coefficient; the last plane fills its group up
     Vector<PreparedPatch> patches;
     Vector<float> values;
-    std::uint64_t triangles = 0;  // that were drawn one by one
+    Vector<std::uint64_t> reached;  // a word for each 64 values: which of them are covered
+    std::uint64_t triangles = 0;    // that were drawn one by one
 
     // For prepare()'s own use.
     Vector<std::uint8_t> seen, facing;
@@ -78,7 +79,7 @@ struct PreparedBodies {
     Vector<ShadowPlane> fronts, lines;
     Vector<MappedPoint> points;
     Vector<PixelPoint> pixels;
-    Vector<std::uint8_t> states;
+    Vector<std::uint64_t> contour;
 
     void clear() {
         bodies.clear();
@@ -87,6 +88,7 @@ struct PreparedBodies {
         shadows.clear();
         patches.clear();
         values.clear();
+        reached.clear();
         triangles = 0;
     }
 };

@@ -238,9 +238,10 @@ class Portal {
         const Vectors<D> normal[4] = {a.plus(b).plus(c), q.plus(b).minus(r), r.plus(c).minus(p), p.plus(a).minus(q)};
         V largest = v_[0].largest();
         for (int i = 1; i < 4; ++i) largest = hn::Max(largest, v_[i].largest());
-        // Above the overflow of sums of products it is infinite, and nothing is claimed.
+        // (8 M)³ overflows before any sum of products does: six of them are below 6 M³. It is infinite then, and so is
+        // the margin: nothing is claimed.
         largest = hn::Mul(largest, hn::Set(d, 8));
-        const V error = hn::MulAdd(hn::Mul(largest, largest), hn::Mul(largest, hn::Set(d, hn::TFromD<D>(0x1p-27))),
+        const V error = hn::MulAdd(hn::Mul(hn::Mul(largest, largest), largest), hn::Set(d, hn::TFromD<D>(0x1p-27)),
                                    hn::Set(d, hn::TFromD<D>(1e-36)));
         M above = found_, below = found_;
         for (int i = 0; i < 4; ++i) {

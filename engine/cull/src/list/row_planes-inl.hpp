@@ -70,6 +70,11 @@ class ScaledRowPlanes {
     static constexpr double kMaxOffset = 1 << 29;
     static constexpr double kMaxSlack = 1 << 26;
 
+    // sum + a · b, rounded twice on every target: a fused product would move rows from one stage to the other, and the
+    // statistics with them.
+    using V = hn::Vec<D>;
+    static HWY_INLINE V plus_product(V sum, V a, V b) { return hn::Add(hn::Mul(a, b), sum); }
+
     // Planes i on.
     HWY_INLINE void scale(const ListChunk& chunk, const LocalOrigin& at, std::size_t i) {
         const D d;
@@ -78,16 +83,16 @@ class ScaledRowPlanes {
         const auto own = hn::Load(d, plane_offset_ + i);
         auto value = own, span = hn::Zero(d);
         // The value's seven roundings (as in local_plane), and the offset's to an integer.
-        auto slack =
-            hn::MulAdd(hn::Add(hn::Abs(own), hn::Set(d, at.size)), hn::Set(d, 0x1p-49 * per_quantum), hn::Set(d, 1.0));
+        V slack = plus_product(hn::Set(d, 1.0), hn::Add(hn::Abs(own), hn::Set(d, at.size)),
+                               hn::Set(d, 0x1p-49 * per_quantum));
         for (unsigned j = 0; j < 3; ++j) {
             const auto normal = hn::Load(d, normal_[j] + i), scaled = hn::Mul(normal, hn::Set(d, kScale)),
                        whole = hn::Round(scaled), extent = hn::Set(d, static_cast<double>(chunk.extent[j]));
-            value = hn::MulAdd(normal, hn::Set(d, at.d[j]), value);
+            value = plus_product(value, normal, hn::Set(d, at.d[j]));
             // The normal's rounding, and that of the row: half a quantum, and 2^14 · 2^-24 for the centre's in float.
-            slack = hn::MulAdd(hn::Abs(hn::Sub(scaled, whole)), extent, slack);
-            slack = hn::MulAdd(hn::Abs(scaled), hn::Set(d, 0.502), slack);
-            span = hn::MulAdd(hn::Abs(whole), extent, span);
+            slack = plus_product(slack, hn::Abs(hn::Sub(scaled, whole)), extent);
+            slack = plus_product(slack, hn::Abs(scaled), hn::Set(d, 0.502));
+            span = plus_product(span, hn::Abs(whole), extent);
             hn::Store(hn::DemoteTo(di, whole), di, whole_[j] + i);
         }
         const auto most = hn::Set(d, kMaxOffset);
@@ -96,7 +101,7 @@ class ScaledRowPlanes {
         hn::Store(hn::DemoteTo(di, offset), di, offset_ + i);
         hn::Store(hn::Sub(offset, reach), d, lowest_ + i);
         hn::Store(hn::Add(offset, reach), d, highest_ + i);
-        hn::Store(hn::MulAdd(slack, hn::Set(d, 1.0 + 0x1p-20), hn::Set(d, 1.0)), d, slack_ + i);
+        hn::Store(plus_product(hn::Set(d, 1.0), slack, hn::Set(d, 1.0 + 0x1p-20)), d, slack_ + i);
     }
 
     static constexpr std::size_t kMost = KernelView::kMaxPlanes;

@@ -12,6 +12,8 @@ inline constexpr bool kCountStatistics = false;  // every number below stays 0, 
 inline constexpr bool kCountStatistics = true;
 #endif
 
+// The same on every processor but for exact_tests: how many items are too near to call in floats depends on whether the
+// processor fuses products with sums.
 struct Statistics {
     std::uint64_t nodes_tested = 0;    // bounds of inner nodes and leaves against planes
     std::uint64_t boxes_tested = 0;    // items' boxes against planes
