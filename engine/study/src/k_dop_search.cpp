@@ -39,9 +39,8 @@ Vector<glm::dmat3> distinct_turns(std::span<const glm::dvec3> directions) {
 
 struct TurnCell {
     std::size_t turn;
-    glm::dvec3 center;  // Rodrigues
+    glm::dvec3 center;
     double half, bound;
-    std::uint64_t age;
 };
 
 class Rotations {
@@ -62,12 +61,7 @@ class Rotations {
 
     // Below the value of rotation_of(g) · turn for every g of the cell. Call value() of its middle first.
     [[nodiscard]] double bound(const glm::dvec3& center, double half, const glm::dmat3& rotation) {
-        std::array<glm::dvec3, 8> turns;
-        double longest = 0.0;
-        for (unsigned c = 0; c < 8; ++c) {
-            turns[c] = turn_between(center, corner_of(center, half, c));
-            longest = std::max(longest, glm::length(turns[c]));
-        }
+        const auto [turns, longest] = corner_turns(center, half);
         // dot(turned n, p) beside its linear part: (t × (t × n))·p is at least −t² (|p| + n·p) / 2.
         const double part = longest * longest / (1.0 + longest * longest);
         measure::IntrinsicVolumes least;
@@ -169,33 +163,20 @@ KDopSearch search_rotations(std::span<const glm::dvec3> points, std::span<const 
     Rotations rotations(points, directions, criterion);
     KDopSearch result;
     result.value = known;
-    double dropped = std::numeric_limits<double>::infinity();
-    Vector<TurnCell> heap;
-    const auto lower = [](const TurnCell& a, const TurnCell& b) {
-        return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
-    };
+    CellQueue<TurnCell> queue;
     const auto add = [&](std::size_t turn, const glm::dvec3& center, double half, double above) {
         const glm::dmat3 rotation = rotation_of(center) * turns[turn];
         if (const double value = rotations.value(rotation); value < result.value * (1.0 - 1e-8))
             result.value = value, result.rotation = rotation;
-        const double below = std::max(above, rotations.bound(center, half, rotation));
-        ++result.cells;
-        if (below >= result.value) {
-            dropped = std::min(dropped, below);
-            return;
-        }
-        heap.push_back({turn, center, half, below, result.cells});
-        std::push_heap(heap.begin(), heap.end(), lower);
+        queue.add({turn, center, half, std::max(above, rotations.bound(center, half, rotation))}, result.value);
     };
     for (std::size_t turn = 0; turn < turns.size(); ++turn) add(turn, glm::dvec3(0.0), kHalfOfAllRotations, 0.0);
-    while (!heap.empty() && result.cells < max_cells && heap.front().bound < result.value * (1.0 - tolerance)) {
-        std::pop_heap(heap.begin(), heap.end(), lower);
-        const TurnCell cell = heap.back();
-        heap.pop_back();
-        for (unsigned c = 0; c < 8; ++c)
-            add(cell.turn, corner_of(cell.center, 0.5 * cell.half, c), 0.5 * cell.half, cell.bound);
+    while (queue.cells() < max_cells && queue.has_below(result.value * (1.0 - tolerance))) {
+        const TurnCell cell = queue.take();
+        divide(cell.center, cell.half, [&](const glm::dvec3& c, double half) { add(cell.turn, c, half, cell.bound); });
     }
-    result.lower_bound = std::min({result.value, dropped, heap.empty() ? result.value : heap.front().bound});
+    result.cells = queue.cells();
+    result.lower_bound = queue.lower_bound(result.value);
     return result;
 }
 
