@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <utility>
 
 namespace crofton::study {
@@ -71,10 +70,7 @@ class CellQueue {
     // Counts the cell, and keeps it if it may have less than `known`. Returns whether it is kept.
     bool add(Cell cell, Bound known) {
         ++cells_;
-        if (cell.bound >= known) {
-            dropped_ = (std::min)(dropped_, cell.bound);
-            return false;
-        }
+        if (cell.bound >= known) return false;
         heap_.push_back({std::move(cell), cells_});
         std::push_heap(heap_.begin(), heap_.end(), later);
         return true;
@@ -90,10 +86,10 @@ class CellQueue {
     [[nodiscard]] bool has_below(double value) const {
         return !heap_.empty() && static_cast<double>(heap_.front().cell.bound) < value;
     }
-    // No rotation of the cells that were added, and not taken, has a lower value than this; `known` if none has a
-    // lower one than that.
+    // No rotation of the cells that were added, and not taken, has a lower value. `known` is the least value known, and
+    // has not grown since: cells that add() did not keep have no less.
     [[nodiscard]] Bound lower_bound(Bound known) const {
-        return (std::min)({known, dropped_, heap_.empty() ? known : heap_.front().cell.bound});
+        return heap_.empty() ? known : (std::min)(known, heap_.front().cell.bound);
     }
     [[nodiscard]] std::uint64_t cells() const { return cells_; }
 
@@ -107,7 +103,6 @@ class CellQueue {
     }
 
     Vector<Entry> heap_;
-    Bound dropped_ = (std::numeric_limits<Bound>::max)();
     std::uint64_t cells_ = 0;
 };
 
