@@ -13,6 +13,9 @@
 #include <numbers>
 #include <vector>
 
+#include "k_dop_search.hpp"
+#include "rotation_cells.hpp"
+
 using namespace crofton;
 
 namespace {
@@ -134,6 +137,38 @@ TEST_SUITE("study/k_dop") {
         CHECK(error_of(study::best_k_dop(random_points(1, 5), *study::k_dop_directions(6), measure::minimal_area(),
                                          {.tolerance = 0.0}))
                   .code == ErrorCode::invalid_argument);
+    }
+
+    TEST_CASE("no rotation of a cell has less than the cell's bound, also where all supports turn away at once") {
+        int close = 0;
+        for (std::uint64_t seed = 0; seed < 60; ++seed) {
+            const auto directions = *study::k_dop_directions(seed % 2 == 0 ? 14 : 18);
+            auto points = random_points(seed, 10);
+            if (seed % 3 == 0) {  // where nothing is turned each point is the support of one direction
+                points.clear();
+                for (const glm::dvec3& d : directions) points.insert(points.end(), {d, -d});
+            }
+            const measure::Criterion criterion = seed % 5 < 2   ? measure::minimal_area()
+                                                 : seed % 5 < 4 ? measure::minimal_perimeter()
+                                                                : measure::minimal_volume();
+            study::KDopRotations rotations(points, directions, criterion);
+            sampling::Random random(24, seed);
+            const double half = 0.3 * std::pow(0.5, random.uniform(0.0, 8.0));
+            const glm::dvec3 center = seed % 6 == 0 ? glm::dvec3(0.0)
+                                                    : glm::dvec3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3),
+                                                                 random.uniform(-0.3, 0.3));
+            const glm::dmat3 middle = study::rotation_of(center);
+            const double value = rotations.value(middle), bound = rotations.bound(center, half, middle);
+            CHECK(bound <= value);
+            for (unsigned i = 0; i < 200; ++i) {
+                const glm::dvec3 part(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+                const glm::dvec3 g = i < 8 ? study::corner_of(center, half, i) : center + half * part;
+                const double there = rotations.value(study::rotation_of(g));
+                CHECK(there >= bound);
+                close += there - bound < 0.3 * (value - bound) ? 1 : 0;
+            }
+        }
+        CHECK(close > 10);  // the bound is nearly reached
     }
 
     TEST_CASE("directions of one's own are searched over all rotations, not a cube's share of them") {

@@ -243,6 +243,24 @@ TEST_SUITE("viewer/meaning") {
         }
         CHECK(both["other"]["improper"] != both["statistics"]["improper"]);
     }
+    TEST_CASE("the axes of the tree's bounds change what is tested, not what is found, and are compared as A and B") {
+        const ViewRun result = view({set(0, {{"paused", true}, {"compare", true}, {"other_tree", "oriented"}}),
+                                     shot(1, "axes.png"),
+                                     {{"frame", 2}, {"key", "U"}},
+                                     shot(3, "turned.png")},
+                                    "--instances 3000 --size 160x90", false);
+        check_clean(result);
+        const json &axes = picture(result, "axes.png"), &turned = picture(result, "turned.png");
+        CHECK(axes["settings"]["tree"] == "aligned");
+        CHECK(turned["settings"]["tree"] == "oriented");
+        for (const char* name : {"visible", "inside", "straddling", "triangles_passed"}) {
+            CAPTURE(name);
+            CHECK(axes["other"][name] == axes["statistics"][name]);
+            CHECK(turned["statistics"][name] == axes["statistics"][name]);
+        }
+        CHECK(axes["other"]["nodes_tested"] != axes["statistics"]["nodes_tested"]);
+        CHECK(turned["statistics"]["nodes_tested"] == axes["other"]["nodes_tested"]);
+    }
     TEST_CASE("the inset shows the frozen frustum from outside, white and unmoved by the eye") {
         const auto corner = [](const char* name) {
             // The inset's picture lies at the bottom right, under its title.

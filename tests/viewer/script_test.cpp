@@ -69,6 +69,7 @@ TEST_SUITE("viewer/settings") {
         CHECK_FALSE(set_switch(settings, "triangulation", "fan"));
         CHECK_FALSE(set_switch(settings, "triangulation", 2));
         CHECK_FALSE(set_switch(settings, "bounds_kind", "capsule"));
+        CHECK_FALSE(set_switch(settings, "other_tree", "slanted"));
         CHECK(to_json(settings).dump() == to_json(Settings{}).dump());
     }
     TEST_CASE("every switch that is written can be read back") {
@@ -78,7 +79,8 @@ TEST_SUITE("viewer/settings") {
         settings.tree_level = 2;
         settings.cascades = 3;
         settings.method = {pipeline::BoundsKind::sphere, pipeline::CullMode::flat};
-        settings.other = {pipeline::BoundsKind::aabb, pipeline::CullMode::none, Triangulation::delaunay};
+        settings.other = {pipeline::BoundsKind::aabb, pipeline::CullMode::none, boxtree::Orientation::automatic,
+                          Triangulation::delaunay};
         Settings copy;
         const Json written = to_json(settings);
         for (const auto& [name, value] : written.members()) CHECK(set_switch(copy, name, value));

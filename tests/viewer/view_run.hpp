@@ -27,9 +27,10 @@ inline ViewRun view(const json& events, const std::string& arguments = {}, bool 
     std::filesystem::remove(out);
     write_contents(script, json{{"events", events}}.dump());
     const std::string size = arguments.find("--size") == std::string::npos ? "--size 480x270" : "";
-    const std::string all = "view --instances 400 " + size + " --validation --device cpu --output '" +
-                            scratch().file("") + "' --script '" + script + "' --json '" + out + "' " +
-                            (window ? "" : "--no-window ") + arguments;
+    const std::string instances = arguments.find("--instances") == std::string::npos ? "--instances 400 " : "";
+    const std::string all = "view " + instances + size + " --validation --device cpu --output '" + scratch().file("") +
+                            "' --script '" + script + "' --json '" + out + "' " + (window ? "" : "--no-window ") +
+                            arguments;
     ViewRun result;
     const std::string err = scratch().file("view_stderr");
     const std::string command = std::string(window ? "xvfb-run -a " : "") + "'" CROFTON_CLI "' " + all +

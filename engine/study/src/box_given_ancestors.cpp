@@ -19,11 +19,9 @@ namespace {
 
 using std::numbers::pi;
 
-struct Cell {
-    glm::dvec3 center;  // Rodrigues
-    double half;
-    double bound;
-    std::uint64_t age;
+struct BoxCell {
+    glm::dvec3 center;
+    double half, bound;
 };
 
 class BoxSearch {
@@ -63,12 +61,7 @@ class BoxSearch {
     [[nodiscard]] double bound(const glm::dvec3& center, double half) const {
         const glm::dmat3 axes = rotation_of(center);
         const Supports s = supports(axes);
-        std::array<glm::dvec3, 8> turns;
-        double longest = 0.0;
-        for (unsigned c = 0; c < 8; ++c) {
-            turns[c] = turn_between(center, corner_of(center, half, c));
-            longest = std::max(longest, glm::length(turns[c]));
-        }
+        const auto [turns, longest] = corner_turns(center, half);
         const double angle = 2.0 * arc_tangent(longest, 1.0);
         const double flip = sine(std::min(0.5 * pi, angle));
         std::array<double, 8> sums{};
@@ -94,33 +87,19 @@ class BoxSearch {
     }
 
     void run(const BoxGivenAncestorsOptions& options, glm::dmat3& best, BoxGivenAncestors& result) const {
-        const auto lower = [](const Cell& a, const Cell& b) {
-            return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
-        };
-        double dropped = std::numeric_limits<double>::infinity();
-        Vector<Cell> heap;
+        CellQueue<BoxCell> queue;
         const auto add = [&](const glm::dvec3& center, double half, double above) {
             const glm::dmat3 axes = rotation_of(center);
             if (const double value = measure_of(axes); value < result.value) result.value = value, best = axes;
-            const double below = std::max(above, bound(center, half));
-            ++result.cells;
-            if (below >= result.value) {
-                dropped = std::min(dropped, below);
-                return;
-            }
-            heap.push_back({center, half, below, result.cells});
-            std::push_heap(heap.begin(), heap.end(), lower);
+            queue.add({center, half, std::max(above, bound(center, half))}, result.value);
         };
         add(glm::dvec3(0.0), kHalfOfAllRotations, 0.0);
-        while (!heap.empty() && result.cells < options.max_cells &&
-               heap.front().bound < result.value * (1.0 - options.tolerance)) {
-            std::pop_heap(heap.begin(), heap.end(), lower);
-            const Cell cell = heap.back();
-            heap.pop_back();
-            for (unsigned c = 0; c < 8; ++c)
-                add(corner_of(cell.center, 0.5 * cell.half, c), 0.5 * cell.half, cell.bound);
+        while (queue.cells() < options.max_cells && queue.has_below(result.value * (1.0 - options.tolerance))) {
+            const BoxCell cell = queue.take();
+            divide(cell.center, cell.half, [&](const glm::dvec3& c, double half) { add(c, half, cell.bound); });
         }
-        result.lower_bound = std::min({result.value, dropped, heap.empty() ? result.value : heap.front().bound});
+        result.cells = queue.cells();
+        result.lower_bound = queue.lower_bound(result.value);
     }
 
   private:

@@ -13,19 +13,18 @@ namespace crofton::study {
 namespace {
 
 struct CountCell {
-    glm::dvec3 center;  // Rodrigues
+    glm::dvec3 center;
     double half;
-    std::uint32_t certain;  // queries that hit every box of the cell
+    std::uint32_t bound;  // queries that hit every box of the cell
     Vector<std::uint32_t> undecided;
-    std::uint64_t age;
 };
 
 // Boxes as stored have axes of floats, 6e-8 off.
 constexpr double kRounding = 1e-6;
 
-// What is in all tight boxes of a cell, and what holds all of them. A unit axis turned by up to an angle moves by
-// s = 2 sin(angle / 2) at most, so a point's coordinate changes by s times its distance from the middle, and an extent
-// by s r, r the points' greatest distance. No corner of a tight box is farther than √3 r.
+// A box inside all tight boxes of a cell, and a box around them. A unit axis that turns by an angle moves by
+// s = 2 sin(angle / 2). A point's coordinate then changes by at most s times its distance from the middle. Let r be
+// the points' greatest distance: extents change by at most s r, and no corner of a tight box is farther than √3 r.
 struct Boxes {
     Obb inner, outer;
     bool has_inner;
@@ -41,9 +40,7 @@ class Turns {
     }
 
     [[nodiscard]] Boxes boxes(const glm::dvec3& center, double half) const {
-        double longest = 0.0;
-        for (unsigned c = 0; c < 8; ++c)
-            longest = std::max(longest, glm::length(turn_between(center, corner_of(center, half, c))));
+        const double longest = corner_turns(center, half).longest;
         // tan(angle / 2) = longest.
         const double moved = 2.0 * longest / std::sqrt(1.0 + longest * longest);
         const glm::dmat3 axes = rotation_of(center);
@@ -78,49 +75,32 @@ CountProof prove_count(std::span<const glm::dvec3> points, std::span<const std::
                        double tolerance, std::uint64_t max_cells,
                        FunctionRef<std::uint32_t(const glm::dmat3&)> consider) {
     // What hits the hull hits every box.
-    std::uint32_t base = 0;
-    CountCell all{glm::dvec3(0.0), kHalfOfAllRotations, 0, {}, 0};
+    CountCell all{glm::dvec3(0.0), kHalfOfAllRotations, 0, {}};
     for (const std::uint32_t q : candidates)
         if (queries.surely_hits(q, points, triangles))
-            ++base;
+            ++all.bound;
         else
             all.undecided.push_back(q);
-    CountProof proof;
+    if (max_cells == 0) return {std::min(known, all.bound), 0};
     const Turns turns(points);
-    std::uint32_t dropped = std::numeric_limits<std::uint32_t>::max();
-    Vector<CountCell> heap;
-    const auto lower = [](const CountCell& a, const CountCell& b) {
-        return a.certain != b.certain ? a.certain > b.certain : a.age > b.age;
-    };
+    CellQueue<CountCell> queue;
     const auto add = [&](const glm::dvec3& center, double half, const CountCell& above) {
         const Boxes boxes = turns.boxes(center, half);
-        CountCell cell{center, half, above.certain, {}, ++proof.cells};
+        CountCell cell{center, half, above.bound, {}};
         for (const std::uint32_t q : above.undecided) {
             if (boxes.has_inner && queries.hits(q, boxes.inner))
-                ++cell.certain;
+                ++cell.bound;
             else if (queries.hits(q, boxes.outer))
                 cell.undecided.push_back(q);
         }
-        if (base + cell.certain >= known) {
-            dropped = std::min(dropped, cell.certain);
-            return;
-        }
-        known = std::min(known, consider(rotation_of(center)));
-        heap.push_back(std::move(cell));
-        std::push_heap(heap.begin(), heap.end(), lower);
+        if (queue.add(std::move(cell), known)) known = std::min(known, consider(rotation_of(center)));
     };
-    if (max_cells > 0) add(all.center, all.half, all);
-    while (!heap.empty() && proof.cells < max_cells &&
-           static_cast<double>(base + heap.front().certain) < static_cast<double>(known) * (1.0 - tolerance)) {
-        std::pop_heap(heap.begin(), heap.end(), lower);
-        const CountCell cell = std::move(heap.back());
-        heap.pop_back();
-        for (unsigned c = 0; c < 8; ++c) add(corner_of(cell.center, 0.5 * cell.half, c), 0.5 * cell.half, cell);
+    add(all.center, all.half, all);
+    while (queue.cells() < max_cells && queue.has_below(static_cast<double>(known) * (1.0 - tolerance))) {
+        const CountCell cell = queue.take();
+        divide(cell.center, cell.half, [&](const glm::dvec3& c, double half) { add(c, half, cell); });
     }
-    std::uint32_t least = max_cells > 0 ? dropped : 0;
-    if (!heap.empty()) least = std::min(least, heap.front().certain);
-    proof.lower_bound = least == std::numeric_limits<std::uint32_t>::max() ? known : std::min(known, base + least);
-    return proof;
+    return {queue.lower_bound(known), queue.cells()};
 }
 
 }  // namespace crofton::study

@@ -39,75 +39,8 @@ Vector<glm::dmat3> distinct_turns(std::span<const glm::dvec3> directions) {
 
 struct TurnCell {
     std::size_t turn;
-    glm::dvec3 center;  // Rodrigues
+    glm::dvec3 center;
     double half, bound;
-    std::uint64_t age;
-};
-
-class Rotations {
-  public:
-    Rotations(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
-              const measure::Criterion& criterion)
-        : points_(points), polytopes_(directions), criterion_(criterion), offsets_(polytopes_.faces()) {
-        for (const glm::dvec3& p : points_) size_ = std::max(size_, glm::length(p));
-        support_.resize(polytopes_.faces());
-    }
-
-    [[nodiscard]] double value(const glm::dmat3& rotation) {
-        find_supports(rotation);
-        for (std::size_t f = 0; f < offsets_.size(); ++f)
-            offsets_[f] = lowered(f, glm::dot(support_[f], rotation * polytopes_.normal(f)));
-        return criterion_(polytopes_(offsets_));
-    }
-
-    // Below the value of rotation_of(g) · turn for every g of the cell. Call value() of its middle first.
-    [[nodiscard]] double bound(const glm::dvec3& center, double half, const glm::dmat3& rotation) {
-        std::array<glm::dvec3, 8> turns;
-        double longest = 0.0;
-        for (unsigned c = 0; c < 8; ++c) {
-            turns[c] = turn_between(center, corner_of(center, half, c));
-            longest = std::max(longest, glm::length(turns[c]));
-        }
-        // dot(turned n, p) beside its linear part: (t × (t × n))·p is at least −t² (|p| + n·p) / 2.
-        const double part = longest * longest / (1.0 + longest * longest);
-        measure::IntrinsicVolumes least;
-        for (unsigned c = 0; c < 8; ++c) {
-            for (std::size_t f = 0; f < offsets_.size(); ++f) {
-                const glm::dvec3 n = rotation * polytopes_.normal(f), &p = support_[f];
-                const double linear = glm::dot(n, p) + 2.0 * glm::dot(turns[c], glm::cross(n, p));
-                const double rest = part * ((1.0 + 2.0 * longest) * glm::length(p) + glm::dot(n, p));
-                offsets_[f] = lowered(f, linear - rest);
-            }
-            const measure::IntrinsicVolumes v = polytopes_(offsets_);
-            if (c == 0) least = v;
-            least.volume = std::min(least.volume, v.volume);
-            least.area = std::min(least.area, v.area);
-            least.mean_curvature = std::min(least.mean_curvature, v.mean_curvature);
-        }
-        return criterion_(least) * (1.0 - 1e-9);
-    }
-
-  private:
-    // Faces through one edge would be counted twice where offsets tie: each is lowered by another small amount.
-    [[nodiscard]] double lowered(std::size_t face, double offset) const {
-        const double part = static_cast<double>(face) * 0.6180339887498949;
-        return offset - 1e-9 * size_ * (1.0 + part - std::floor(part));
-    }
-    void find_supports(const glm::dmat3& rotation) {
-        for (std::size_t f = 0; f < support_.size(); ++f) {
-            const glm::dvec3 n = rotation * polytopes_.normal(f);
-            double most = -std::numeric_limits<double>::infinity();
-            for (const glm::dvec3& p : points_)
-                if (const double along = glm::dot(n, p); along > most) most = along, support_[f] = p;
-        }
-    }
-
-    std::span<const glm::dvec3> points_;
-    SlabPolytopes polytopes_;
-    const measure::Criterion& criterion_;
-    Vector<double> offsets_;
-    Vector<glm::dvec3> support_;
-    double size_ = 0.0;
 };
 
 }  // namespace
@@ -162,40 +95,76 @@ measure::IntrinsicVolumes SlabPolytopes::operator()(std::span<const double> offs
     return result;
 }
 
+KDopRotations::KDopRotations(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
+                             const measure::Criterion& criterion)
+    : points_(points), polytopes_(directions), criterion_(criterion), offsets_(polytopes_.faces()) {
+    for (const glm::dvec3& p : points_) size_ = std::max(size_, glm::length(p));
+    support_.resize(polytopes_.faces());
+}
+
+double KDopRotations::value(const glm::dmat3& rotation) {
+    find_supports(rotation);
+    for (std::size_t f = 0; f < offsets_.size(); ++f)
+        offsets_[f] = lowered(f, glm::dot(support_[f], rotation * polytopes_.normal(f)));
+    return criterion_(polytopes_(offsets_));
+}
+
+double KDopRotations::bound(const glm::dvec3& center, double half, const glm::dmat3& rotation) {
+    const auto [turns, longest] = corner_turns(center, half);
+    // dot(turned n, p) beside its linear part: (t × (t × n))·p is at least −t² (|p| + n·p) / 2.
+    const double part = longest * longest / (1.0 + longest * longest);
+    measure::IntrinsicVolumes least;
+    for (unsigned c = 0; c < 8; ++c) {
+        for (std::size_t f = 0; f < offsets_.size(); ++f) {
+            const glm::dvec3 n = rotation * polytopes_.normal(f), &p = support_[f];
+            const double linear = glm::dot(n, p) + 2.0 * glm::dot(turns[c], glm::cross(n, p));
+            const double rest = part * ((1.0 + 2.0 * longest) * glm::length(p) + glm::dot(n, p));
+            offsets_[f] = lowered(f, linear - rest);
+        }
+        const measure::IntrinsicVolumes v = polytopes_(offsets_);
+        if (c == 0) least = v;
+        least.volume = std::min(least.volume, v.volume);
+        least.area = std::min(least.area, v.area);
+        least.mean_curvature = std::min(least.mean_curvature, v.mean_curvature);
+    }
+    return criterion_(least) * (1.0 - 1e-9);
+}
+
+double KDopRotations::lowered(std::size_t face, double offset) const {
+    const double part = static_cast<double>(face) * 0.6180339887498949;
+    return offset - 1e-9 * size_ * (1.0 + part - std::floor(part));
+}
+
+void KDopRotations::find_supports(const glm::dmat3& rotation) {
+    for (std::size_t f = 0; f < support_.size(); ++f) {
+        const glm::dvec3 n = rotation * polytopes_.normal(f);
+        double most = -std::numeric_limits<double>::infinity();
+        for (const glm::dvec3& p : points_)
+            if (const double along = glm::dot(n, p); along > most) most = along, support_[f] = p;
+    }
+}
+
 KDopSearch search_rotations(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
                             const measure::Criterion& criterion, double known, double tolerance,
                             std::uint64_t max_cells) {
     const Vector<glm::dmat3> turns = distinct_turns(directions);
-    Rotations rotations(points, directions, criterion);
+    KDopRotations rotations(points, directions, criterion);
     KDopSearch result;
     result.value = known;
-    double dropped = std::numeric_limits<double>::infinity();
-    Vector<TurnCell> heap;
-    const auto lower = [](const TurnCell& a, const TurnCell& b) {
-        return a.bound != b.bound ? a.bound > b.bound : a.age > b.age;
-    };
+    CellQueue<TurnCell> queue;
     const auto add = [&](std::size_t turn, const glm::dvec3& center, double half, double above) {
         const glm::dmat3 rotation = rotation_of(center) * turns[turn];
         if (const double value = rotations.value(rotation); value < result.value * (1.0 - 1e-8))
             result.value = value, result.rotation = rotation;
-        const double below = std::max(above, rotations.bound(center, half, rotation));
-        ++result.cells;
-        if (below >= result.value) {
-            dropped = std::min(dropped, below);
-            return;
-        }
-        heap.push_back({turn, center, half, below, result.cells});
-        std::push_heap(heap.begin(), heap.end(), lower);
+        queue.add({turn, center, half, std::max(above, rotations.bound(center, half, rotation))}, result.value);
     };
     for (std::size_t turn = 0; turn < turns.size(); ++turn) add(turn, glm::dvec3(0.0), kHalfOfAllRotations, 0.0);
-    while (!heap.empty() && result.cells < max_cells && heap.front().bound < result.value * (1.0 - tolerance)) {
-        std::pop_heap(heap.begin(), heap.end(), lower);
-        const TurnCell cell = heap.back();
-        heap.pop_back();
-        for (unsigned c = 0; c < 8; ++c)
-            add(cell.turn, corner_of(cell.center, 0.5 * cell.half, c), 0.5 * cell.half, cell.bound);
+    while (queue.cells() < max_cells && queue.has_below(result.value * (1.0 - tolerance))) {
+        const TurnCell cell = queue.take();
+        divide(cell.center, cell.half, [&](const glm::dvec3& c, double half) { add(cell.turn, c, half, cell.bound); });
     }
-    result.lower_bound = std::min({result.value, dropped, heap.empty() ? result.value : heap.front().bound});
+    result.cells = queue.cells();
+    result.lower_bound = queue.lower_bound(result.value);
     return result;
 }
 

@@ -33,6 +33,31 @@ class SlabPolytopes {
     Vector<Line> lines_;
 };
 
+// The least k-DOPs around points, by the rotation of their directions. The points are relative to one inside their
+// hull; the directions are as for SlabPolytopes.
+class KDopRotations {
+  public:
+    KDopRotations(std::span<const glm::dvec3> points, std::span<const glm::dvec3> directions,
+                  const measure::Criterion& criterion);
+    // The criterion of the least k-DOP whose directions are turned.
+    [[nodiscard]] double value(const glm::dmat3& rotation);
+    // Below value(rotation_of(g) · turn) for every g of a cell (rotation_cells.hpp). `rotation` is that of the cell's
+    // center, rotation_of(center) · turn, and value(rotation) was the last call.
+    [[nodiscard]] double bound(const glm::dvec3& center, double half, const glm::dmat3& rotation);
+
+  private:
+    // Faces through one edge would be counted twice where offsets tie: each is lowered by another small amount.
+    [[nodiscard]] double lowered(std::size_t face, double offset) const;
+    void find_supports(const glm::dmat3& rotation);
+
+    std::span<const glm::dvec3> points_;
+    SlabPolytopes polytopes_;
+    const measure::Criterion& criterion_;
+    Vector<double> offsets_;
+    Vector<glm::dvec3> support_;
+    double size_ = 0.0;
+};
+
 struct KDopSearch {
     glm::dmat3 rotation{1.0};
     double value = 0.0;        // of the best rotation found, within 1e-8

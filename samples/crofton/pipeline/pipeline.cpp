@@ -32,11 +32,22 @@ Result<CullMode> cull_mode_from(const std::string& name) {
 }
 
 Result<boxtree::Orientation> orientation_from(const std::string& name) {
-    if (name == "aligned") return boxtree::Orientation::aligned;
-    if (name == "oriented") return boxtree::Orientation::oriented;
-    if (name == "automatic") return boxtree::Orientation::automatic;
+    using enum boxtree::Orientation;
+    for (const boxtree::Orientation orientation : {aligned, oriented, automatic})
+        if (name == to_string(orientation)) return orientation;
     return fail(ErrorCode::invalid_argument, kNoItem,
                 "tree: '" + name + "' is not one of aligned, oriented, automatic");
+}
+
+const char* to_string(boxtree::Orientation orientation) {
+    switch (orientation) {
+        case boxtree::Orientation::aligned:
+            return "aligned";
+        case boxtree::Orientation::oriented:
+            return "oriented";
+        default:
+            return "automatic";
+    }
 }
 
 const char* to_string(CullMode mode) {

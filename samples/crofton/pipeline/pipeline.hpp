@@ -21,6 +21,7 @@ enum class CullMode : std::uint8_t { none, flat, tree };
 [[nodiscard]] Result<CullMode> cull_mode_from(const std::string& name);
 [[nodiscard]] const char* to_string(CullMode mode);
 [[nodiscard]] Result<boxtree::Orientation> orientation_from(const std::string& name);
+[[nodiscard]] const char* to_string(boxtree::Orientation orientation);
 
 struct PipelineOptions {
     BoundsKind bounds = BoundsKind::obb_perimeter;

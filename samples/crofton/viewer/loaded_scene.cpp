@@ -38,6 +38,7 @@ pipeline::PipelineOptions options_of(const Method& method, const Settings& setti
     pipeline::PipelineOptions options;
     options.bounds = method.bounds;
     options.cull = method.cull;
+    options.tree = method.tree;
     options.mode = settings.exact ? cull::CullMode::exact : cull::CullMode::conservative;
     options.collide = settings.collisions;
     if (method.occlude) options.occlusion.emplace();
@@ -45,7 +46,7 @@ pipeline::PipelineOptions options_of(const Method& method, const Settings& setti
 }
 
 bool same(const pipeline::PipelineOptions& a, const pipeline::PipelineOptions& b) {
-    return a.bounds == b.bounds && a.cull == b.cull && a.mode == b.mode && a.collide == b.collide &&
+    return a.bounds == b.bounds && a.cull == b.cull && a.tree == b.tree && a.mode == b.mode && a.collide == b.collide &&
            a.occlusion.has_value() == b.occlusion.has_value();
 }
 

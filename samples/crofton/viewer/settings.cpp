@@ -29,17 +29,13 @@ tl::unexpected<Error> bad_value(const std::string& name, const char* wanted) {
     return fail(ErrorCode::invalid_argument, kNoItem, "switch '" + name + "' takes " + wanted);
 }
 
-Result<void> set_method(Method& method, const std::string& name, bool bounds, const Json& value) {
+// `parse` makes a value of its name, or an Error.
+template <class T>
+Result<void> set_parsed(T& target, const std::string& name, Result<T> (*parse)(const std::string&), const Json& value) {
     if (!value.is_string()) return bad_value(name, "a name");
-    if (bounds) {
-        const auto kind = pipeline::bounds_kind_from(value.text());
-        if (!kind) return tl::unexpected(kind.error());
-        method.bounds = *kind;
-    } else {
-        const auto mode = pipeline::cull_mode_from(value.text());
-        if (!mode) return tl::unexpected(mode.error());
-        method.cull = *mode;
-    }
+    const auto parsed = parse(value.text());
+    if (!parsed) return tl::unexpected(parsed.error());
+    target = *parsed;
     return {};
 }
 
@@ -74,15 +70,18 @@ Result<void> set_switch(Settings& settings, const std::string& name, const Json&
         settings.*flag = value.boolean();
         return {};
     }
-    if (name == "occlude" || name == "other_occlude") {
+    const bool other = name.rfind("other_", 0) == 0;
+    Method& method = other ? settings.other : settings.method;
+    const std::string part = other ? name.substr(6) : name;
+    if (part == "bounds_kind") return set_parsed(method.bounds, name, pipeline::bounds_kind_from, value);
+    if (part == "cull") return set_parsed(method.cull, name, pipeline::cull_mode_from, value);
+    if (part == "tree") return set_parsed(method.tree, name, pipeline::orientation_from, value);
+    if (part == "triangulation") return set_named(method.triangulation, name, kTriangulationNames, value);
+    if (part == "occlude") {
         if (!value.is_boolean()) return bad_value(name, "true or false");
-        (name == "occlude" ? settings.method : settings.other).occlude = value.boolean();
+        method.occlude = value.boolean();
         return {};
     }
-    if (name == "bounds_kind") return set_method(settings.method, name, true, value);
-    if (name == "cull") return set_method(settings.method, name, false, value);
-    if (name == "other_bounds_kind") return set_method(settings.other, name, true, value);
-    if (name == "other_cull") return set_method(settings.other, name, false, value);
     if (name == "tree_level") return set_whole(settings.tree_level, name, value, -1, 64);
     if (name == "cascades") return set_whole(settings.cascades, name, value, 1, 8);
     if (name == "time_scale") {
@@ -98,8 +97,6 @@ Result<void> set_switch(Settings& settings, const std::string& name, const Json&
         return {};
     }
     if (name == "coloring") return set_named(settings.coloring, name, kColoringNames, value);
-    if (name == "triangulation") return set_named(settings.method.triangulation, name, kTriangulationNames, value);
-    if (name == "other_triangulation") return set_named(settings.other.triangulation, name, kTriangulationNames, value);
     return fail(ErrorCode::invalid_argument, kNoItem, "there is no switch '" + name + "'");
 }
 
@@ -109,6 +106,8 @@ Json to_json(const Settings& settings) {
                 {"cull", pipeline::to_string(settings.method.cull)},
                 {"other_bounds_kind", pipeline::to_string(settings.other.bounds)},
                 {"other_cull", pipeline::to_string(settings.other.cull)},
+                {"tree", pipeline::to_string(settings.method.tree)},
+                {"other_tree", pipeline::to_string(settings.other.tree)},
                 {"triangulation", to_string(settings.method.triangulation)},
                 {"other_triangulation", to_string(settings.other.triangulation)},
                 {"occlude", settings.method.occlude},

@@ -23,6 +23,7 @@ inline constexpr const char* kTriangulationNames[] = {"loaded", "ear", "delaunay
 struct Method {
     pipeline::BoundsKind bounds = pipeline::BoundsKind::obb_perimeter;
     pipeline::CullMode cull = pipeline::CullMode::tree;
+    boxtree::Orientation tree = boxtree::Orientation::aligned;  // of the tree's inner bounds
     Triangulation triangulation = Triangulation::loaded;
     bool occlude = false;  // what is hidden behind other things is not visible
     bool operator==(const Method&) const = default;
@@ -61,7 +62,7 @@ struct Settings {
     double resolution = 1.0;  // share of the picture's pixels each way that is drawn; the rest is enlarged
 };
 
-// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "triangulation", "occlude",
+// One switch by its name, as scripts name it: "coloring", "bounds_kind", "cull", "tree", "triangulation", "occlude",
 // "other_bounds_kind", …, "exact", "freeze", … Errors: an unknown name or a value of the wrong kind or
 // range; nothing is changed then.
 [[nodiscard]] Result<void> set_switch(Settings& settings, const std::string& name, const Json& value);

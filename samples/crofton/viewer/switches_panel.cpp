@@ -34,27 +34,35 @@ bool button(const char* label, const char* key, bool same_line) {
 
 template <class Enum>
 void combo(const char* label, Enum& value, std::span<const Enum> choices) {
+    using pipeline::to_string;
     if (!ImGui::BeginCombo(label, to_string(value))) return;
     for (const Enum choice : choices)
         if (ImGui::Selectable(to_string(choice), choice == value)) value = choice;
     ImGui::EndCombo();
 }
 
-void method(const char* bounds_label, const char* cull_label, const char* triangulation_label,
-            const char* occlude_label, Method& value) {
+struct MethodLabels {
+    const char *bounds, *cull, *tree, *triangulation, *occlude;
+};
+
+void method(const MethodLabels& label, Method& value) {
     using enum pipeline::BoundsKind;
     static constexpr pipeline::BoundsKind kBounds[] = {sphere, aabb, obb_volume, obb_area, obb_perimeter, obb_frustum};
     static constexpr pipeline::CullMode kModes[] = {pipeline::CullMode::none, pipeline::CullMode::flat,
                                                     pipeline::CullMode::tree};
-    combo(bounds_label, value.bounds, std::span<const pipeline::BoundsKind>(kBounds));
+    combo(label.bounds, value.bounds, std::span<const pipeline::BoundsKind>(kBounds));
     hint("N");
-    combo(cull_label, value.cull, std::span<const pipeline::CullMode>(kModes));
+    combo(label.cull, value.cull, std::span<const pipeline::CullMode>(kModes));
     hint("M");
+    static constexpr boxtree::Orientation kAxes[] = {boxtree::Orientation::aligned, boxtree::Orientation::oriented,
+                                                     boxtree::Orientation::automatic};
+    combo(label.tree, value.tree, std::span<const boxtree::Orientation>(kAxes));
+    hint("U");
     static constexpr Triangulation kTriangulations[] = {Triangulation::loaded, Triangulation::ear,
                                                         Triangulation::delaunay, Triangulation::minimum_weight};
-    combo(triangulation_label, value.triangulation, std::span<const Triangulation>(kTriangulations));
+    combo(label.triangulation, value.triangulation, std::span<const Triangulation>(kTriangulations));
     hint("Y");
-    ImGui::Checkbox(occlude_label, &value.occlude);
+    ImGui::Checkbox(label.occlude, &value.occlude);
     hint("Z");
 }
 
@@ -98,12 +106,14 @@ void switches_panel(const PanelInput& input, PanelWish& wish) {
     if (ImGui::Combo("colour (C)", &coloring, kColoringNames, static_cast<int>(std::size(kColoringNames))))
         s.coloring = static_cast<Coloring>(coloring);
     hint("C");
-    method(s.compare ? "A: bounds (N)" : "bounds (N)", s.compare ? "A: cull (M)" : "cull (M)",
-           s.compare ? "A: cut (Y)" : "cut (Y)", s.compare ? "A: occlude (Z)" : "occlude (Z)", s.method);
+    static constexpr MethodLabels kOne{"bounds (N)", "cull (M)", "tree (U)", "cut (Y)", "occlude (Z)"};
+    static constexpr MethodLabels kA{"A: bounds (N)", "A: cull (M)", "A: tree (U)", "A: cut (Y)", "A: occlude (Z)"};
+    static constexpr MethodLabels kB{"B: bounds", "B: cull", "B: tree", "B: cut", "B: occlude"};
+    method(s.compare ? kA : kOne, s.method);
     ImGui::SameLine();
     ImGui::Checkbox("depth buffer (J)", &s.depth_buffer);
     hint("J");
-    if (s.compare) method("B: bounds", "B: cull", "B: cut", "B: occlude", s.other);
+    if (s.compare) method(kB, s.other);
     flags(s);
     sliders(input);
     ImGui::PopItemWidth();
