@@ -246,7 +246,7 @@ TEST_SUITE("viewer/meaning") {
     TEST_CASE("the axes of the tree's bounds change what is tested, not what is found, and are compared as A and B") {
         const ViewRun result = view({set(0, {{"paused", true}, {"compare", true}, {"other_tree", "oriented"}}),
                                      shot(1, "axes.png"),
-                                     {{"frame", 2}, {"key", "U"}},
+                                     {{"frame", 2}, {"key", "F4"}},
                                      shot(3, "turned.png")},
                                     "--instances 3000 --size 160x90", false);
         check_clean(result);

@@ -88,7 +88,7 @@ bool Session::cycle_setting(const std::string& key) {
         next(s.method.bounds, 6);
     } else if (key == "M") {
         next(s.method.cull, 3);
-    } else if (key == "U") {
+    } else if (key == "F4") {
         next(s.method.tree, 3);
     } else if (key == "Y") {
         next(s.method.triangulation, std::size(kTriangulationNames));

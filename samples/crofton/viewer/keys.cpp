@@ -34,7 +34,7 @@ constexpr KeyHelp kCulling[] = {
     {"F", "F", "freeze: culling keeps its camera while you fly on"},
     {"N", "N", "next kind of bounds"},
     {"M", "M", "next culling mode: none, flat, tree"},
-    {"U", "U", "next axes of the tree's bounds: aligned, oriented, automatic"},
+    {"F4", "F4", "next axes of the tree's bounds: aligned, oriented, automatic"},
     {"Z", "Z", "occlusion: what is hidden behind other things is left out"},
     {"L", "L", "exact, or by planes only (conservative)"},
     {"V", "V", "number of views the depth range is split into"},

@@ -57,7 +57,7 @@ void method(const MethodLabels& label, Method& value) {
     static constexpr boxtree::Orientation kAxes[] = {boxtree::Orientation::aligned, boxtree::Orientation::oriented,
                                                      boxtree::Orientation::automatic};
     combo(label.tree, value.tree, std::span<const boxtree::Orientation>(kAxes));
-    hint("U");
+    hint("F4");
     static constexpr Triangulation kTriangulations[] = {Triangulation::loaded, Triangulation::ear,
                                                         Triangulation::delaunay, Triangulation::minimum_weight};
     combo(label.triangulation, value.triangulation, std::span<const Triangulation>(kTriangulations));
@@ -106,8 +106,8 @@ void switches_panel(const PanelInput& input, PanelWish& wish) {
     if (ImGui::Combo("colour (C)", &coloring, kColoringNames, static_cast<int>(std::size(kColoringNames))))
         s.coloring = static_cast<Coloring>(coloring);
     hint("C");
-    static constexpr MethodLabels kOne{"bounds (N)", "cull (M)", "tree (U)", "cut (Y)", "occlude (Z)"};
-    static constexpr MethodLabels kA{"A: bounds (N)", "A: cull (M)", "A: tree (U)", "A: cut (Y)", "A: occlude (Z)"};
+    static constexpr MethodLabels kOne{"bounds (N)", "cull (M)", "tree (F4)", "cut (Y)", "occlude (Z)"};
+    static constexpr MethodLabels kA{"A: bounds (N)", "A: cull (M)", "A: tree (F4)", "A: cut (Y)", "A: occlude (Z)"};
     static constexpr MethodLabels kB{"B: bounds", "B: cull", "B: tree", "B: cut", "B: occlude"};
     method(s.compare ? kA : kOne, s.method);
     ImGui::SameLine();
