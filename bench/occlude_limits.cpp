@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Thing {
 };
 
 struct Totals {
+    double of_surface = 0;
+    std::size_t of_surface_count = 0;
     double in_view = 0, boxes_in_sight = 0, own_a_pixel = 0;
     std::size_t in_view_count = 0, in_sight_count = 0, own_count = 0;
 };
@@ -57,24 +60,40 @@ Camera camera_on(const std::vector<glm::dvec3>& walk, int view) {
     return camera;
 }
 
-// Where a scene has no path to walk: on a circle about its middle, 1.7 above what is highest there.
-std::vector<glm::dvec3> walk_in(const World& world, const Aabb& bounds) {
+// Where a scene has no path to walk: through its middle along the longer side, low above its floor.
+std::vector<glm::dvec3> walk_in(const Aabb& bounds) {
     std::vector<glm::dvec3> walk;
-    const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max), size = bounds.max - bounds.min;
+    const glm::dvec3 middle = bounds.center(), size = bounds.max - bounds.min;
+    const int along = size.x >= size.z ? 0 : 2;
     for (int i = 0; i < 2 * kViews; ++i) {
-        const double turn = 3.14159265358979 * i / kViews;
-        glm::dvec3 at = middle + 0.25 * glm::dvec3(size.x * std::cos(turn), 0.0, size.z * std::sin(turn));
-        at.y = bounds.max.y + 1.0;
-        if (const auto ground = world.raycast({at, {0.0, -1.0, 0.0}, size.y + 2.0})) at.y += 1.7 - ground->t;
+        glm::dvec3 at = middle;
+        at.y = bounds.min.y + std::min(0.25 * size.y, 0.01 * std::hypot(size.x, size.z));
+        at[along] = bounds.min[along] + size[along] * 0.97 * i / (2 * kViews);
         walk.push_back(at);
     }
     return walk;
 }
 
-void look(const World& world, const std::vector<Thing>& things, const Camera& camera, Totals& totals) {
+// What stays when all triangles of the scene are one occluder, whose common edges are welded.
+void ask_surface(const occlude::OccluderSet& surface, const std::vector<Thing>& things, const Camera& camera,
+                 std::span<const std::uint32_t> in_view, Totals& totals) {
+    auto buffer = *occlude::OcclusionBuffer::create({2 * kWidth, 2 * kHeight});
+    const auto view = occlude::occlusion_view_of(camera);
+    if (!view) return;
+    buffer.draw(surface, *view);
+    for (const std::uint32_t id : in_view)
+        if (!buffer.hides(things[id].box)) {
+            totals.of_surface += static_cast<double>(things[id].triangles);
+            ++totals.of_surface_count;
+        }
+}
+
+void look(const World& world, const occlude::OccluderSet& surface, const std::vector<Thing>& things,
+          const Camera& camera, Totals& totals) {
     VisibleObjects in_frustum;
     if (!world.view(camera, OcclusionOptions{.enabled = false}, in_frustum)) return;
     std::vector<std::uint32_t> unseen(in_frustum.ids().begin(), in_frustum.ids().end());
+    ask_surface(surface, things, camera, unseen, totals);
     std::vector<bool> owns(things.size(), false);
     const glm::dmat3 to_world = glm::transpose(world_to_view_rotation(camera));
     const double half = std::tan(0.5 * camera.fov_y);
@@ -103,6 +122,14 @@ void look(const World& world, const std::vector<Thing>& things, const Camera& ca
         }
 }
 
+// All triangles, where they stand.
+void append(TriangleMesh& to, const TriangleMesh& mesh, const scene::Transform& transform, const glm::dvec3& middle) {
+    const auto first = static_cast<std::uint32_t>(to.positions.size());
+    for (const glm::vec3& p : mesh.positions)
+        to.positions.push_back(glm::vec3(transform.linear * glm::dvec3(p) + (transform.translation - middle)));
+    for (const std::uint32_t i : mesh.indices) to.indices.push_back(first + i);
+}
+
 bool measure_scene(const std::string& name) {
     auto source = assets::load_scene(name);
     if (!source) {
@@ -115,12 +142,15 @@ bool measure_scene(const std::string& name) {
     std::map<scene::MeshId, MeshHandle> meshes;
     std::vector<Thing> things;
     Aabb bounds;
+    TriangleMesh all;
+    const glm::dvec3 middle = scene.world_boxes()[0].center;
     for (scene::InstanceId i = 0; i < scene.instance_count(); ++i) {
         if (scene.is_removed(i) || scene.layer_masks()[i] == 0) continue;
         MeshHandle& mesh = meshes[scene.mesh_of(i)];
         const TriangleMesh& triangles = scene.mesh(scene.mesh_of(i));
         if (mesh.is_null())
             mesh = world.add_mesh({.positions = triangles.positions, .indices = triangles.indices}).value();
+        append(all, triangles, scene.world(scene.node_of(i)), middle);
         const auto object = world.add({.mesh = mesh, .transform = scene.world(scene.node_of(i))});
         if (!object) continue;
         if (things.size() <= object->index) things.resize(object->index + 1);
@@ -128,15 +158,21 @@ bool measure_scene(const std::string& name) {
         things[object->index] = {scene.world_boxes()[i], triangles.triangle_count()};
     }
     for (int i = 0; i < 4; ++i) (void)world.update();
-    if (source->walk.empty()) source->walk = walk_in(world, bounds);
+    if (source->walk.empty()) source->walk = walk_in(bounds);
+    occlude::OccluderSet surface;
+    const auto shape = surface.add_surface(all, occlude::Sides::both);
+    if (shape) (void)surface.place(*shape, {glm::dmat3(1.0), middle});
+    if (!shape) std::printf("%s\n", shape.error().message.c_str());
     Totals t;
-    for (int view = 0; view < kViews; ++view) look(world, things, camera_on(source->walk, view), t);
+    for (int view = 0; view < kViews; ++view) look(world, surface, things, camera_on(source->walk, view), t);
     std::printf(
         "%s: in view %zu objects, %.0f triangles; boxes in sight %zu, %.0f; own a pixel %zu, %.0f: %.2f x, and of "
         "all in view %.2f x\n",
         name.c_str(), t.in_view_count / kViews, t.in_view / kViews, t.in_sight_count / kViews,
         t.boxes_in_sight / kViews, t.own_count / kViews, t.own_a_pixel / kViews, t.boxes_in_sight / t.own_a_pixel,
         t.in_view / t.own_a_pixel);
+    std::printf("  all triangles as one welded surface: %zu objects, %.0f triangles stay: %.2f x\n",
+                t.of_surface_count / kViews, t.of_surface / kViews, t.of_surface / t.own_a_pixel);
     return true;
 }
 
