@@ -153,4 +153,37 @@ TEST_SUITE("convex/cast") {
         }
         CHECK(hits > 20);
     }
+
+    // For such a needle an algorithm in floating point alone finds a gap of 0.5 where there is none.
+    TEST_CASE("a needle a million times as long as wide is hit at once where a box overlaps it, else before") {
+        const Body needle = Body::box({632832.0f, 0.75f, 1.0f}).value(),
+                   box = Body::box({2.375f, 1.75f, 2.75f}).value();
+        const RigidTransform lying{{{0.470588237f, 0.41522491f, -0.778546691f},
+                                    {-0.286168516f, 0.906480849f, 0.310483485f},
+                                    {0.834658206f, 0.0766856819f, 0.54540354f}},
+                                   {4.25, -1.7462298274040222e-10, 5.125}};
+        const RigidTransform there = at({2.5153967513469979, 0.67383012239588425, 1.8703839550144039});
+        REQUIRE(intersects({needle, lying}, {box, there}));
+        const glm::dvec3 away(0.875, -6.25, -15.75);
+        const auto now = cast({needle, lying}, {}, {box, there}, flying(away), {.duration = 2.0, .tolerance = 1e-4});
+        REQUIRE(now.has_value());
+        CHECK(now->result == CastResult::hit);
+        CHECK(now->time == 0.0);
+        int hits = 0;
+        for (int i = 0; i < 200; ++i) {
+            const double back = 0.5 + 0.01 * i;
+            const RigidTransform start = at(there.translation + back * away);
+            const auto met =
+                cast({needle, lying}, {}, {box, start}, flying(-away), {.duration = 4.0, .tolerance = 1e-4});
+            REQUIRE(met.has_value());
+            REQUIRE(met->result != CastResult::miss);
+            hits += met->result == CastResult::hit;
+            CHECK(met->time <= back);
+            for (int k = 0; k < 8; ++k) {
+                const RigidTransform before = at(start.translation - met->time * k / 8.0 * away);
+                CHECK((met->time == 0.0 || !intersects({needle, lying}, {box, before})));
+            }
+        }
+        CHECK(hits == 200);
+    }
 }

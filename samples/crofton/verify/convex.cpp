@@ -33,7 +33,7 @@ bool truly_meet(const Placed& a, const Placed& b, const glm::dvec3& normal, std:
 
 // Cold, and with what a neighbouring pose has left.
 VerifyRow yes_or_no(int decade, double offset, const VerifyOptions& options) {
-    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 2000);
+    const std::uint64_t pairs = std::max<std::uint64_t>(20, options.trials / 500);
     ConvexPairs random(options.seed * 1000 + static_cast<std::uint64_t>(decade) * 10 + (offset > 0.0 ? 1 : 0) +
                        (offset > 1e5 ? 1 : 0));
     std::uint64_t wrong = 0, meeting = 0, by_axes = 0;

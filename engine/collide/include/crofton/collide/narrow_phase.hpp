@@ -6,7 +6,6 @@
 #include <crofton/geometry/shapes.hpp>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <span>
 
 namespace crofton::collide {
@@ -79,7 +78,7 @@ BatchStatistics intersects(std::span<const Obb> boxes, std::span<const IdPair> p
 
 namespace crofton::mesh {
 
-// Convex bodies: what meets, how far apart, how deep, when.
+// Convex bodies: what meets, how far apart, how deep.
 class MeshTree;
 struct MeshContact;
 }  // namespace crofton::mesh
@@ -118,7 +117,7 @@ struct ConvexShape {
 [[nodiscard]] ConvexShape to_convex_shape(const Capsule& capsule);
 [[nodiscard]] ConvexShape to_convex_shape(const Triangle& triangle);
 
-// How far apart two convex bodies are, how deep they overlap, where they touch, and when they will.
+// How far apart two convex bodies are, how deep they overlap, where they touch. When they will: convex::cast.
 
 struct Distance {
     double distance = 0.0;            // 0 when they meet
@@ -172,24 +171,5 @@ enum class ManifoldPoints : std::uint8_t {
 [[nodiscard]] Manifold contact_manifold(const ConvexShape& a, const ConvexShape& b);  // one point, at the deepest place
 [[nodiscard]] Manifold contact_manifold(const Plane& half_space, const Obb& box,
                                         ManifoldPoints points = ManifoldPoints::reduced);
-
-// Constant linear and angular velocity (rad per unit time) about `pivot`, which moves along.
-struct ConstantMotion {
-    glm::dvec3 velocity{0.0};
-    glm::dvec3 spin{0.0};
-    glm::dvec3 pivot{0.0};
-};
-[[nodiscard]] ConvexShape moved(const ConvexShape& body, const ConstantMotion& motion, double time);
-
-struct Impact {
-    double time = 0.0;
-    Distance contact;  // at that time
-};
-// The first time in [0, duration] at which the bodies are closer than `tolerance` > 0, by conservative advancement
-// (Mirtich 1996). At the time returned they are that close; they meet at no earlier time. Nothing when that does not
-// happen.
-[[nodiscard]] std::optional<Impact> time_of_impact(const ConvexShape& a, const ConstantMotion& motion_a,
-                                                   const ConvexShape& b, const ConstantMotion& motion_b,
-                                                   double duration, double tolerance);
 
 }  // namespace crofton::collide
