@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The code of docs/world.md.
+// The code of docs/world.md and docs/world_more.md.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <crofton/convex/query.hpp>

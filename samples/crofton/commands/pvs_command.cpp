@@ -246,7 +246,8 @@ void add_pvs_command(CommandLine& line) {
         "Examples:\n"
         "  crofton pvs town --cells 64x2x64 --out town_pvs.crofton --svg town.svg\n"
         "  crofton pvs level.wad --map MAP01 --cells 32x1x32 --state map01.state --seconds 60 --out map01.crofton\n"
-        "  crofton pvs town --shard 3/8 --state part3 && crofton merge part* --out town.state\n"
+        "  crofton pvs town --shard 0/2 --state part0       half of the lines; the others: 1/2, part1\n"
+        "  crofton merge part0 part1 --out town.state          then both together\n"
         "  crofton pvs town --state town.state --out town_pvs.crofton");
     command.option("scene", options->scene, "town, room, or a .glb, .gltf, .obj or .wad file").required();
     command.option("--cells", options->cells, "NXxNYxNZ, or a file of boxes").show_default();

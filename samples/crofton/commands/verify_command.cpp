@@ -81,7 +81,8 @@ void add_verify_command(CommandLine& line) {
     command.footer(
         "`holds` says whether the claim's sentence is borne out; sentences that begin \"wrong, must be rejected\" hold "
         "when the\n"
-        "measurement rejects them at |z| > 4. Exit status: 0 all hold, 1 one does not, 2 bad usage.\n\n"
+        "measurement rejects them at |z| > 4. Exit status: 0 all hold, 1 one does not, 2 bad usage.\n"
+        "All topics together take minutes.\n\n"
         "Examples:\n"
         "  crofton verify\n"
         "  crofton verify lines --trials 1000000 --seed 7\n"
