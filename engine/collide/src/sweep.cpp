@@ -61,7 +61,7 @@ std::optional<Impact> time_of_impact(const ConvexShape& a, const ConstantMotion&
         const ConvexShape now_a = moved(a, motion_a, time), now_b = moved(b, motion_b, time);
         const Distance now = distance(now_a, now_b);
         if (now.distance < tolerance) return Impact{time, now};
-        // Along the line of nearest points the gap closes no faster than this: the slab between the bodies only shrinks
+        // Along the line of nearest points the gap closes no faster than this. The slab between the bodies only shrinks
         // by the motion of the two along its normal.
         glm::dvec3 direction = (now.on_b - now.on_a) / now.distance;
         double gap = now.distance;

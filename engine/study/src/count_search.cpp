@@ -23,9 +23,9 @@ struct CountCell {
 // Boxes as stored have axes of floats, 6e-8 off.
 constexpr double kRounding = 1e-6;
 
-// What is in all tight boxes of a cell, and what holds all of them. A unit axis turned by up to an angle moves by
-// s = 2 sin(angle / 2) at most, so a point's coordinate changes by s times its distance from the middle, and an extent
-// by s r, r the points' greatest distance. No corner of a tight box is farther than √3 r.
+// What is in all tight boxes of a cell, and what holds all of them. A unit axis turned by up to an angle moves by s = 2
+// sin(angle / 2) at most. So a point's coordinate changes by s times its distance from the middle, and an extent by s
+// r, r the points' greatest distance. No corner of a tight box is farther than √3 r.
 struct Boxes {
     Obb inner, outer;
     bool has_inner;
