@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Sentences of more than 25 words, in comments of C++, C and GLSL and in pages.
 
-  long_sentences.py [FILE …]   lists those of the files; of all tracked ones where none is given
-  long_sentences.py --check    exits with 1 where a folder has more of them than `long_sentences.txt` allows, or fewer: the
-                               budgets only shrink
-  long_sentences.py --write    writes the budgets as they are; refuses to raise one
+  long_sentences.py [FILE …]   lists those of the files, or of all tracked ones
+  long_sentences.py --check    exits with 1 where a module or folder has more of them than long_sentences.txt allows
+  long_sentences.py --write    writes what there is into long_sentences.txt, which thereby only shrinks
 
 A comment's lines that follow each other are one paragraph. A page's list items and table cells are paragraphs of their
 own; code and links' addresses are left out. A formula counts as one word. A sentence ends with . ! ? or the paragraph; a list of
@@ -116,13 +115,45 @@ def tracked():
     return [ROOT / name for name in listed if pathlib.Path(name).suffix in CODE | {".md"} and not name.startswith("third_party")]
 
 
+def folder_of(path):
+    """What shares a budget: a module's public headers, its sources, the guides, the notes, any other top folder."""
+    parts = path.relative_to(ROOT).parts
+    if parts[0] == "engine" and len(parts) > 2:
+        return "/".join(parts[:3] if parts[2] == "include" else parts[:2])
+    if parts[0] == "docs":
+        return "docs/notes" if parts[1] == "notes" else "docs"
+    return parts[0]
+
+
+def counts():
+    found = {}
+    for path in tracked():
+        folder = folder_of(path)
+        found[folder] = found.get(folder, 0) + sum(1 for _ in long_ones(path))
+    return found
+
+
+def check(write):
+    budgets = {}
+    if BUDGETS.exists():
+        budgets = {name: int(count) for name, count in (line.split() for line in BUDGETS.read_text().splitlines())}
+    found = counts()
+    worse = [f"{name}: {count}, allowed {budgets.get(name, 0)}" for name, count in found.items() if count > budgets.get(name, 0)
+             and budgets]
+    print("\n".join(worse) or "no folder has more long sentences than it may")
+    if write and not worse:
+        BUDGETS.write_text("".join(f"{name} {count}\n" for name, count in sorted(found.items()) if count))
+    return 1 if worse else 0
+
+
 def main():
-    files = [pathlib.Path(name) for name in sys.argv[1:] if not name.startswith("--")] or tracked()
+    if sys.argv[1:] in (["--check"], ["--write"]):
+        sys.exit(check(sys.argv[1] == "--write"))
     total = 0
-    for path in files:
+    for path in [pathlib.Path(name).resolve() for name in sys.argv[1:]] or tracked():
         for number, count, sentence in long_ones(path):
             total += 1
-            print(f"{path.relative_to(ROOT) if path.is_absolute() else path}:{number}: {count}: {sentence}")
+            print(f"{path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}:{number}: {count}: {sentence}")
     print(total, file=sys.stderr)
 
 

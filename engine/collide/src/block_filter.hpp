@@ -7,8 +7,8 @@ namespace crofton::collide {
 
 // The error of a gap, as a share of the boxes' size: rounding, and this times how far their axes are from orthonormal.
 inline constexpr float kRounding = 0x1p-19f, kPerDeviation = 32.0f;
-// A gap along a cross product of edges is at most that along the worst face normal plus this times the sine of the
-// edges' angle times the size.
+// A gap along a cross product of edges is at most that along the worst face normal, plus a remainder. The remainder is
+// this times the sine of the edges' angle times the size.
 inline constexpr float kPerSine = 2.5f;
 
 // One bit a pair: surely separated by which group of axes (the first that applies), surely meeting; the rest is open.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far apart two boxes are: GJK on their corners, with a proof of the answer; where rounding keeps it from one, the
+// How far apart two boxes are: GJK on their corners, with a proof of the answer. Where rounding keeps it from one, the
 // features near the answer are tried one by one.
 #include <algorithm>
 #include <cmath>
@@ -166,7 +166,7 @@ PointPair descend(const BoxPairInDouble& pair, const glm::dvec3& axis, double le
 }
 
 // All pairs of features: corners, edges and faces that are free within `tolerance` of `direction`. A pair of points is
-// given by the axes along which it is inside the box, at most two, and the ends of the box along the others.
+// given by the axes along which it is inside the box, at most two. Along the others it is at an end of the box.
 class FeatureSearch {
   public:
     FeatureSearch(const BoxPairInDouble& pair, const glm::dvec3& direction, double tolerance) : pair_(pair) {

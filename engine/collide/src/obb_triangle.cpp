@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-// A box and a triangle are apart iff one of 13 axes says so: the facets of their difference body are spanned by two
+// A box and a triangle are apart iff one of 13 axes says so. The facets of their difference body are spanned by two
 // edges of the box, two of the triangle, or one of each. Zero extents and triangles without area follow by continuity,
 // as in obb_obb.cpp. The half-space needs one axis, its normal.
 namespace crofton::collide {

@@ -38,7 +38,7 @@ Penetration penetration(const ConvexShape& a, const ConvexShape& b) {
         if (a.normals[i] != glm::dvec3(0.0)) try_axis(a, b, a.normals[i], best);
     for (int i = 0; i < b.normal_count; ++i)
         if (b.normals[i] != glm::dvec3(0.0)) try_axis(a, b, b.normals[i], best);
-    // Products of nearly parallel edges are noise as directions; being unit vectors they are still valid axes, and no
+    // Products of nearly parallel edges are noise as directions. Being unit vectors they are still valid axes, and no
     // deeper answer than a face normal's is lost without them.
     for (int i = 0; i < a.edge_count; ++i)
         for (int j = 0; j < b.edge_count; ++j) {

@@ -131,8 +131,8 @@ Aabb around(const glm::dvec3& center, const glm::dvec3& reach) {
     return {center - reach - slack, center + reach + slack};
 }
 
-// A ray, seen from nodes and leaves. Where it runs nearly within a slab, it counts as hardly moving across: what it
-// moves across before it leaves the filter's range is below the filter's slop.
+// A ray, seen from nodes and leaves. Where it runs nearly within a slab, it counts as hardly moving across. What it
+// moves across before it leaves the filter's range is below the filter's `slop`.
 class Traveller {
   public:
     explicit Traveller(const Ray& ray)

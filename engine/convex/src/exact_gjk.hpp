@@ -11,7 +11,7 @@ struct ExactNearest {
     glm::dvec3 normal{0.0};  // along the shortest way from a to b, within 1e-14; 0 if they meet
 };
 
-// The algorithm of Gilbert, Johnson and Keerthi on numbers without rounding: each round the nearest point comes
+// The algorithm of Gilbert, Johnson and Keerthi on numbers without rounding. Each round the nearest point comes
 // strictly nearer, so that no simplex comes twice and the last one is right. Starts from the corners of `start`. With
 // `nearest` false it stops as soon as a plane parts the bodies. Both cores are polytopes.
 [[nodiscard]] ExactNearest exact_nearest(const Pair& pair, const Simplex& start, bool nearest);

@@ -6,7 +6,7 @@
 
 namespace crofton::convex {
 
-// ∫ x over a simplex is its volume times the mean of the corners; ∫ x xᵀ is volume / 20 times (s sᵀ + Σ v vᵀ), s the
+// ∫ x over a simplex is its volume times the mean of the corners. ∫ x xᵀ is volume / 20 times (s sᵀ + Σ v vᵀ), s the
 // sum of the corners.
 void Moments::add_tetrahedron(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const double part = glm::dot(glm::cross(a, b), c) / 6.0;

@@ -25,8 +25,8 @@ struct QueryBox {
 [[nodiscard]] Aabb bounds_of(const QueryBox& box);
 
 // Calls `visit` for each part of the body that is not surely farther than `margin` from the box, which is in the body's
-// frame; a margin of kEverything: for all. True if a visit ended the search. Parts come in an order that depends on the
-// body alone.
+// frame. With a margin of kEverything: for all. True if a visit ended the search. Parts come in an order that depends
+// on the body alone.
 inline constexpr double kEverything = 1e300;
 bool visit_parts(const Placed& body, const QueryBox& box, double margin, PartVisitor visit);
 // The same, with the triangles of surfaces by themselves.

@@ -20,7 +20,7 @@ struct PlacedTriangle {
 // or across an edge of each: 13 axes, both ways. A box is a parallelepiped, since its pose is rigid to 1e-6 alone. So
 // axes are covectors of its own frame, m, of length √(mᵀ G m) in the world, where G is I but for that. An axis across
 // two edges is off by 8u size / |m| in direction. That moves its extent by no more than 1e-10 of the size, unless |m|
-// is below 1e-5 of the difference body's reach; then the answer is `unknown`. Edges that are parallel to 1e-10 of the
+// is below 1e-5 of the difference body's reach. Then the answer is `unknown`. Edges that are parallel to 1e-10 of the
 // size lose no more than that. The same holds for the normals of slivers.
 class BoxTouch {
   public:

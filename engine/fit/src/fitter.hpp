@@ -36,7 +36,7 @@ class Fitter {
     [[nodiscard]] SmallSetSearch::Found search_subset(const Weights& weights, const SmallSetEffort& effort,
                                                       const glm::dmat3* near);
     // A frame for all points that is locally best and no worse than `best`. Searches on subset_ and asks all points for
-    // the support points of the frame found; those that subset_ lacks join it, and the search is repeated.
+    // the support points of the frame found. Those that subset_ lacks join it, and the search is repeated.
     [[nodiscard]] Candidate local_search(const Weights& weights, const Effort& effort, Candidate best);
     [[nodiscard]] Obb fit_small_set_fast(const Weights& weights);
     [[nodiscard]] Obb fit_small_set_tight(const Weights& weights, const measure::Criterion& criterion);

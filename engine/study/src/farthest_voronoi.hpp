@@ -9,7 +9,7 @@
 namespace crofton::study {
 
 // Centres of circles through corners p and q that contain all corners: middle + t·normal for t in [begin, end], radius
-// √(half² + t²), with `half` half the distance of p and q; an end may be infinite.
+// √(half² + t²), with `half` half the distance of p and q. An end may be infinite.
 struct VoronoiEdge {
     glm::dvec2 middle{0.0};
     glm::dvec2 normal{0.0};

@@ -42,7 +42,7 @@ class Buckets {
     }
 
     // Distances squared and numbers of at least `count` samples, or of all, around the pixel's middle: whole rings of
-    // pixels until the nearest `count` are among them; ascending, ties by number.
+    // pixels until the nearest `count` are among them. Ascending, ties by number.
     using Near = std::pair<double, std::uint32_t>;
     void nearest(std::uint32_t column, std::uint32_t row, std::size_t count, Vector<Near>& found) const {
         found.clear();

@@ -80,7 +80,7 @@ double measure_of_lines_by_tangents(std::span<const Disc> discs) {
     std::sort(angles.begin(), angles.end());
     angles.push_back(2.0 * pi + angles.front());
     // A line of normal u(φ) exists where the lowest disc on its one side reaches beyond that on the other. Between
-    // common tangents nothing changes. An arc of disc i from α to β has length r·(β − α); what the tangents at its two
+    // common tangents nothing changes. An arc of disc i from α to β has length r·(β − α). What the tangents at its two
     // ends add is the part of them up to the foot of the origin's perpendicular, and two such parts make one whole
     // tangent.
     double sum = 0.0;

@@ -32,7 +32,7 @@ struct Sinusoid {
 };
 
 // Calls visit(from, to, value) for the parts of [begin, end], 0 ≤ begin ≤ end ≤ 2π, between the zeros of f; `value` has
-// the sign of f on that part. It is f in the part's middle, or, where that is 0 up to rounding, f's integral: f may
+// the sign of f on that part. It is f in the part's middle, or, where that is 0 up to rounding, f's integral. f may
 // touch 0 just there, as a disc's support does that of a point on its circle. Parts that rounding misplaces are those
 // where f is 0 up to rounding everywhere: an integral of max(0, f) does not see them.
 template <class Visit>

@@ -120,8 +120,8 @@ Result<bool> Triangulator::Workspace::clip_simple_ring(const Polygon& polygon, T
     return fail(ErrorCode::internal, kNoItem, "a walk without ears");
 }
 
-// The lightest of what is known, where the search has not come to its end: its best triangulation, if it has one, ear
-// clipping, Delaunay, and Delaunay with all that is proven; all improved.
+// The lightest of what is known, where the search has not come to its end. That is its best triangulation, if it has
+// one, ear clipping, Delaunay, and Delaunay with all that is proven; all improved.
 void Triangulator::Workspace::complete(Triangulation& result) {
     double least = std::numeric_limits<double>::infinity();
     const auto improve = [&] {

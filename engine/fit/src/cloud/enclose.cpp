@@ -14,8 +14,8 @@ namespace crofton::fit {
 namespace {
 
 // The reciprocal basis up to scale: a point c + d is inside iff |dot(normal[k], d)| ≤ half_extents[k] · determinant for
-// all k. A product of floats is exact in double, so each component of a normal carries one rounding, and the
-// determinant (of nearly orthonormal axes: no cancellation, Σ|terms| ≤ 1.8) less than 16 units of it.
+// all k. A product of floats is exact in double, so each component of a normal carries one rounding. The determinant
+// (of nearly orthonormal axes: no cancellation, Σ|terms| ≤ 1.8) carries less than 16 units of it.
 struct Slabs {
     glm::dmat3 normals;
     double determinant;

@@ -126,8 +126,8 @@ class Search {
         return lists;
     }
 
-    // Improves a frame (in the cloud's coordinates) on the subset and evaluates the result on the cloud; again while
-    // the cloud's value is higher, which adds points to the subset.
+    // Improves a frame (in the cloud's coordinates) on the subset and evaluates the result on the cloud. This is
+    // repeated while the cloud's value is higher, which adds points to the subset.
     void search_from(const glm::dmat3& axes) {
         Candidate candidate{axes, 0.0};
         for (int round = 0; round < 8; ++round) {

@@ -148,7 +148,7 @@ HWY_INLINE V sum_of(const V3& a) {
 }
 
 // A lower bound of the value over the cell. Chord d[k] is a difference of points (or of mixtures of points) of opposite
-// sides, in the centre's frame; the width along a turned axis is at least the chord's extent along it.
+// sides, in the centre's frame. The width along a turned axis is at least the chord's extent along it.
 HWY_INLINE V lower_bound(const Splat& w, const Geometry& g, const V3 d[3]) {
     const V zero = splat(0.0), two = splat(2.0);
     const V tilt[3] = {g.tilt.x, g.tilt.y, g.tilt.z};

@@ -82,7 +82,7 @@ void collect_edges(std::span<const glm::dvec3> points, const glm::dmat3& frame, 
 }
 
 // Sets `best` to the frame of least value along a slide in the direction of `sign`, found by doubling steps and golden
-// section; returns false if none is lower.
+// section. Returns false if none is lower.
 bool minimise(const Weights& weights, std::span<const glm::dvec3> points, const Slide& slide, double sign,
               const Steps& steps, Candidate& best) {
     glm::dmat3 frame;

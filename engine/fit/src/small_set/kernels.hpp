@@ -42,7 +42,7 @@ struct FrameLanes {
     float axes[9][kLanes];
     float values[kLanes];
 };
-// Lowers each frame's value: turns it about its three axes in turn, each time to the best of nine angles within 12
+// Lowers each frame's value. Turns it about its three axes in turn, each time to the best of nine angles within 12
 // degrees, then again within 3. Writes the values. Requires room for 2 · kLanes · points.count floats in `scratch`.
 void descend_frames(const SmallSet& points, const FloatWeights& weights, float* scratch, FrameLanes& frames);
 // Writes each frame's value and its support points: supports[side · kLanes + i] for side 2k along +axis k, 2k + 1 along
@@ -52,8 +52,8 @@ void supports_of_frames(const SmallSet& points, const FloatWeights& weights, Fra
 // For one frame, its three axes in sequence: one support point a side, the first of equals, and the widths.
 void supports_of_frame(const SmallSet& points, const float frame[9], float supports[6], float widths[3]);
 
-// A turn of a frame about `axis` to the best of 32 angles: sixteen over a right angle, then those that make a side
-// flush with one of the sixteen chords between support points beside the best of these.
+// A turn of a frame about `axis` to the best of 32 angles. First sixteen over a right angle; then those that make a
+// side flush with one of the sixteen chords between support points beside the best of these.
 struct Turn {
     float axis[3], right[3], up[3];  // the frame
     float cosine, sine;              // result: the new `right` is cosine · right + sine · up

@@ -104,7 +104,7 @@ Index ConstraintInserter::carve(Index a, Index b, Index crossed, Crossing& cross
 }
 
 // Triangulates the polygon on the left of first → last vertex of the chain and returns that half-edge. Every vertex
-// sees its base, for a crossed edge of the old triangulation joined it to the other side; so the apex whose circle with
+// sees its base, for a crossed edge of the old triangulation joined it to the other side. So the apex whose circle with
 // the base holds no other vertex gives a constrained Delaunay triangle.
 Index ConstraintInserter::fill(CavityChain& chain, Index* triangles) {
     const auto& points = mesh_.points;

@@ -7,7 +7,7 @@
 // Guibas and Stolfi's divide and conquer ("Primitives for the manipulation of general subdivisions", 1985) with
 // alternating cuts (Dwyer 1987), on triangles with ghosts (Shewchuk 1996): the outside of a triangulation is covered
 // by one ghost triangle for each side of the hull, whose third corner, kNone, lies at infinity. n points, collinear or
-// not, then have 2n − 2 triangles, so each part of the points has its own place in memory, and a merge adds two.
+// not, then have 2n − 2 triangles. So each part of the points has its own place in memory, and a merge adds two.
 
 namespace crofton::triangulate {
 namespace {
@@ -197,7 +197,7 @@ class DivideAndConquer {
 
     // From base to base until none is above; `base` runs from right end v to left end u, the free side on its right.
     // The next triangle's apex is the neighbour of u or v along the seam whose circle through u and v holds no other
-    // vertex; sides of the old hulls that hide it are flipped away with infinity.
+    // vertex. Sides of the old hulls that hide it are flipped away with infinity.
     Index raise(Index base, Index& l, Index& r, Index& u, Index& v) {
         while (true) {
             // With u last, its differences are shared.
@@ -226,7 +226,7 @@ class DivideAndConquer {
         }
     }
 
-    // While the circle through u, v and the end of l's side holds the apex behind that side, the side goes: its
+    // While the circle through u, v and the end of l's side holds the apex behind that side, the side goes. Its
     // triangle becomes a ghost, and l lies on the side from u to the apex.
     void open_left(Index l, Index u, Index v) {
         while (true) {

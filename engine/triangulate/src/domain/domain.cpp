@@ -10,7 +10,7 @@
 namespace crofton::triangulate {
 namespace {
 
-// Predicates are exact for magnitudes within 1e±70; the caller's may lie anywhere, so they are scaled by a power of two
+// Predicates are exact for magnitudes within 1e±70; the caller's may lie anywhere. So they are scaled by a power of two
 // to at most 1, and must not be smaller than this unless 0.
 constexpr double kSmallest = 0x1p-200;
 constexpr double kLargest = std::numeric_limits<double>::max();

@@ -11,7 +11,7 @@ namespace crofton::triangulate {
 using Index = std::uint32_t;
 inline constexpr Index kNone = ~Index{0};
 
-// Half-edge e of triangle e / 4 runs from origin[e] to origin[next(e)] with the triangle on its left; slot 3 of every
+// Half-edge e of triangle e / 4 runs from origin[e] to origin[next(e)] with the triangle on its left. Slot 3 of every
 // four is unused, so that next and previous need no division. A half-edge on the convex hull has twin kNone.
 [[nodiscard]] inline Index next(Index e) {
     return (e & 3u) == 2u ? e - 2u : e + 1u;
@@ -71,7 +71,7 @@ struct DelaunayScratch {
 // triangles if all are collinear. O(n log n).
 void delaunay(HalfEdgeMesh& mesh, std::span<const std::uint32_t> codes, DelaunayScratch& scratch);
 
-// Makes segments unions of edges, one step at a time: the triangles that a segment crosses are replaced by constrained
+// Makes segments unions of edges, one step at a time. The triangles that a segment crosses are replaced by constrained
 // Delaunay ones (Anglada, "An improved incremental algorithm for constructing restricted Delaunay triangulations",
 // 1997).
 class ConstraintInserter {

@@ -12,7 +12,7 @@ namespace crofton::triangulate {
 
 // Joins the pieces of the boundary by the shortest Delaunay edges that do so and cuts ears off the walks that result.
 // A corner that is no ear is asked again only when its neighbours change or the vertex that it was found to hold is no
-// longer in the way: that makes bands, whose corners are nearly all flat, linear.
+// longer in the way. That makes bands, whose corners are nearly all flat, linear.
 class EarClipping {
   public:
     // Appends triangles of the caller's indices; returns the diagonals' length.

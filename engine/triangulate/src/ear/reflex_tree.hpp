@@ -11,7 +11,7 @@
 namespace crofton::triangulate {
 
 // A k-d tree. Ears may be as long as the polygon and as thin as a hair, so nodes are tested against the triangle, not
-// against its box: one between two dense sides then visits O(log n) of them.
+// against its box. One between two dense sides then visits O(log n) of them.
 class ReflexTree {
   public:
     // Each vertex is listed once.

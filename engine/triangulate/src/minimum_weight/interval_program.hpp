@@ -20,7 +20,7 @@ class IntervalProgram {
     void start(std::span<const glm::dvec2> points, const CandidateGraph& graph);
 
     // `walk` holds each corner's outgoing half-edge, in order. Returns the weight of the edges inside, or infinity if
-    // the candidates triangulate no such face or the watch stops; the walk must have at least three corners and must
+    // the candidates triangulate no such face or the watch stops. The walk must have at least three corners and must
     // outlive append().
     [[nodiscard]] double solve(std::span<const Index> walk, Watch& watch, double fraction);
     // The same for a strictly convex ring of all diagonals, given by its vertices.

@@ -6,7 +6,7 @@
 namespace crofton::triangulate {
 
 // A lower bound on the total length of the diagonals of any triangulation of a domain, from its constrained Delaunay
-// triangulation alone, in the units of its mesh; rounding is left to the caller. O(n log n).
+// triangulation alone, in the units of its mesh. Rounding is left to the caller. O(n log n).
 class DelaunayBound {
   public:
     [[nodiscard]] double weight(const Domain& domain);

@@ -240,7 +240,7 @@ void LocalImprovement::collect_boundary() {
 }
 
 // The interval programme over all triples that turn left. Triangles that all turn left and are joined as the programme
-// joins them cover each point as often as the boundary winds around it, which is once: so no diagonal need be tested.
+// joins them cover each point as often as the boundary winds around it, which is once. So no diagonal need be tested.
 double LocalImprovement::solve_window() {
     const Index count = static_cast<Index>(sides_.size());
     values_.assign(std::size_t{count} * count, 0.0);

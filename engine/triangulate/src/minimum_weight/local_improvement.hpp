@@ -8,8 +8,9 @@
 
 namespace crofton::triangulate {
 
-// Takes a triangulation of a domain's inside, flips diagonals while one becomes shorter, then replaces windows of some
-// fifty triangles by their exact minima while one becomes lighter. Never makes it heavier. Linear for a given window.
+// Takes a triangulation of a domain's inside and flips diagonals while one becomes shorter. Then it replaces windows of
+// some fifty triangles by their exact minima while one becomes lighter. Never makes it heavier. Linear for a given
+// window.
 class LocalImprovement {
   public:
     // The triangulation that the domain's mesh holds.

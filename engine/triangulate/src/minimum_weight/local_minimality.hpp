@@ -22,8 +22,8 @@ namespace crofton::triangulate {
     return shorter_exactly(points, a, b, p, q);
 }
 
-// Whether flipping pq between triangles with apexes left and right of it would not improve on it: the flip is longer or
-// impossible, as the two form no strictly convex quadrilateral.
+// Whether flipping pq between triangles with apexes left and right of it would not improve on it. The flip is longer,
+// or impossible as the two form no strictly convex quadrilateral.
 [[nodiscard]] inline bool locally_minimal(std::span<const glm::dvec2> points, Index p, Index q, Index left,
                                           Index right) {
     return !shorter(points, left, right, p, q) || orientation(points[right], points[left], points[p]) <= 0 ||

@@ -8,9 +8,9 @@ namespace crofton::triangulate {
 
 // The LMT skeleton taken from edges to triangles. In a minimum-weight triangulation every side of a triangle that is no
 // constraint has a triangle of the same triangulation beyond it, and is locally minimal between the two. So a triangle
-// that lacks such a partner among the living ones on any side is in none, and dies; and an edge without living
-// triangles on both sides dies with them. Where a certificate of an edge may use a left and a right triangle that no
-// triangulation could hold together with their own neighbours, this rule follows such chains to where they break.
+// that lacks such a partner among the living ones on any side is in none, and dies. An edge without living triangles on
+// both sides dies with them. Where a certificate of an edge may use a left and a right triangle that no triangulation
+// could hold together with their own neighbours, this rule follows such chains to where they break.
 class TriangleSupport {
   public:
     // The living triangles on the left of each half-edge.
