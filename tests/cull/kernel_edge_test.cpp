@@ -8,6 +8,7 @@
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/bound_set.hpp>
 #include <crofton/cull/cull.hpp>
+#include <limits>
 #include <oracle/near_misses.hpp>
 #include <vector>
 
@@ -200,6 +201,30 @@ TEST_SUITE("cull/kernel edges") {
                 for (int k = 0; k < 3; ++k) plane.normal[k] = std::clamp(plane.normal[k], -2.0, 2.0);
             }
             (void)check_all(boxes, {scaled});
+        }
+    }
+
+    TEST_CASE("few boxes all about a frustum, and one that is none, get classify's verdicts") {
+        oracle::NearMisses random(27);
+        for (int trial = 0; trial < 2000; ++trial) {
+            const TargetInTurn target(trial);
+            Camera camera = random.camera();
+            camera.far_distance = camera.near_distance + random.number(1.0, 30.0);
+            const Frustum frustum = *frustum_of(camera);
+            const auto corners = *frustum_corners(frustum);
+            const double size = glm::length(corners[0] - corners[7]);
+            const std::size_t counts[] = {1, 7, 20, 63, 64, 65, 130};
+            std::vector<Obb> boxes(counts[random.index(7)]);
+            for (Obb& box : boxes) {
+                // Most near a corner or an edge, where several planes cut them.
+                const glm::dvec3 at = glm::mix(corners[random.index(8)], corners[random.index(8)], random.number(0, 1));
+                box = box_at(random, at, random.direction(), size * std::exp(random.number(-6.0, -0.5)), 0.0);
+                box.center += 0.02 * size * random.number(0, 1) * random.direction();
+            }
+            check_lists(boxes, {frustum});
+            boxes[random.index(static_cast<unsigned>(boxes.size()))].center.y =
+                std::numeric_limits<double>::quiet_NaN();
+            check_set(boxes, {frustum}, CullMode::exact);
         }
     }
 

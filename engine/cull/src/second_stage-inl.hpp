@@ -38,7 +38,8 @@ struct BoxRows {
     };
     Row rows[KernelView::kMaxPlanes];
     std::uint32_t
-        cut[KernelView::kMaxPlanes];  // bit l: lane l is wanted, and its box not certainly inside of the plane
+        cut[KernelView::kMaxPlanes],  // bit l: lane l is wanted, and its box not certainly inside of the plane
+        out[KernelView::kMaxPlanes];  // besides, the box's centre is not
     unsigned count = 0;
     VF unit;
 
@@ -62,20 +63,22 @@ struct BoxRows {
 
     // Counts the row behind the last in, unless all wanted boxes are certainly inside of its plane.
     HWY_INLINE void keep_next(MF wanted) {
-        cut[count] = cut_by(rows[count], wanted);
+        set_bits(count, wanted);
         count += cut[count] != 0;
     }
 
     // The first rows are set: finds which of the wanted boxes each cuts.
     HWY_INLINE void keep_first(unsigned rows_set, MF wanted) {
-        for (count = 0; count < rows_set; ++count) cut[count] = cut_by(rows[count], wanted);
+        for (count = 0; count < rows_set; ++count) set_bits(count, wanted);
     }
 
   private:
-    [[nodiscard]] HWY_INLINE std::uint32_t cut_by(const Row& row, MF wanted) const {
+    HWY_INLINE void set_bits(unsigned i, MF wanted) {
+        const Row& row = rows[i];
         const VF size = hn::MulAdd(row.reach, unit, hn::Abs(row.base));
         const VF bottom = hn::Sub(row.base, hn::Mul(row.reach, unit));
-        return bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(DF(), 0x1p-19f), row.slack))));
+        cut[i] = bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(DF(), 0x1p-19f), row.slack))));
+        out[i] = cut[i] & bits_of(hn::Lt(row.base, row.slack));
     }
 };
 
@@ -151,8 +154,9 @@ HWY_INLINE PairTest test_pairs(const BoxRows& box, MF wanted) {
     PairTest result{hn::FirstN(d, 0), wanted};
     for (unsigned i = 0; i < box.count; ++i)
         for (unsigned j = i + 1; j < box.count; ++j) {
-            // Where a box is inside of one of the two, they exclude it only if the other does alone.
-            if ((box.cut[i] & box.cut[j]) == 0) continue;
+            // Where a box is inside of one of the two, they exclude it only if the other does alone. Where its centre
+            // is inside of both, it meets both.
+            if ((box.cut[i] & box.cut[j] & (box.out[i] | box.out[j])) == 0) continue;
             const VF(&a)[3] = box.rows[i].slope;
             const VF(&b)[3] = box.rows[j].slope;
             for (unsigned k = 0; k < 3; ++k) {

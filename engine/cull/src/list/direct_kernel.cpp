@@ -115,8 +115,6 @@ HWY_INLINE BoxLanes lanes_of(const Picked<DirectBoxes>& picked, std::size_t coun
     // No component of an axis exceeds 2.
     const VF size = hn::MulAdd(in.extent(), hn::Set(d, 6.0f), in.distance());
     boxes.edge_slack = hn::Mul(size, hn::Set(d, kDirectError));
-    // 2^-18 covers twenty roundings, 1e-18 squares that underflow.
-    boxes.ball = hn::MulAdd(hn::Sqrt(in.square_of_reach()), hn::Set(d, 1.0f + 0x1p-18f), hn::Set(d, 1e-18f));
     return boxes;
 }
 

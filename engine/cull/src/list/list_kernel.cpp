@@ -25,13 +25,14 @@ class ChunkQuery {
   public:
     ChunkQuery(const ListKernelInput<Record>& input, ListKernelOutput& output)
         : in_(input), out_(output), words_((input.count + 63) / 64) {
-        set_row_planes(*input.view, *input.chunk, rows_);
+        if (!is_few()) set_row_planes(*input.view, *input.chunk, rows_);
     }
 
     void run() {
         out_.undecided_count = out_.resolved_count = 0;
         out_.improper = out_.open = 0;
         const std::uint64_t last = ~std::uint64_t{0} >> (64 * words_ - in_.count);
+        if (is_few()) return test_few(last);
         if (rows_.outside || rows_.planes == 0) {
             std::fill_n(out_.visible, words_, rows_.outside ? 0 : ~std::uint64_t{0});
             std::fill_n(out_.inside, words_, rows_.outside ? 0 : ~std::uint64_t{0});
@@ -57,9 +58,7 @@ class ChunkQuery {
         OpenRecords<Record, ChunkQuery> records(*in_.view, *in_.chunk, in_.records, rows_.planes, in_.exact, *this);
         const OpenCounts counts = records.test(indices, count, needs_edge_test);
         if (count > 0) bits_.finish(open, words_, out_.visible, out_.inside);
-        out_.resolved_count = counts.resolved;
-        out_.improper = counts.improper;
-        out_.open = counts.straddling + counts.undecided;
+        count_open(counts);
     }
 
     HWY_INLINE void outside(std::uint32_t i) { out_.visible[i / 64] &= ~bit(i); }
@@ -71,6 +70,31 @@ class ChunkQuery {
 
   private:
     static HWY_INLINE std::uint64_t bit(std::uint32_t i) { return std::uint64_t{1} << (i % 64); }
+
+    // Of so few bounds most are near the view's surface: rows would settle few, and planes must be brought before them.
+    [[nodiscard]] HWY_INLINE bool is_few() const { return in_.count <= kFew; }
+
+    HWY_INLINE void test_few(std::uint64_t present) {
+        std::uint32_t indices[kFew + 16], needs_edge_test[kFew + 16];
+        for (std::uint32_t i = 0; i < kFew; i += static_cast<std::uint32_t>(hn::Lanes(DU())))
+            hn::StoreU(hn::Iota(DU(), i), DU(), indices + i);
+        out_.visible[0] = present;
+        out_.inside[0] = 0;
+        OpenRecords<Record, ChunkQuery> records(*in_.view, *in_.chunk, in_.records, (1u << in_.view->plane_count) - 1,
+                                                in_.exact, *this);
+        records.drop_planes_around(*in_.chunk);
+        const OpenCounts counts = records.test(indices, in_.count, needs_edge_test);
+        bits_.finish(&present, 1, out_.visible, out_.inside);
+        count_open(counts);
+    }
+
+    HWY_INLINE void count_open(const OpenCounts& counts) {
+        out_.resolved_count = counts.resolved;
+        out_.improper = counts.improper;
+        out_.open = counts.straddling + counts.undecided;
+    }
+
+    static constexpr std::size_t kFew = 64;
 
     const ListKernelInput<Record>& in_;
     ListKernelOutput& out_;

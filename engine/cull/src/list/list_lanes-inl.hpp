@@ -48,7 +48,6 @@ HWY_INLINE BoxLanes lanes_of(const PickedRecords<BoxRecord>& picked, std::size_t
     picked.load(0, boxes.x, boxes.y, boxes.z, first);
     picked.load(1, pairs[0], pairs[1], pairs[2], pairs[3]);
     const VF radius = hn::BitCast(DF(), hn::ShiftLeft<16>(hn::BitCast(DU(), first)));
-    boxes.ball = radius;
     boxes.unit = hn::Mul(radius, hn::Set(DF(), 0x1p-15f));
     // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
     boxes.edge_slack = hn::Mul(boxes.unit, hn::Set(DF(), 6.0f));

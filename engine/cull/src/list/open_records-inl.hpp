@@ -88,7 +88,18 @@ class OpenRecords {
         for_each_bit(planes, [&](unsigned i) { local_[i] = local_plane(view.planes[i], at); });
     }
 
-    // Oriented boxes take their own planes from tables. Others need so little arithmetic a plane that all are tested.
+    // Planes that contain all of the chunk's bounds are not asked about them. |normal| is up to 1.0005.
+    HWY_INLINE void drop_planes_around(const ListChunk& chunk) {
+        if (chunk.largest_radius == kUnboundedRadius) return;
+        const double extent =
+            1.001 * (static_cast<double>(chunk.reach) + static_cast<double>(chunk.largest_radius) * chunk.quantum);
+        for_each_bit(planes_, [&](unsigned i) {
+            const auto least = static_cast<double>(local_[i].offset) - static_cast<double>(local_[i].slack);
+            planes_ &= ~(std::uint32_t{least >= extent} << i);
+        });
+    }
+
+    // Oriented boxes look the planes up that they cross. Others need so little arithmetic a plane that all are tested.
     static constexpr bool kOwnPlanes =
         !std::is_same_v<Record, SphereRecord> && !std::is_same_v<Record, AabbRecord> && PlaneTable::kEntries >= 8;
 
@@ -96,43 +107,56 @@ class OpenRecords {
     // and 16 more.
     HWY_INLINE OpenCounts test(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
         if constexpr (kOwnPlanes)
-            if (PlaneTable::takes(planes_)) return test_own(indices, count);
+            if (PlaneTable::takes(planes_)) return test_own(indices, count, needs_edge_test);
         for_each_sixteen(indices, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
             const std::uint32_t* which = indices + at;
-            const Sixteen test =
-                lanes([&](const auto& bounds) HWY_ATTR { return test_boxes(view_, bounds, planes_, local_, exact_); });
-            const std::uint32_t kept = test.inside | test.straddling | test.needs_edge_test | test.undecided;
-            sink_.sixteen(at, which, valid & ~kept, test.inside);
+            const Sixteen test = lanes([&](const auto& bounds, std::size_t)
+                                           HWY_ATTR { return test_boxes(view_, bounds, planes_, local_, exact_); });
+            note(at, which, valid, test);
             for_each_bit(test.needs_edge_test, [&](unsigned i) { needs_edge_test[counts_.resolved++] = which[i]; });
-            count_rest(test, which);
         });
         return resolve(needs_edge_test, counts_.resolved);
     }
 
     // The second stage alone, of bounds that no plane certainly rejects and that are not certainly inside.
     HWY_INLINE OpenCounts resolve(std::uint32_t* indices, std::size_t count) {
-        if constexpr (kOwnPlanes)
-            if (PlaneTable::takes(planes_) && count > PlaneTable::kEntries) return test_own(indices, count);
-        resolve_all(indices, count);
-        return counts_;
-    }
-
-  private:
-    OpenCounts test_own(std::uint32_t* indices, std::size_t count) {
-        const PlaneTable table(view_, planes_, local_);
-        for_each_sixteen(indices, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
-            const std::uint32_t* which = indices + at;
-            const Sixteen test =
-                lanes([&](const auto& bounds) HWY_ATTR { return test_own_planes(table, bounds, exact_); });
-            sink_.sixteen(at, which, valid & ~(test.inside | test.straddling | test.undecided), test.inside);
-            counts_.resolved += hwy::PopCount(test.needs_edge_test);
-            count_rest(test, which);
+        resolve_all(indices, count, [&](const auto& bounds, std::size_t) HWY_ATTR {
+            BoxTest result;
+            result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
+            result.needs_edge_test = bounds.present;
+            HWY_NAMESPACE::resolve(view_, bounds, planes_, local_, result);
+            return result;
         });
         return counts_;
     }
 
-    // Hands sixteen at a time to `visit`: the place of the first, a function that applies a test to their lanes, and a
-    // bit for each.
+  private:
+    // Those that cross several planes are listed with them, so that the second stage's lanes are full.
+    OpenCounts test_own(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
+        const DU du;
+        const PlaneTable table(view_, planes_, local_);
+        std::uint32_t cuts[kChunk + 32];
+        for_each_sixteen(indices, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
+            const std::uint32_t* which = indices + at;
+            const Sixteen test = lanes([&](const auto& bounds, std::size_t l) HWY_ATTR {
+                VU cut;
+                const BoxTest result = test_all_planes(table, bounds, exact_, cut);
+                const auto needed = hn::RebindMask(du, result.needs_edge_test);
+                simd::compress_store(du, hn::LoadU(du, which + l), needed, needs_edge_test + counts_.resolved);
+                counts_.resolved += simd::compress_store(du, cut, needed, cuts + counts_.resolved);
+                return result;
+            });
+            note(at, which, valid, test);
+        });
+        std::fill_n(cuts + counts_.resolved, 16, 0);
+        resolve_all(needs_edge_test, counts_.resolved, [&](const auto& bounds, std::size_t at) HWY_ATTR {
+            return resolve_own_planes(table, bounds, hn::LoadU(du, cuts + at));
+        });
+        return counts_;
+    }
+
+    // Hands sixteen at a time to `visit`: the place of the first, a function that applies a test to their lanes and the
+    // place of the first of these, and a bit for each that there is.
     template <class Visit>
     HWY_INLINE void for_each_sixteen(std::uint32_t* indices, std::size_t count, const Visit& visit) {
         if (count == 0) return;
@@ -146,11 +170,17 @@ class OpenRecords {
                 [&](const auto& test) HWY_ATTR {
                     Sixteen result;
                     for (std::size_t l = 0; l < size; l += hn::Lanes(DF()))
-                        result.add(test(lanes_of(Picked<Records>{records_, indices + at + l}, size - l)), l);
+                        result.add(test(lanes_of(Picked<Records>{records_, indices + at + l}, size - l), l), l);
                     return result;
                 },
                 static_cast<std::uint32_t>((std::uint64_t{1} << size) - 1));
         }
+    }
+
+    HWY_INLINE void note(std::size_t at, const std::uint32_t* which, std::uint32_t valid, const Sixteen& test) {
+        const std::uint32_t kept = test.inside | test.straddling | test.needs_edge_test | test.undecided;
+        sink_.sixteen(at, which, valid & ~kept, test.inside);
+        count_rest(test, which);
     }
 
     HWY_INLINE void count_rest(const Sixteen& test, const std::uint32_t* which) {
@@ -160,15 +190,11 @@ class OpenRecords {
         counts_.improper += hwy::PopCount(test.improper);
     }
 
-    HWY_INLINE void resolve_all(std::uint32_t* needs_edge_test, std::size_t count) {
+    template <class Test>
+    HWY_INLINE void resolve_all(std::uint32_t* needs_edge_test, std::size_t count, const Test& resolved) {
         for_each_sixteen(needs_edge_test, count, [&](std::size_t at, const auto& lanes, std::uint32_t valid) HWY_ATTR {
-            const Sixteen test = lanes([&](const auto& bounds) HWY_ATTR {
-                BoxTest result;
-                result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(DF(), 0);
-                result.needs_edge_test = bounds.present;
-                HWY_NAMESPACE::resolve(view_, bounds, planes_, local_, result);
-                return result;
-            });
+            const Sixteen test =
+                lanes([&](const auto& bounds, std::size_t l) HWY_ATTR { return resolved(bounds, at + l); });
             const std::uint32_t* which = needs_edge_test + at;
             for_each_bit(valid & ~(test.straddling | test.undecided), [&](unsigned i) { sink_.outside(which[i]); });
             count_rest(test, which);

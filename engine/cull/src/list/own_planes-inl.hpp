@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Boxes against the few planes that each of them may cross. Compiled once per instruction set (Highway).
+// Boxes against all of a chunk's planes, then against those that each of them crosses. Compiled once per instruction
+// set (Highway).
 #include "tree/block_tests-inl.hpp"
 
 #if defined(CROFTON_CULL_OWN_PLANES_INL) == defined(HWY_TARGET_TOGGLE)
@@ -34,6 +35,7 @@ class PlaneTable {
             for (unsigned j = 0; j < 3; ++j) numbers_[j][count_] = view.planes[i].normal_f[j];
             numbers_[3][count_] = local[i].offset;
             numbers_[4][count_] = local[i].slack;
+            largest_slack_ = std::max(largest_slack_, local[i].slack);
         }
     }
 
@@ -41,7 +43,7 @@ class PlaneTable {
     [[nodiscard]] HWY_INLINE VF number(unsigned which, unsigned entry) const {
         return hn::Set(DF(), numbers_[which][entry]);
     }
-    [[nodiscard]] HWY_INLINE float scalar(unsigned which, unsigned entry) const { return numbers_[which][entry]; }
+    [[nodiscard]] HWY_INLINE float largest_slack() const { return largest_slack_; }
 
     [[nodiscard]] HWY_INLINE Plane at(VU entries) const {
         const DF d;
@@ -54,16 +56,17 @@ class PlaneTable {
   private:
     alignas(64) float numbers_[5][kEntries];  // normal, offset, slack
     unsigned count_ = 0;
+    float largest_slack_ = 0.0f;
 };
 
-// Planes as bits, lane by lane: bit n + 1 is entry n of the table. Lanes take them one after the other.
+// Planes as bits, lane by lane: bit n + 1 is entry n of the table, and so is bit kEntries + n + 1. Lanes take them one
+// after the other, those of the first half first.
 class PlaneBits {
   public:
-    HWY_INLINE explicit PlaneBits(unsigned planes) : bits_(hn::Set(DI(), (4 << planes) - 4)) {}
-    HWY_INLINE void remove(unsigned entry, MF lanes) {
-        const DI di;
-        bits_ = hn::AndNot(hn::IfThenElseZero(hn::RebindMask(di, lanes), hn::Set(di, 2 << entry)), bits_);
-    }
+    static constexpr std::uint32_t bit(unsigned entry) { return 2u << entry; }
+    static constexpr std::uint32_t late_bit(unsigned entry) { return bit(entry) << PlaneTable::kEntries; }
+
+    HWY_INLINE explicit PlaneBits(VU bits) : bits_(hn::BitCast(DI(), bits)) {}
     [[nodiscard]] HWY_INLINE bool any() const { return !hn::AllTrue(DI(), hn::Eq(bits_, hn::Zero(DI()))); }
     // Each lane's next entry, 0 for none: from the exponent of its lowest bit, which is 127 + 1 + entry.
     HWY_INLINE VU next() {
@@ -78,32 +81,50 @@ class PlaneBits {
     VI bits_;
 };
 
-// All planes against the balls around the boxes. A box is certainly inside a plane whose value at the centre exceeds
-// its slack and the radius, for normals up to 1.0005 long. The slacks have room for the roundings here. They include a
-// box's own, where it is far from the eye and the plane's slack does not know of it.
-HWY_INLINE PlaneBits planes_open(const PlaneTable& table, const BoxLanes& bounds) {
+// As test_boxes(), with the largest of the planes' slacks for each of them. `cut` are the planes that a box is not
+// certainly inside of, as PlaneBits; first those that its centre is not: pairs of others need no test.
+HWY_INLINE BoxTest test_all_planes(const PlaneTable& table, const BoxLanes& bounds, bool exact, VU& cut) {
     const DF d;
-    PlaneBits open(table.count());
-    const VF radius = hn::MulAdd(bounds.ball, hn::Set(d, 1.0006f), bounds.edge_slack);
+    const DU du;
+    const VF error = hn::Add(bounds.edge_slack, hn::Set(d, table.largest_slack())), most = hn::Set(d, 3e38f);
+    VF top = most, bottom = most, middle = most;  // the least of all planes
+    cut = hn::Zero(du);
     for (unsigned n = 1; n <= table.count(); ++n) {
-        const VF offset = hn::Set(d, table.scalar(3, n) - table.scalar(4, n));
-        const VF value =
-            hn::MulAdd(table.number(0, n), bounds.x,
-                       hn::MulAdd(table.number(1, n), bounds.y, hn::MulAdd(table.number(2, n), bounds.z, offset)));
-        open.remove(n, hn::Ge(value, radius));
+        const VF x = table.number(0, n), y = table.number(1, n), z = table.number(2, n);
+        const VF base = hn::MulAdd(x, bounds.x, hn::MulAdd(y, bounds.y, hn::MulAdd(z, bounds.z, table.number(3, n))));
+        VF slope[3];
+        const VF normal[3] = {x, y, z};
+        bounds.slopes(normal, slope);
+        const VF reach = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
+        const VF low = hn::NegMulAdd(reach, bounds.unit, base);
+        top = hn::Min(top, hn::MulAdd(reach, bounds.unit, base));
+        bottom = hn::Min(bottom, low);
+        middle = hn::Min(middle, base);
+        const auto open = hn::RebindMask(du, hn::Lt(low, error));
+        const auto out = hn::RebindMask(du, hn::Lt(base, error));
+        const VU bit = hn::IfThenElse(out, hn::Set(du, PlaneBits::bit(n)), hn::Set(du, PlaneBits::late_bit(n)));
+        cut = hn::Or(cut, hn::IfThenElseZero(open, bit));
     }
-    return open;
+    const VF beyond = hn::Neg(error);
+    BoxTest result;
+    result.improper = hn::FirstN(d, 0);
+    result.inside = hn::And(bounds.present, hn::Ge(bottom, error));
+    const MF crossing = hn::And(bounds.present, hn::And(hn::Ge(top, error), hn::Lt(bottom, beyond)));
+    // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
+    const auto once = hn::Eq(hn::And(cut, hn::Sub(cut, hn::Set(du, 1))), hn::Zero(du));
+    const MF meets = exact ? hn::Or(hn::RebindMask(d, once), hn::Ge(middle, error)) : bounds.present;
+    result.straddling = hn::And(crossing, meets);
+    result.needs_edge_test = hn::AndNot(meets, crossing);
+    const MF decided = hn::Or(hn::Or(result.inside, crossing), hn::Lt(top, beyond));
+    result.undecided = hn::AndNot(decided, bounds.present);
+    return result;
 }
 
-// As test_boxes() and resolve() together. `needs_edge_test` are those that went through the second stage.
-HWY_INLINE BoxTest test_own_planes(const PlaneTable& table, const BoxLanes& bounds, bool exact) {
+// The second stage, of boxes that need it, against the planes in `cut`; all others contain them.
+HWY_INLINE BoxTest resolve_own_planes(const PlaneTable& table, const BoxLanes& bounds, VU cut) {
     const DF d;
-    const DI di;
-    const VI zero = hn::Zero(di);
-    PlaneBits open = planes_open(table, bounds);
+    PlaneBits open(cut);
     BoxRows box(bounds.unit);
-    MF sure = bounds.present;
-    VI cuts = zero, rejected = zero, outside = zero;  // how many planes cut; the others as signs
     unsigned count = 0;
     for (; open.any(); ++count) {
         const PlaneTable::Plane plane = table.at(open.next());
@@ -114,29 +135,12 @@ HWY_INLINE BoxTest test_own_planes(const PlaneTable& table, const BoxLanes& boun
                        hn::MulAdd(plane.normal[1], bounds.y, hn::MulAdd(plane.normal[2], bounds.z, plane.offset)));
         bounds.slopes(plane.normal, row.slope);
         row.reach = hn::Add(hn::Add(hn::Abs(row.slope[0]), hn::Abs(row.slope[1])), hn::Abs(row.slope[2]));
-        // Beyond 0 the plane does not cut the bound, and the base's sign tells on which side that lies.
-        const VF beyond = hn::NegMulAdd(row.reach, box.unit, hn::Abs(row.base));
-        sure = hn::And(sure, hn::Gt(hn::Abs(beyond), row.slack));
-        const VI side = hn::BitCast(di, beyond);
-        cuts = hn::Sub(cuts, hn::ShiftRight<31>(side));
-        rejected = hn::Or(rejected, hn::AndNot(side, hn::BitCast(di, row.base)));
-        outside = hn::Or(outside, hn::BitCast(di, hn::Sub(row.base, row.slack)));
     }
-    const auto mask = [&](hn::Mask<DI> lanes) HWY_ATTR { return hn::RebindMask(d, lanes); };
     BoxTest result;
-    result.undecided = hn::AndNot(sure, bounds.present);
-    result.improper = result.needs_edge_test = hn::FirstN(d, 0);
-    const MF kept = hn::AndNot(mask(hn::Lt(rejected, zero)), sure);
-    result.straddling = hn::And(kept, mask(hn::Gt(cuts, zero)));
-    result.inside = hn::AndNot(result.straddling, kept);
-    if (!exact) return result;
-    const MF needed = hn::And(hn::And(kept, mask(hn::Gt(cuts, hn::Set(di, 1)))), mask(hn::Lt(outside, zero)));
-    if (hn::AllFalse(d, needed)) return result;
-    result.straddling = hn::AndNot(needed, result.straddling);
-    result.needs_edge_test = needed;
-    box.keep_first(count, needed);
+    result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(d, 0);
+    result.needs_edge_test = bounds.present;
+    box.keep_first(count, bounds.present);
     resolve(box, result);
-    result.needs_edge_test = needed;
     return result;
 }
 

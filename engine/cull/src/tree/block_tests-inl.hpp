@@ -104,7 +104,6 @@ struct BoxLanes {
     VF x, y, z, unit;
     VF edge_slack;
     VF edge[9];  // in units
-    VF ball;     // radius of a ball around the box
     MF present;
 
     // As slope(), with a normal for each lane.
