@@ -42,13 +42,19 @@ FailingRun fail_call(long number, int result, bool window, const std::string& na
                                     "' VK_INSTANCE_LAYERS=VK_LAYER_CROFTON_failing CROFTON_FAIL_LOG='" +
                                     log + "' CROFTON_FAIL_CALL=" + std::to_string(number) +
                                     " CROFTON_FAIL_RESULT=" + std::to_string(result) + " CROFTON_FAIL_NAME=" + name;
-    const std::string command = environment + (window ? " xvfb-run -a '" : " '") + CROFTON_CLI "' view '" + scene +
-                                "' --size 64x48 --device cpu --output '" + scratch().file("") + "' --script '" +
-                                script + "' --json '" + out + "' " + (window ? "" : "--no-window ") + ">/dev/null 2>'" +
-                                err + "' </dev/null";
+    // The viewer's own status: xvfb-run has mistakes of its own to tell.
+    const std::string shell = scratch().file("failing.sh"), status = scratch().file("failing_status");
+    write_contents(shell, environment + " '" CROFTON_CLI "' view '" + scene + "' --size 64x48 --device cpu --output '" +
+                              scratch().file("") + "' --script '" + script + "' --json '" + out + "' " +
+                              (window ? "" : "--no-window ") + ">/dev/null 2>'" + err + "'\necho $? >'" + status +
+                              "'\n");
+    std::filesystem::remove(status);
     FailingRun failing;
-    const int status = std::system(command.c_str());
-    failing.run.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    failing.run.status = -1;
+    const std::string command = (window ? "xvfb-run -a sh '" : "sh '") + shell + "' >/dev/null 2>&1 </dev/null";
+    const int ran = std::system(command.c_str());
+    static_cast<void>(ran);
+    if (std::filesystem::exists(status)) std::istringstream(contents_of(status)) >> failing.run.status;
     failing.run.err = contents_of(err);
     if (std::filesystem::exists(log)) std::istringstream(contents_of(log)) >> failing.failed;
     if (std::filesystem::exists(out)) failing.document = json::parse(contents_of(out), nullptr, false);

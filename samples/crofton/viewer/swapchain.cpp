@@ -65,7 +65,8 @@ Result<void> Window::create_swapchain() {
     if (extent_.width == 0 || extent_.height == 0) return {};
 
     std::uint32_t count = 0;
-    vkGetPhysicalDeviceSurfaceFormatsKHR(context_->physical_device, surface_, &count, nullptr);
+    result = vkGetPhysicalDeviceSurfaceFormatsKHR(context_->physical_device, surface_, &count, nullptr);
+    if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkGetPhysicalDeviceSurfaceFormatsKHR");
     std::vector<VkSurfaceFormatKHR> formats(count);
     result = vkGetPhysicalDeviceSurfaceFormatsKHR(context_->physical_device, surface_, &count, formats.data());
     if (result != VK_SUCCESS) return render::vulkan_failure(result, "vkGetPhysicalDeviceSurfaceFormatsKHR");
