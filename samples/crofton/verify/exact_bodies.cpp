@@ -44,14 +44,42 @@ ExactVector normal_of(const ExactBody& body, const std::array<std::size_t, 3>& t
     return cross_of(body.points[t[1]] - p, body.points[t[2]] - p);
 }
 
+bool is_flat(const ExactBody& body) {
+    return body.points.size() == 3;
+}
+
+// Of a triangle without area none, so that the axes decide.
+bool triangle_contains(const ExactBody& body, const ExactVector& x) {
+    const ExactVector n = normal_of(body, body.triangles[0]);
+    if ((n[0].sign() | n[1].sign() | n[2].sign()) == 0 || dot_of(n, x - body.points[0]).sign() != 0) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ExactVector& p = body.points[i];
+        if (dot_of(cross_of(n, body.points[(i + 1) % 3] - p), x - p).sign() < 0) return false;
+    }
+    return true;
+}
+
 bool contains(const ExactBody& body, const ExactVector& x) {
+    if (is_flat(body)) return triangle_contains(body, x);
     for (const auto& t : body.triangles)
         if (dot_of(normal_of(body, t), x - body.points[t[0]]).sign() > 0) return false;
     return true;
 }
 
-// The separating-axis theorem: normals of faces, products of edges.
+// Whether an edge of a, a triangle, parts them: all of b lies beyond it, seen across the triangle's plane.
+bool parts_in_plane(const ExactBody& a, const ExactBody& b) {
+    if (!is_flat(a)) return false;
+    const ExactVector n = normal_of(a, a.triangles[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ExactVector out = cross_of(a.points[(i + 1) % 3] - a.points[i], n);
+        if (parts(a, b, out)) return true;
+    }
+    return false;
+}
+
+// The separating-axis theorem: normals of faces, products of edges; of triangles in one plane, normals of edges.
 bool meet_by_axes(const ExactBody& a, const ExactBody& b) {
+    if (parts_in_plane(a, b) || parts_in_plane(b, a)) return false;
     for (const auto& t : a.triangles)
         if (parts(a, b, normal_of(a, t))) return false;
     for (const auto& t : b.triangles)
