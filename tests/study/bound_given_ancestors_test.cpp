@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <cmath>
 #include <crofton/fit/fit.hpp>
 #include <crofton/geometry/mesh.hpp>
 #include <crofton/sampling/sampling.hpp>
@@ -112,6 +113,44 @@ TEST_SUITE("study/bound_given_ancestors") {
                 }
                 CHECK(missed <= (kind == 2 ? hits / 4 : 0));
             }
+        }
+    }
+
+    TEST_CASE("what surely hits a hull hits the box around it when the two barely touch") {
+        sampling::Random random(7);
+        Camera camera;
+        camera.far_distance = 10.0;
+        const Sphere region{glm::dvec3(0.0), 3.0};
+        const study::QuerySample samples[] = {*study::QuerySample::planes(region, 256, 3),
+                                              *study::QuerySample::lines(region, 256, 3),
+                                              *study::QuerySample::frusta(camera, region, 256, 3)};
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            int edges = 0;
+            for (std::uint32_t q = 0; q < samples[kind].size(); ++q) {
+                Obb box{glm::dvec3(0.0), glm::mat3(sampling::rotation(random.point<3>())),
+                        glm::vec3(1.0f, 0.5f, 0.25f)};
+                const auto local = corners(box);
+                const auto hull = *convex_hull(std::span<const glm::dvec3>(local));
+                const glm::dvec3 way(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+                const auto surely = [&](double along) {
+                    box.center = along * way;
+                    const auto eight = corners(box);
+                    return samples[kind].surely_hits(q, eight, hull.triangles);
+                };
+                // From a place where it hits, if there is one, to one where it does not, until they are neighbours.
+                double in = -10.0;
+                while (in < 10.0 && !surely(in)) in += 0.25;
+                if (in >= 10.0) continue;
+                double out = 100.0;
+                for (double middle = 0.5 * (in + out); middle != in && middle != out; middle = 0.5 * (in + out))
+                    (surely(middle) ? in : out) = middle;
+                ++edges;
+                for (int step = 0; step < 64; ++step, in = std::nextafter(in, -100.0)) {
+                    const bool sure = surely(in);
+                    CHECK((!sure || samples[kind].hits(q, box)));
+                }
+            }
+            CHECK(edges > 50);
         }
     }
 }

@@ -15,6 +15,12 @@ namespace {
 
 using std::numbers::pi;
 constexpr std::uint32_t kMaxQueries = 1u << 24;
+// Of the largest distances that enter: 128 roundings. What is sure is inside by more than the sums of this file err.
+constexpr double kSure = 0x1p-46;
+
+double sum_of(const glm::dvec3& v) {
+    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
 
 struct HalfEdges {
     std::array<glm::dvec3, 3> axis;
@@ -120,34 +126,41 @@ bool QuerySample::surely_hits(std::uint32_t i, std::span<const glm::dvec3> point
     if (kind_ == Kind::plane) {
         bool above = false, below = false;
         for (const glm::dvec3& p : points) {
-            const double side = glm::dot(p - q.point, q.direction);
-            above = above || side >= 0.0;
-            below = below || side <= 0.0;
+            const double side = glm::dot(p - q.point, q.direction), slack = kSure * (sum_of(p) + sum_of(q.point));
+            above = above || side >= slack;
+            below = below || side <= -slack;
         }
         return above && below;
     }
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
         const std::array<glm::dvec3, 3> corner = {points[triangles[t]] - q.point, points[triangles[t + 1]] - q.point,
                                                   points[triangles[t + 2]] - q.point};
+        double reach = sum_of(q.point);
+        for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, sum_of(points[triangles[t + k]]));
         int turns = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec3 &a = corner[k], &b = corner[(k + 1) % 3];
-            if (kind_ == Kind::frustum && segment_enters(q, a, b)) return true;
+            if (kind_ == Kind::frustum && segment_enters(q, a, b, kSure * reach)) return true;
+            // Seen along the line: its distance from the edge, times the edge's length.
             const double turn = glm::dot(glm::cross(a, b), q.direction);
-            turns += turn > 0.0 ? 1 : turn < 0.0 ? -1 : 0;
+            const double slack = 2.0 * kSure * reach * (sum_of(a) + sum_of(b));
+            turns += turn > slack ? 1 : turn < -slack ? -1 : 0;
         }
         if (kind_ == Kind::line && std::abs(turns) == 3) return true;
     }
     return false;
 }
 
-// Points relative to the query's own.
-bool QuerySample::segment_enters(const Query& q, const glm::dvec3& from, const glm::dvec3& to) const {
+// Points relative to the query's own. Some point of the segment is inside every plane by `slack`, and by half of it for
+// sure: where along the segment is rounded, but rounding there moves the sides by less.
+bool QuerySample::segment_enters(const Query& q, const glm::dvec3& from, const glm::dvec3& to, double slack) const {
     const glm::dmat3 back = glm::transpose(q.rotation);
     const glm::dvec3 a = back * from, b = back * to;
     double begin = 0.0, end = 1.0;
-    // The part where side(0) + t (side(1) − side(0)) >= 0.
+    // The part where side(0) + t (side(1) − side(0)) >= slack.
+    for (const glm::dvec3& corner : corners_) slack = std::max(slack, kSure * sum_of(corner));
     const auto clip = [&](double at_a, double at_b) {
+        at_a -= slack, at_b -= slack;
         if (at_a < 0.0 && at_b < 0.0) return false;
         if (at_a < 0.0) begin = std::max(begin, at_a / (at_a - at_b));
         if (at_b < 0.0) end = std::min(end, at_a / (at_a - at_b));

@@ -45,17 +45,37 @@ ExactVector normal_of(const ExactBody& body, const std::array<std::size_t, 3>& t
     return cross_of(body.points[t[1]] - p, body.points[t[2]] - p);
 }
 
-// Of a triangle both sides are there, which leave its plane; its edges leave the triangle.
-bool contains(const ExactBody& body, const ExactVector& x) {
-    for (const auto& t : body.triangles) {
-        const ExactVector n = normal_of(body, t);
-        if (dot_of(n, x - body.points[t[0]]).sign() > 0) return false;
-        for (std::size_t k = 0; k < 3 && body.triangles.size() == 2; ++k) {
-            const ExactVector &p = body.points[t[k]], &q = body.points[t[(k + 1) % 3]];
-            if (dot_of(cross_of(n, q - p), x - p).sign() < 0) return false;
-        }
+bool is_flat(const ExactBody& body) {
+    return body.points.size() == 3;
+}
+
+// Of a triangle without area none, so that the axes decide.
+bool triangle_contains(const ExactBody& body, const ExactVector& x) {
+    const ExactVector n = normal_of(body, body.triangles[0]);
+    if ((n[0].sign() | n[1].sign() | n[2].sign()) == 0 || dot_of(n, x - body.points[0]).sign() != 0) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ExactVector& p = body.points[i];
+        if (dot_of(cross_of(n, body.points[(i + 1) % 3] - p), x - p).sign() < 0) return false;
     }
     return true;
+}
+
+bool contains(const ExactBody& body, const ExactVector& x) {
+    if (is_flat(body)) return triangle_contains(body, x);
+    for (const auto& t : body.triangles)
+        if (dot_of(normal_of(body, t), x - body.points[t[0]]).sign() > 0) return false;
+    return true;
+}
+
+// Whether an edge of a, a triangle, parts them: all of b lies beyond it, seen across the triangle's plane.
+bool parts_in_plane(const ExactBody& a, const ExactBody& b) {
+    if (!is_flat(a)) return false;
+    const ExactVector n = normal_of(a, a.triangles[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ExactVector out = cross_of(a.points[(i + 1) % 3] - a.points[i], n);
+        if (parts(a, b, out)) return true;
+    }
+    return false;
 }
 
 // All points rounded, around the first of a, so that most axes need no exact arithmetic. With coordinates below R each
@@ -87,8 +107,9 @@ class RoundedPair {
     double slack_;
 };
 
-// The separating-axis theorem: normals of faces, products of edges.
+// The separating-axis theorem: normals of faces, products of edges; of triangles in one plane, normals of edges.
 bool meet_by_axes(const ExactBody& a, const ExactBody& b) {
+    if (parts_in_plane(a, b) || parts_in_plane(b, a)) return false;
     const RoundedPair about(a, b);
     const auto normal = [&](bool of_a, const std::array<std::size_t, 3>& t) {
         return glm::cross(about.edge(of_a, t[0], t[1]), about.edge(of_a, t[0], t[2]));
