@@ -34,7 +34,6 @@ BoxClip::BoxClip(const Placed& a, const Placed& b, const BoxPair& pair, bool ref
                  const glm::dvec3& direction)
     : reference_(reference_is_a ? a : b),
       other_(reference_is_a ? b : a),
-      origin_(a.pose.translation),
       seen_(pair.seen_by(reference_is_a)),
       direction_(pair.into_frame(reference_is_a, reference_is_a ? direction : -direction)),
       reference_is_a_(reference_is_a),

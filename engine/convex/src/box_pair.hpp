@@ -89,7 +89,6 @@ class BoxClip {
     [[nodiscard]] Feature on_incident(const FlatCorner& corner) const;
 
     const Placed &reference_, &other_;
-    const glm::dvec3& origin_;
     BoxPair::Seen seen_;
     glm::dvec3 direction_;  // unit, out of the reference, in its frame
     bool reference_is_a_;
