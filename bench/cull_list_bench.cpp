@@ -73,6 +73,20 @@ void list_ids(benchmark::State& state) {
 }
 BENCHMARK(list_ids)->Unit(benchmark::kMicrosecond);
 
+// Every bound of a prepared list against the view.
+template <class Bound>
+void flat_bounds(benchmark::State& state, const std::vector<Bound>& bounds) {
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
+    cull::BoundSet<Bound> set;
+    set.assign(bounds);
+    cull::VerdictBits verdicts;
+    for (auto _ : state) {
+        cull::find_visible(set, bounds, view, verdicts);
+        benchmark::DoNotOptimize(verdicts.visible.data());
+    }
+    report(state, 0);
+    state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
+}
 // Few boxes: unprepared, prepared as a list, and in a tree.
 void few_boxes(benchmark::State& state) {
     const auto& boxes = boxes_of(state.range(0));
@@ -92,25 +106,7 @@ void few_boxes_cold(benchmark::State& state) {
     report(state, visible.size());
 }
 void few_boxes_list(benchmark::State& state) {
-    const auto& boxes = boxes_of(state.range(0));
-    const cull::View view = bench::view_of_share(boxes, 0.2);
-    cull::BoxSet set;
-    set.assign(boxes);
-    cull::VerdictBits verdicts;
-    for (auto _ : state) {
-        cull::find_visible(set, boxes, view, verdicts);
-        benchmark::DoNotOptimize(verdicts.visible.data());
-    }
-    report(state, 0);
-}
-void few_boxes_list_cold(benchmark::State& state) {
-    const auto& boxes = boxes_of(state.range(0));
-    const cull::View view = bench::view_of_share(boxes, 0.2);
-    cull::BoxSet set;
-    set.assign(boxes);
-    cull::VerdictBits verdicts;
-    bench::time_cold(state, [&] { cull::find_visible(set, boxes, view, verdicts); });
-    report(state, 0);
+    flat_bounds(state, boxes_of(state.range(0)));
 }
 void few_boxes_tree(benchmark::State& state) {
     const boxtree::BoxTree& tree = bench::tree_of(state.range(0));
@@ -130,24 +126,17 @@ BENCHMARK(few_boxes_cold)
     ->Arg(100000)
     ->UseManualTime()
     ->Iterations(bench::kColdIterations);
-BENCHMARK(few_boxes_list_cold)->Arg(20)->Arg(100)->Arg(1000)->UseManualTime()->Iterations(bench::kColdIterations);
+BENCHMARK(flat_cull_cold)
+    ->Name("few_boxes_list_cold")
+    ->Arg(20)
+    ->Arg(100)
+    ->Arg(1000)
+    ->UseManualTime()
+    ->Iterations(bench::kColdIterations);
 BENCHMARK(few_boxes_list)->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(few_boxes_tree)->Arg(20)->Arg(100)->Arg(1000);
 
 // The same for axis-aligned boxes and for balls around the boxes.
-template <class Bound>
-void flat_bounds(benchmark::State& state, const std::vector<Bound>& bounds) {
-    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), 0.2);
-    cull::BoundSet<Bound> set;
-    set.assign(bounds);
-    cull::VerdictBits verdicts;
-    for (auto _ : state) {
-        cull::find_visible(set, bounds, view, verdicts);
-        benchmark::DoNotOptimize(verdicts.visible.data());
-    }
-    report(state, 0);
-    state.counters["exact_tests"] = static_cast<double>(verdicts.statistics.exact_tests);
-}
 void flat_cull_aabbs(benchmark::State& state) {
     std::vector<Aabb> bounds;
     for (const Obb& box : boxes_of(state.range(0))) bounds.push_back(aabb_of(box));

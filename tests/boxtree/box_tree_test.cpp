@@ -6,7 +6,6 @@
 #include <crofton/core/executor.hpp>
 #include <error_of.hpp>
 #include <limits>
-#include <oracle/code_of.hpp>
 #include <oracle/least_cuts.hpp>
 #include <oracle/random_boxes.hpp>
 #include <oracle/tree_contents.hpp>
@@ -32,7 +31,7 @@ TEST_SUITE("boxtree/box_tree") {
             CHECK(error_of(tree).item == 13);
         }
         const std::vector<std::uint32_t> too_few(3);
-        CHECK(oracle::code_of(BoxTree::build(good, too_few)) == ErrorCode::invalid_argument);
+        CHECK(error_of(BoxTree::build(good, too_few)).code == ErrorCode::invalid_argument);
         CHECK(!BoxTree::build(good, {.criterion = {-1.0, 0.0, 0.0}}).has_value());
     }
 

@@ -10,7 +10,6 @@
 #include <error_of.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <oracle/code_of.hpp>
 #include <random>
 #include <vector>
 
@@ -116,8 +115,8 @@ TEST_SUITE("mesh/mesh_refit") {
         const TriangleMesh mesh = wavy_torus(2.0, 0.5, 0.1);
         MeshTree fixed = *MeshTree::build(mesh), tree = refittable(mesh);
         const MeshTree before = tree;
-        CHECK(oracle::code_of(fixed.refit(mesh.positions)) == ErrorCode::invalid_argument);
-        CHECK(oracle::code_of(tree.refit(std::span(mesh.positions).first(5))) == ErrorCode::invalid_argument);
+        CHECK(error_of(fixed.refit(mesh.positions)).code == ErrorCode::invalid_argument);
+        CHECK(error_of(tree.refit(std::span(mesh.positions).first(5))).code == ErrorCode::invalid_argument);
         TriangleMesh bad = bent(mesh, 0.2);
         bad.positions[17].y = std::numeric_limits<float>::quiet_NaN();
         bad.positions[40].x = 3e12f;

@@ -7,7 +7,6 @@
 #include <crofton/radiosity/solver.hpp>
 #include <cstring>
 #include <error_of.hpp>
-#include <oracle/code_of.hpp>
 
 #include "shapes.hpp"
 
@@ -265,7 +264,7 @@ TEST_SUITE("radiosity/solver") {
         }
         SolverOptions other = quick();
         other.seed = 2;
-        CHECK(oracle::code_of(Solver::create(patches, other)->resume(saved)) == ErrorCode::invalid_argument);
+        CHECK(error_of(Solver::create(patches, other)->resume(saved)).code == ErrorCode::invalid_argument);
         CHECK(solver->resume(saved).has_value());
     }
 }

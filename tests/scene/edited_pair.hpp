@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 #include <crofton/scene/scene.hpp>
 #include <cstring>
+#include <error_of.hpp>
 #include <map>
-#include <oracle/code_of.hpp>
 #include <random>
 #include <vector>
 
@@ -139,7 +139,7 @@ struct Pair {
                 const bool cycle = parent != kNone && plain.is_below(parent, node);
                 const auto result = scene.set_parent(node, parent);
                 CHECK(result.has_value() == !cycle);
-                if (cycle) CHECK(oracle::code_of(result) == ErrorCode::invalid_argument);
+                if (cycle) CHECK(error_of(result).code == ErrorCode::invalid_argument);
                 if (!cycle) plain.nodes[node].parent = parent;
                 break;
             }

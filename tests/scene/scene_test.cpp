@@ -5,7 +5,6 @@
 #include <cstring>
 #include <error_of.hpp>
 #include <limits>
-#include <oracle/code_of.hpp>
 #include <random>
 
 using namespace crofton;
@@ -198,7 +197,7 @@ TEST_SUITE("scene/scene") {
         CHECK(scene.update().instances_updated == 1);
         CHECK(scene.layer_masks()[a] == 0);
         CHECK(scene.layer_masks()[b] == ~0u);
-        CHECK(oracle::code_of(scene.remove_instance(a)) == ErrorCode::invalid_argument);
+        CHECK(error_of(scene.remove_instance(a)).code == ErrorCode::invalid_argument);
         CHECK(scene.add_instance(node, mesh).value() == a);
     }
 

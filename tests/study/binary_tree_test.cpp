@@ -5,7 +5,6 @@
 #include <crofton/sampling/sampling.hpp>
 #include <crofton/study/binary_tree.hpp>
 #include <error_of.hpp>
-#include <oracle/code_of.hpp>
 #include <oracle/random_boxes.hpp>
 #include <vector>
 
@@ -76,7 +75,7 @@ TEST_SUITE("study/binary_tree") {
         CHECK(error_of(BinaryTree::build(boxes)).item == 1);
         CHECK_FALSE(BinaryTree::build({}, {.criterion = {0.0, 0.0, 0.0}}).has_value());
         CHECK_FALSE(BinaryTree::build({}, {.split_criterion = {-1.0, 0.0, 1.0}}).has_value());
-        CHECK(oracle::code_of(BinaryTree::build({}, {.split = Split::sampled})) == ErrorCode::invalid_argument);
+        CHECK(error_of(BinaryTree::build({}, {.split = Split::sampled})).code == ErrorCode::invalid_argument);
         BinaryTree tree = *BinaryTree::build({});
         CHECK_FALSE(tree.insert(boxes[1]).has_value());
         CHECK_FALSE(tree.remove(0));

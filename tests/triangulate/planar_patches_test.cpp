@@ -5,7 +5,6 @@
 #include <crofton/triangulate/triangulate.hpp>
 #include <error_of.hpp>
 #include <limits>
-#include <oracle/code_of.hpp>
 #include <set>
 
 using namespace crofton;
@@ -124,7 +123,7 @@ TEST_SUITE("triangulate/planar_patches") {
         const TriangleMesh mesh = fan_of_rectangle(4.0f, 1.0f, 4);
         const std::vector<float> values(2 * mesh.positions.size() - 1);
         const triangulate::VertexValues uv{values, 2, 0.0, false};
-        CHECK(oracle::code_of(find_planar_patches(mesh, 0.0, {&uv, 1})) == ErrorCode::invalid_argument);
+        CHECK(error_of(find_planar_patches(mesh, 0.0, {&uv, 1})).code == ErrorCode::invalid_argument);
     }
 
     TEST_CASE("a flat area is one patch only where its values are one linear function, up to their tolerance") {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <crofton/convex/query.hpp>
 #include <crofton/crofton.hpp>
+#include <error_of.hpp>
 #include <map>
-#include <oracle/code_of.hpp>
 #include <random>
 #include <set>
 #include <vector>
@@ -43,15 +43,15 @@ TEST_SUITE("world/bodies") {
         const convex::Body half = convex::Body::half_space({{0, 1, 0}, 0}).value();
         CHECK(world.set_body({}, &box).error().code == ErrorCode::stale_handle);
         const ObjectHandle object = world.add({.bound = Sphere{{}, 1.0}}).value();
-        CHECK(oracle::code_of(world.set_body(object, &half)) == ErrorCode::unsupported);
+        CHECK(error_of(world.set_body(object, &half)).code == ErrorCode::unsupported);
         REQUIRE(world.set_body(object, nullptr).has_value());
         REQUIRE(world.update().has_value());
         CHECK(world.body_contacts().empty());
-        CHECK(oracle::code_of(world.cast(half, {}, {}, {})) == ErrorCode::unsupported);
-        CHECK(oracle::code_of(world.cast(box, {}, {{NAN, 0, 0}, {}, {}}, {})) == ErrorCode::non_finite);
+        CHECK(error_of(world.cast(half, {}, {}, {})).code == ErrorCode::unsupported);
+        CHECK(error_of(world.cast(box, {}, {{NAN, 0, 0}, {}, {}}, {})).code == ErrorCode::non_finite);
         RigidTransform bad;
         bad.translation.x = NAN;
-        CHECK(oracle::code_of(world.cast(box, bad, {}, {})) == ErrorCode::non_finite);
+        CHECK(error_of(world.cast(box, bad, {}, {})).code == ErrorCode::non_finite);
         Vector<ObjectRef> found(1);
         world.overlap(box, bad, found);
         CHECK(found.empty());

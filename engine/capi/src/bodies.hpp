@@ -75,6 +75,22 @@ class PlacedBody {
     RigidTransform pose_;
 };
 
+// Two bodies that may be asked.
+class PlacedPair {
+  public:
+    PlacedPair(const crofton_placed* a, const crofton_placed* b, const char* function)
+        : first_(a, function), second_(b, function) {}
+    // The first's, where both have failed.
+    [[nodiscard]] crofton_status status() const {
+        return first_.status() != CROFTON_OK ? first_.status() : second_.status();
+    }
+    [[nodiscard]] convex::Placed first() const { return first_.placed(); }
+    [[nodiscard]] convex::Placed second() const { return second_.placed(); }
+
+  private:
+    PlacedBody first_, second_;
+};
+
 // Both may be null: a body that rests, a time of 1.
 [[nodiscard]] convex::Motion to_motion(const crofton_motion* motion);
 [[nodiscard]] crofton_status to_cast_options(const crofton_cast_options* options, const char* function,

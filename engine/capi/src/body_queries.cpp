@@ -103,33 +103,30 @@ crofton_status capi::to_cast_options(const crofton_cast_options* options, const 
 crofton_status crofton_bodies_meet(const crofton_placed* a, const crofton_placed* b, crofton_pair_cache* cache,
                                    int* meet) {
     CROFTON_CHECK(check_pointer(meet, __func__));
-    const PlacedBody first(a, __func__), second(b, __func__);
-    CROFTON_CHECK(first.status());
-    CROFTON_CHECK(second.status());
+    const PlacedPair pair(a, b, __func__);
+    CROFTON_CHECK(pair.status());
     CallersCache kept(cache);
-    *meet = convex::intersects(first.placed(), second.placed(), kept.get()) ? 1 : 0;
+    *meet = convex::intersects(pair.first(), pair.second(), kept.get()) ? 1 : 0;
     return CROFTON_OK;
 }
 
 crofton_status crofton_bodies_distance(const crofton_placed* a, const crofton_placed* b, crofton_pair_cache* cache,
                                        crofton_body_distance* distance) {
     CROFTON_CHECK(check_growing(distance, __func__));
-    const PlacedBody first(a, __func__), second(b, __func__);
-    CROFTON_CHECK(first.status());
-    CROFTON_CHECK(second.status());
+    const PlacedPair pair(a, b, __func__);
+    CROFTON_CHECK(pair.status());
     CallersCache kept(cache);
-    write_growing(to_c_distance(convex::distance(first.placed(), second.placed(), kept.get())), distance);
+    write_growing(to_c_distance(convex::distance(pair.first(), pair.second(), kept.get())), distance);
     return CROFTON_OK;
 }
 
 crofton_status crofton_bodies_penetration(const crofton_placed* a, const crofton_placed* b, crofton_pair_cache* cache,
                                           crofton_body_penetration* penetration) {
     CROFTON_CHECK(check_growing(penetration, __func__));
-    const PlacedBody first(a, __func__), second(b, __func__);
-    CROFTON_CHECK(first.status());
-    CROFTON_CHECK(second.status());
+    const PlacedPair pair(a, b, __func__);
+    CROFTON_CHECK(pair.status());
     CallersCache kept(cache);
-    const convex::Penetration answer = convex::penetration(first.placed(), second.placed(), kept.get());
+    const convex::Penetration answer = convex::penetration(pair.first(), pair.second(), kept.get());
     crofton_body_penetration result{};
     result.depth = answer.depth;
     result.lower = answer.lower;
@@ -156,12 +153,11 @@ crofton_status crofton_bodies_cast(const crofton_placed* a, const crofton_motion
                                    const crofton_motion* motion_b, const crofton_cast_options* options,
                                    crofton_impact* impact) {
     CROFTON_CHECK(check_growing(impact, __func__));
-    const PlacedBody first(a, __func__), second(b, __func__);
-    CROFTON_CHECK(first.status());
-    CROFTON_CHECK(second.status());
+    const PlacedPair pair(a, b, __func__);
+    CROFTON_CHECK(pair.status());
     convex::CastOptions wanted;
     CROFTON_CHECK(to_cast_options(options, __func__, wanted));
-    const auto answer = convex::cast(first.placed(), to_motion(motion_a), second.placed(), to_motion(motion_b), wanted);
+    const auto answer = convex::cast(pair.first(), to_motion(motion_a), pair.second(), to_motion(motion_b), wanted);
     if (!answer) return report(answer.error(), __func__);
     crofton_impact result{};
     result.time = answer->time;
@@ -186,12 +182,11 @@ crofton_status crofton_body_contacts_update(crofton_body_contacts* contacts, con
                                             const crofton_placed* b, const crofton_manifold_options* options) {
     const ExclusiveUse use(contacts, __func__);
     if (use.failed()) return use.status();
-    const PlacedBody first(a, __func__), second(b, __func__);
-    CROFTON_CHECK(first.status());
-    CROFTON_CHECK(second.status());
+    const PlacedPair pair(a, b, __func__);
+    CROFTON_CHECK(pair.status());
     convex::ManifoldOptions wanted;
     CROFTON_CHECK(to_manifold_options(options, __func__, wanted));
-    convex::contact_manifolds(first.placed(), second.placed(), wanted, contacts->found, &contacts->cache);
+    convex::contact_manifolds(pair.first(), pair.second(), wanted, contacts->found, &contacts->cache);
     contacts->ended = convex::track(contacts->found.all(), contacts->points);
     return CROFTON_OK;
 }

@@ -5,6 +5,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 #include "block_filter.hpp"
 
@@ -30,6 +31,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, kBoxBlock>;
 using V = hn::Vec<D>;
@@ -43,9 +45,7 @@ HWY_INLINE V sum_abs(V x, V y, V z) {
 }
 
 HWY_INLINE void put_bits(D d, hn::Mask<D> mask, std::size_t lane, std::uint32_t& bits) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    bits |= (static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8) << lane;
+    bits |= simd::mask_bits(d, mask) << lane;
 }
 
 HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::size_t l, bool relative,

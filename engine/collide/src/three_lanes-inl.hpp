@@ -9,12 +9,14 @@
 
 #include <hwy/highway.h>
 
+#include <crofton/simd/mask_bits-inl.hpp>
 #include <cstddef>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 using D3 = hn::CappedTag<double, 4>;
 constexpr std::size_t kWidth = hn::MaxLanes(D3()), kParts = (3 + kWidth - 1) / kWidth;
@@ -73,11 +75,7 @@ HWY_INLINE void store3(const Three& u, double* to) {
 template <class Comparison>
 HWY_INLINE std::uint32_t lanes_where(Comparison comparison) {
     std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < kParts; ++i) {
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(D3(), comparison(i), bytes);
-        bits |= static_cast<std::uint32_t>(bytes[0]) << (i * kWidth);
-    }
+    for (std::size_t i = 0; i < kParts; ++i) bits |= simd::mask_bits(D3(), comparison(i)) << (i * kWidth);
     return bits & 7u;
 }
 

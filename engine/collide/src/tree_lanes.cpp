@@ -6,12 +6,14 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::collide::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, boxtree::kWidth>;
 using V = hn::Vec<D>;
@@ -89,9 +91,7 @@ HWY_INLINE std::uint32_t along(const Block& block, const LaneRay& ray, float* en
             last = hn::Min(last, hn::Max(t0, t1));
         }
         hn::StoreU(first, d, entry + l);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Le(first, last), bits);
-        lanes |= (bits[0] | static_cast<std::uint32_t>(bits[1]) << 8) << l;
+        lanes |= simd::mask_bits(d, hn::Le(first, last)) << l;
     }
     return lanes & used;
 }
@@ -110,9 +110,7 @@ HWY_INLINE std::uint32_t within(const Block& block, const LaneBox& box) {
             apart = hn::Or(apart, hn::Gt(hn::Sub(bounds.middle[k], half), hn::Set(d, box.high[k])));
             apart = hn::Or(apart, hn::Lt(hn::Add(bounds.middle[k], half), hn::Set(d, box.low[k])));
         }
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Not(apart), bits);
-        lanes |= (bits[0] | static_cast<std::uint32_t>(bits[1]) << 8) << l;
+        lanes |= simd::mask_bits(d, hn::Not(apart)) << l;
     }
     return lanes & ((1u << block.count) - 1u);
 }

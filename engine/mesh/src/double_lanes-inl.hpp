@@ -10,10 +10,12 @@
 #include <hwy/highway.h>
 
 #include <crofton/mesh/mesh_layout.hpp>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 // Signs of determinants det(u, v, w) of differences of points are certain beyond kDeterminantError · |u|₁ |v|₁ |w|₁.
 // Shewchuk's bound for orient3d, (7 + 56 u') u' with u' = 2^-53, holds for the sum of all products' magnitudes. That
@@ -54,9 +56,7 @@ HWY_INLINE VD rounded_dot(const VD* u, const VD* v) {
 }
 
 HWY_INLINE std::uint32_t bits_of(DD d, MD mask, std::size_t l) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, mask, bits);
-    return static_cast<std::uint32_t>(bits[0]) << l;
+    return simd::mask_bits(d, mask) << l;
 }
 
 }  // namespace crofton::mesh::HWY_NAMESPACE

@@ -9,21 +9,17 @@
 
 #include <hwy/highway.h>
 #include <cmath>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 #include "mesh_pair.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, mesh::kMeshNodeWidth>;
 using V = hn::Vec<D>;
-
-HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
-}
 
 // Rounding of the products and sums of one test, relative to the boxes' sizes: 16 roundings of 2^-24 at most, axes
 // orthonormal to 1e-6, and a margin.
@@ -161,7 +157,7 @@ HWY_INLINE std::uint32_t overlap_mask(const mesh::MeshNode& node, const QueryBox
                 }
             }
         }
-        apart |= bits_of(d, hn::Gt(gap, zero)) << l;
+        apart |= simd::mask_bits(d, hn::Gt(gap, zero)) << l;
     }
     return ~apart & ((1u << node.count) - 1u);
 }

@@ -43,9 +43,7 @@ HWY_INLINE std::uint32_t near_triangles(const MeshLeaf& leaf, const QueryBox& q,
             gap = hn::Max(gap, hn::Sub(hn::Max(low, hn::Neg(high)), hn::Set(d, q.half[k])));
         }
         const VT error = hn::MulAdd(size, hn::Set(d, 0x1p-20f), hn::Set(d, reach));
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(d, hn::Gt(gap, error), bytes);
-        apart |= static_cast<std::uint32_t>(bytes[0]) << l;
+        apart |= simd::mask_bits(d, hn::Gt(gap, error)) << l;
     }
     return ~apart & ((1u << leaf.count) - 1u);
 }

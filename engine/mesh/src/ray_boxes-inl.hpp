@@ -50,7 +50,7 @@ class AlignedBoxes {
             }
             // The reciprocals and the products are within 3 · 2^-24 each.
             hn::Store(first, d, entry + l);
-            lanes |= bits_of(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
+            lanes |= simd::mask_bits(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
         }
         return lanes;
     }

@@ -16,13 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class Tag>
-HWY_INLINE std::uint32_t bits_of(Tag d, hn::Mask<Tag> mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
-}
-
 // Not below t, in the kernel's parameters.
 HWY_INLINE float limit_of(const RayQuery& q, double t) {
     const double reached = t * q.scale;
@@ -65,7 +58,7 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
         }
         const auto apart = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
         const auto beyond = hn::Gt(nearest, hn::Set(d, limit - along + q.slop));
-        lanes |= bits_of(d, hn::Or(apart, beyond)) << l;
+        lanes |= simd::mask_bits(d, hn::Or(apart, beyond)) << l;
     }
     return ~lanes & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle
 }

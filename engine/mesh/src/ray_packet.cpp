@@ -62,7 +62,7 @@ class PacketBoxes {
                 first = hn::Max(first, hn::Min(hn::Mul(near, least), hn::Mul(near, most)));
                 last = hn::Min(last, hn::Max(hn::Mul(far, least), hn::Mul(far, most)));
             }
-            found |= bits_of(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
+            found |= simd::mask_bits(d, hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last)) << l;
         }
         return found;
     }
@@ -82,7 +82,7 @@ class PacketBoxes {
             }
             const auto met = hn::Le(hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f)), last);
             least = hn::IfThenElse(met, hn::Min(least, first), least);
-            found |= bits_of(d, met) << l;
+            found |= simd::mask_bits(d, met) << l;
         }
         entry = hn::GetLane(hn::MinOfLanes(d, least));
         return found;
@@ -147,7 +147,7 @@ class Packet {
         const hn::CappedTag<float, kRayPacketWidth> d;
         std::uint32_t rays = 0;
         for (std::size_t l = 0; l < kRayPacketWidth; l += hn::Lanes(d))
-            rays |= bits_of(d, hn::Le(hn::Set(d, entry), hn::Load(d, limits_ + l))) << l;
+            rays |= simd::mask_bits(d, hn::Le(hn::Set(d, entry), hn::Load(d, limits_ + l))) << l;
         return rays;
     }
 

@@ -49,7 +49,7 @@ class OrientedBoxes {
             first = hn::Mul(first, hn::Set(d, 1.0f - 0x1p-20f));
             last = hn::Mul(last, hn::Set(d, 1.0f + 0x1p-20f));
             hn::Store(first, d, entry + l);
-            lanes |= bits_of(d, hn::Le(first, last)) << l;
+            lanes |= simd::mask_bits(d, hn::Le(first, last)) << l;
         }
         return lanes & ((1u << node.count) - 1u);
     }

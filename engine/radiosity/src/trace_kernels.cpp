@@ -6,19 +6,15 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <bit>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::radiosity::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = crofton::simd::HWY_NAMESPACE;
 using D = hn::CappedTag<float, kLanes>;
 using V = hn::Vec<D>;
-
-inline unsigned bits_of(D d, hn::Mask<D> mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    return bytes[0] & ((1u << hn::Lanes(d)) - 1u);
-}
 
 struct Spread {
     V point[3], direction[3], inverse[3];
@@ -55,7 +51,7 @@ HWY_INLINE unsigned children(D d, const mesh::BoxNode& node, const Spread& ray, 
         }
         const V slack = hn::Mul(hn::Set(d, 0x1p-21f), hn::Max(hn::Abs(enter), hn::Abs(leave)));
         hn::Store(enter, d, entry + i);
-        bits |= bits_of(d, hn::Le(enter, hn::Add(leave, slack))) << i;
+        bits |= simd::mask_bits(d, hn::Le(enter, hn::Add(leave, slack))) << i;
     }
     return bits & ((1u << node.count) - 1u);
 }
@@ -90,8 +86,8 @@ HWY_INLINE unsigned triangles(D d, const TracerLeaf& leaf, const Spread& ray, fl
         const auto inside = hn::And(hn::And(hn::Ge(u, zero), hn::Ge(v, zero)),
                                     hn::And(hn::Le(hn::Add(u, v), hn::Set(d, 1.0f)), hn::Ne(determinant, zero)));
         hn::Store(t, d, t_out + i);
-        bits |= bits_of(d, inside) << i;
-        *front |= bits_of(d, hn::Gt(determinant, zero)) << i;
+        bits |= simd::mask_bits(d, inside) << i;
+        *front |= simd::mask_bits(d, hn::Gt(determinant, zero)) << i;
     }
     return bits & ((1u << leaf.count) - 1u);
 }
@@ -205,7 +201,7 @@ HWY_INLINE unsigned beam_children(D d, const mesh::BoxNode& node, const Beam& be
             passes = hn::And(passes, hn::And(hn::Le(low, hn::Load(d, node.bounds[k + 3] + i)),
                                              hn::Ge(high, hn::Load(d, node.bounds[k] + i))));
         }
-        bits |= bits_of(d, passes) << i;
+        bits |= simd::mask_bits(d, passes) << i;
     }
     return bits & ((1u << node.count) - 1u);
 }
@@ -226,10 +222,7 @@ HWY_INLINE std::uint64_t lines_through(const Beam& beam, const mesh::BoxNode& no
             leave = hn::Min(leave, hn::Max(a, b));
         }
         const W slack = hn::Mul(hn::Set(d, 0x1p-21f), hn::Max(hn::Abs(enter), hn::Abs(leave)));
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(d, hn::Le(enter, hn::Add(leave, slack)), bytes);
-        const std::uint64_t bits = bytes[0] | std::uint64_t{bytes[1]} << 8;
-        lines |= (bits & ((std::uint64_t{1} << hn::Lanes(d)) - 1)) << i;
+        lines |= std::uint64_t{simd::mask_bits(d, hn::Le(enter, hn::Add(leave, slack)))} << i;
     }
     return lines;
 }

@@ -72,6 +72,13 @@ struct DirectLanes {
         }
         return hn::MulAdd(skew, hn::Set(d, 2.0f), square);
     }
+    // A radius of the ball around the box, for any axes: 2^-18 covers twenty roundings, 1e-18 squares that underflow.
+    HWY_INLINE VF radius(float scale) const {
+        const DF d;
+        return hn::MulAdd(hn::Sqrt(square_of_reach()), hn::Set(d, scale * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
+    }
+    // Bounds |x| + |y| + |z| + Σ|edge components|: no component of an axis exceeds 2.
+    HWY_INLINE VF size() const { return hn::MulAdd(extent(), hn::Set(DF(), 6.0f), distance()); }
     HWY_INLINE VF sum_of_squares() const { return hn::Add(hn::Add(product(0, 0), product(1, 1)), product(2, 2)); }
 
   private:
@@ -112,9 +119,7 @@ HWY_INLINE BoxLanes lanes_of(const Picked<DirectBoxes>& picked, std::size_t coun
         const VF half = hn::Mul(in.half[k], inverse);
         for (unsigned j = 0; j < 3; ++j) boxes.edge[3 * k + j] = hn::Mul(in.axis[3 * k + j], half);
     }
-    // No component of an axis exceeds 2.
-    const VF size = hn::MulAdd(in.extent(), hn::Set(d, 6.0f), in.distance());
-    boxes.edge_slack = hn::Mul(size, hn::Set(d, kDirectError));
+    boxes.edge_slack = hn::Mul(in.size(), hn::Set(d, kDirectError));
     return boxes;
 }
 
@@ -139,7 +144,8 @@ HWY_INLINE VF value_at(const DirectPlane& plane, const VF (&at)[3]) {
 
 // Whether the kernel can take the boxes, from the sum of the squares of their axes' components. If that does not exceed
 // 4, none of them exceeds 2. Numbers that are not finite make `squares` or `size` one as well.
-HWY_INLINE MF are_valid(VF squares, VF size) {
+HWY_INLINE MF are_valid(const DirectLanes& boxes) {
+    const VF squares = boxes.sum_of_squares(), size = boxes.size();
     return hn::And(hn::Le(squares, hn::Set(DF(), 4.0f)), hn::Lt(size, hn::Set(DF(), 8e29f)));
 }
 
@@ -147,14 +153,11 @@ HWY_INLINE MF are_valid(VF squares, VF size) {
 HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
                                    float slack) {
     const DF d;
-    const VF distance = boxes.distance(), size = hn::MulAdd(boxes.extent(), hn::Set(d, 6.0f), distance);
-    // Normals are up to 1.0005 long; 2^-18 covers twenty roundings, 1e-18 squares that underflow.
-    const VF radius =
-        hn::MulAdd(hn::Sqrt(boxes.square_of_reach()), hn::Set(d, 1.0005f * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
-    const VF margin = hn::Add(radius, hn::MulAdd(distance, hn::Set(d, kDirectError), hn::Set(d, slack)));
+    const VF slop = hn::MulAdd(boxes.distance(), hn::Set(d, kDirectError), hn::Set(d, slack));
+    const VF margin = hn::Add(boxes.radius(1.0005f), slop);  // normals are up to 1.0005 long
     VF least = hn::Set(d, 3e38f);
     for (std::uint32_t i = 0; i < count; ++i) least = hn::Min(least, value_at(planes[i], boxes.center));
-    const std::uint32_t valid = bits_of(are_valid(boxes.sum_of_squares(), size));
+    const std::uint32_t valid = bits_of(are_valid(boxes));
     return {bits_of(hn::Lt(least, hn::Neg(margin))) & valid, bits_of(hn::Ge(least, margin)) & valid, 0, 0};
 }
 
@@ -162,13 +165,9 @@ HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* 
 HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count, float slack,
                                   bool exact) {
     const DF d;
-    VF edge[9], squares = hn::Zero(d);
-    for (unsigned k = 0; k < 9; ++k) {
-        edge[k] = hn::Mul(boxes.axis[k], boxes.half[k / 3]);
-        squares = hn::MulAdd(boxes.axis[k], boxes.axis[k], squares);
-    }
-    const VF size = hn::MulAdd(boxes.extent(), hn::Set(d, 6.0f), boxes.distance());
-    const VF error = hn::MulAdd(size, hn::Set(d, kDirectError), hn::Set(d, slack)), beyond = hn::Neg(error);
+    VF edge[9];
+    for (unsigned k = 0; k < 9; ++k) edge[k] = hn::Mul(boxes.axis[k], boxes.half[k / 3]);
+    const VF error = hn::MulAdd(boxes.size(), hn::Set(d, kDirectError), hn::Set(d, slack)), beyond = hn::Neg(error);
     const VF most = hn::Set(d, 3e38f);
     VF top = most, bottom = most, next_bottom = most, middle = most;  // the least of all planes, and the next
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -189,8 +188,8 @@ HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* p
     const MF crossing = hn::And(hn::Ge(top, error), hn::Lt(bottom, beyond));
     // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
     const MF meets = hn::Or(hn::Ge(next_bottom, error), hn::Ge(middle, error));
-    const std::uint32_t valid = bits_of(are_valid(squares, size)), out = bits_of(outside) & valid,
-                        in = bits_of(inside) & valid, cross = bits_of(crossing) & valid;
+    const std::uint32_t valid = bits_of(are_valid(boxes)), out = bits_of(outside) & valid, in = bits_of(inside) & valid,
+                        cross = bits_of(crossing) & valid;
     return {out, in, exact ? cross & ~bits_of(meets) : 0, ~(out | in | cross)};
 }
 

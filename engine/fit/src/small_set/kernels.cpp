@@ -7,11 +7,14 @@
 #define HWY_TARGET_INCLUDE "small_set/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <crofton/simd/mask_bits-inl.hpp>
 
 #include "small_set/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::fit::kernels::HWY_NAMESPACE {
+
+namespace simd = crofton::simd::HWY_NAMESPACE;
 
 void find_extremes(const SmallSet& points, const Directions& directions, float* least, float* greatest) {
     const Tag d;
@@ -210,9 +213,7 @@ void values_of_slides(const SmallSet& points, const FloatWeights& weights, Slide
 // Appends the lanes of `mask`, as indices from `base`, below `count`, while there is room.
 HWY_INLINE void append(Tag d, hn::Mask<Tag> mask, std::size_t base, std::size_t count, FlushSide& side) {
     if (hn::AllFalse(d, mask)) return;
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    for (unsigned bits = bytes[0] | static_cast<unsigned>(bytes[1]) << 8; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = simd::mask_bits(d, mask); bits != 0; bits &= bits - 1) {
         const std::size_t index = base + static_cast<std::size_t>(std::countr_zero(bits));
         if (index < count && side.count < kMostFlush) side.indices[side.count++] = static_cast<std::uint32_t>(index);
     }
