@@ -115,7 +115,7 @@ Result<BakedScene> BakedScene::open(const std::string& path, Executor& executor,
         auto file = MappedFile::open(path, options);
         if (!file) return tl::unexpected(file.error());
         auto baked = from_memory(file->bytes(), executor);
-        if (!baked) return fail(baked.error().code, baked.error().item, path + ": " + baked.error().message);
+        if (!baked) return fail(baked.error().code, baked.error().item, {path, ": ", baked.error().message});
         baked->file_.emplace(std::move(*file));
         return baked;
     });

@@ -44,9 +44,9 @@ Result<void> check_header(const Header& header, std::size_t size) {
     if (header.byte_order != Header().byte_order)
         return fail(ErrorCode::unsupported, kNoItem, "the file's byte order is not this machine's");
     if (header.version != kVersion)
-        return fail(ErrorCode::unsupported, kNoItem,
-                    "the file is of version " + std::to_string(header.version) + ", this library reads version " +
-                        std::to_string(kVersion) + ": bake it again");
+        return fail(
+            ErrorCode::unsupported, kNoItem,
+            {"the file is of version ", header.version, ", this library reads version ", kVersion, ": bake it again"});
     if (header.file_size != size)
         return damaged("the file has " + std::to_string(size) + " bytes, its header says " +
                        std::to_string(header.file_size) + ": cut off or appended to");

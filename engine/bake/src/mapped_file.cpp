@@ -27,20 +27,19 @@ struct Bytes {
 };
 
 tl::unexpected<Error> system_error(const std::string& path, const char* what) {
-    return fail(ErrorCode::io, kNoItem, path + ": " + what + ": " + std::strerror(errno));
+    return fail(ErrorCode::io, kNoItem, {path, ": ", what, ": ", std::strerror(errno)});
 }
 
 tl::unexpected<Error> too_large(const std::string& path, std::uint64_t size, std::uint64_t largest) {
     return fail(ErrorCode::out_of_range, kNoItem,
-                path + ": " + std::to_string(size) + " bytes, where the limit is " + std::to_string(largest) +
-                    " (FileOptions::largest)");
+                {path, ": ", size, " bytes, where the limit is ", largest, " (FileOptions::largest)"});
 }
 
 // Memory of the host's, or an error.
 Result<std::byte*> room_for(std::size_t size, const std::string& path) {
     auto* memory = static_cast<std::byte*>(detail::try_allocate(size, kReadAlignment));
     if (memory) return memory;
-    return fail(ErrorCode::out_of_memory, kNoItem, path + ": no memory for its " + std::to_string(size) + " bytes");
+    return fail(ErrorCode::out_of_memory, kNoItem, {path, ": no memory for its ", size, " bytes"});
 }
 
 #if defined(CROFTON_MMAP)
@@ -57,7 +56,7 @@ Result<std::size_t> open_regular(const std::string& path, std::uint64_t largest,
     file.number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat status {};
     if (file.number < 0 || fstat(file.number, &status) != 0) return system_error(path, "cannot open");
-    if (!S_ISREG(status.st_mode)) return fail(ErrorCode::io, kNoItem, path + ": not a regular file");
+    if (!S_ISREG(status.st_mode)) return fail(ErrorCode::io, kNoItem, {path, ": not a regular file"});
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (size > largest) return too_large(path, size, largest);
     return static_cast<std::size_t>(size);
@@ -85,7 +84,7 @@ Result<Bytes> read(const std::string& path, int file, std::size_t size) {
         if (count > 0) done += static_cast<std::size_t>(count);
     }
     if (done == size) return Bytes{std::span<const std::byte>(*memory, size), false};
-    const auto error = count == 0 ? fail(ErrorCode::io, kNoItem, path + ": was cut while it was read")
+    const auto error = count == 0 ? fail(ErrorCode::io, kNoItem, {path, ": was cut while it was read"})
                                   : system_error(path, "cannot read");
     detail::release(*memory, size, kReadAlignment);
     return error;

@@ -12,7 +12,7 @@ using occlude::FoundOccluder;
 using occlude::OccluderKind;
 
 tl::unexpected<Error> bad_occluder(const char* what, std::uint64_t item) {
-    return fail(ErrorCode::parse, item, std::string("occluders: ") + what);
+    return fail(ErrorCode::parse, item, {"occluders: ", what});
 }
 
 bool is_range(std::uint64_t first, std::uint64_t count, std::size_t size) {

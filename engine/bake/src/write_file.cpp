@@ -21,7 +21,7 @@ namespace crofton::bake {
 namespace {
 
 tl::unexpected<Error> write_error(const std::string& path, const char* what, int reason) {
-    return fail(ErrorCode::io, kNoItem, path + ": " + what + ": " + std::strerror(reason));
+    return fail(ErrorCode::io, kNoItem, {path, ": ", what, ": ", std::strerror(reason)});
 }
 
 // The file that a link leads to; the path itself where it is none.
@@ -93,7 +93,7 @@ Result<void> open_partial(const std::string& partial, const std::string& path, O
         struct stat status {};
         if (fstat(file.number(), &status) != 0) return write_error(path, "cannot create", errno);
         if (!S_ISREG(status.st_mode))
-            return fail(ErrorCode::io, kNoItem, path + ": cannot create: " + partial + " is in the way");
+            return fail(ErrorCode::io, kNoItem, {path, ": cannot create: ", partial, " is in the way"});
         if (flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
             ++wait;
             ::usleep(kWaitMicroseconds);
@@ -101,7 +101,7 @@ Result<void> open_partial(const std::string& partial, const std::string& path, O
         }
         if (same_file(file.number(), partial)) return {};
     }
-    return fail(ErrorCode::io, kNoItem, path + ": another program has been writing it for ten seconds");
+    return fail(ErrorCode::io, kNoItem, {path, ": another program has been writing it for ten seconds"});
 }
 
 // The name itself is on the disk once its folder is. Where folders cannot be flushed it gets there in its time.

@@ -80,7 +80,7 @@ Vector<std::byte> BoxTree::serialise() const {
 Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust trust) {
     return detail::recover([&]() -> Result<BoxTree> {
         const auto damaged = [](const char* why) {
-            return fail(ErrorCode::parse, kNoItem, std::string("stored box tree: ") + why);
+            return fail(ErrorCode::parse, kNoItem, {"stored box tree: ", why});
         };
         Header header;
         const Header expected;
@@ -114,7 +114,7 @@ Result<BoxTree> BoxTree::deserialise(std::span<const std::byte> bytes, Trust tru
         find_detached(items, structure);
         if (auto valid = measure::validate(criterion); !valid) return tl::unexpected(valid.error());
         if (auto valid = boxtree::validate(structure, trust); !valid)
-            return fail(ErrorCode::parse, valid.error().item, "stored " + valid.error().message);
+            return fail(ErrorCode::parse, valid.error().item, {"stored ", valid.error().message});
         return tree;
     });
 }

@@ -13,7 +13,7 @@ namespace crofton::boxtree {
 namespace {
 
 tl::unexpected<Error> broken(std::uint64_t item, const char* what) {
-    return fail(ErrorCode::internal, item, std::string("box tree: ") + what);
+    return fail(ErrorCode::internal, item, {"box tree: ", what});
 }
 
 bool lanes_agree(const Leaf& a, const Leaf& b, unsigned lane) {

@@ -174,7 +174,7 @@ void Broadphase::State::keep_pairs_that_meet(std::span<const Obb> boxes, Vector<
 
 Result<void> Broadphase::State::too_many_pairs() const {
     return fail(ErrorCode::budget_exceeded, kNoItem,
-                "broadphase: the bounds of more than " + std::to_string(options.max_pairs) + " pairs meet");
+                {"broadphase: the bounds of more than ", options.max_pairs, " pairs meet"});
 }
 
 Result<void> Broadphase::State::check(std::span<const Obb> boxes, std::span<const CollisionFilter> filters) {

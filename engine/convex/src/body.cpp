@@ -15,11 +15,9 @@ namespace {
 constexpr double kUp = 1.0 + 0x1p-50;  // outweighs the roundings of a length
 
 Result<void> check_length(float value, const char* name, std::uint64_t item = kNoItem) {
-    if (!std::isfinite(value))
-        return fail(ErrorCode::non_finite, item, std::string("body: ") + name + " is NaN or infinite");
-    if (value < 0.0f)
-        return fail(ErrorCode::invalid_argument, item, std::string("body: ") + name + " is negative (inside out)");
-    if (value > kMaxExtent) return fail(ErrorCode::out_of_range, item, std::string("body: ") + name + " exceeds 1e15");
+    if (!std::isfinite(value)) return fail(ErrorCode::non_finite, item, {"body: ", name, " is NaN or infinite"});
+    if (value < 0.0f) return fail(ErrorCode::invalid_argument, item, {"body: ", name, " is negative (inside out)"});
+    if (value > kMaxExtent) return fail(ErrorCode::out_of_range, item, {"body: ", name, " exceeds 1e15"});
     return {};
 }
 

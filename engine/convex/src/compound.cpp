@@ -16,11 +16,10 @@ Result<void> check(const CompoundChild& child, std::uint64_t item) {
     const std::string name = "compound: child " + std::to_string(item);
     if (Result<void> good = validate_pose(child.pose, item); !good) return good;
     if (child.body.kind() == Kind::half_space)
-        return fail(ErrorCode::unsupported, item, name + " is a half-space; make it an object of its own");
+        return fail(ErrorCode::unsupported, item, {name, " is a half-space; make it an object of its own"});
     if (child.body.compound() != nullptr && child.body.compound()->depth() >= kMaxCompoundDepth)
         return fail(ErrorCode::out_of_range, item,
-                    name + " holds compounds " + std::to_string(kMaxCompoundDepth) +
-                        " deep; put its children into fewer levels");
+                    {name, " holds compounds ", kMaxCompoundDepth, " deep; put its children into fewer levels"});
     return {};
 }
 

@@ -33,9 +33,9 @@ Result<void> check(const HeightFieldDescription& d) {
     for (std::size_t i = 0; i < d.heights.size(); ++i) {
         if (!std::isfinite(d.heights[i]))
             return fail(ErrorCode::non_finite, i,
-                        "height field: height " + std::to_string(i) + " is NaN or infinite; use kHole for holes");
+                        {"height field: height ", i, " is NaN or infinite; use kHole for holes"});
         if (std::abs(d.heights[i]) > kMaxExtent)
-            return fail(ErrorCode::out_of_range, i, "height field: height " + std::to_string(i) + " exceeds 1e15");
+            return fail(ErrorCode::out_of_range, i, {"height field: height ", i, " exceeds 1e15"});
     }
     if (!d.materials.empty() &&
         std::all_of(d.materials.begin(), d.materials.end(), [](std::uint8_t m) { return m == kHole; }))

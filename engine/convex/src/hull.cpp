@@ -25,9 +25,9 @@ Result<void> check(std::span<const glm::vec3> points, const HullOptions& options
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int k = 0; k < 3; ++k) {
             if (!std::isfinite(points[i][k]))
-                return fail(ErrorCode::non_finite, i, "hull: point " + std::to_string(i) + " is NaN or infinite");
+                return fail(ErrorCode::non_finite, i, {"hull: point ", i, " is NaN or infinite"});
             if (std::abs(points[i][k]) > kMaxExtent)
-                return fail(ErrorCode::out_of_range, i, "hull: point " + std::to_string(i) + " exceeds 1e15");
+                return fail(ErrorCode::out_of_range, i, {"hull: point ", i, " exceeds 1e15"});
         }
     return {};
 }

@@ -40,11 +40,29 @@ const char* to_string(ErrorCode code) {
     return "unknown";
 }
 
-tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message) {
+void MessagePart::append_to(std::string& message) const {
+    switch (kind_) {
+        case Kind::text:
+            message += text_;
+            break;
+        case Kind::whole:
+            message += std::to_string(whole_);
+            break;
+        case Kind::integer:
+            message += std::to_string(integer_);
+            break;
+        case Kind::number:
+            message += std::to_string(number_);
+            break;
+    }
+}
+
+tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, std::initializer_list<MessagePart> message) noexcept {
     Error error{code, item, {}};
     try {
-        error.message = message;
+        for (const MessagePart& part : message) part.append_to(error.message);
     } catch (const std::bad_alloc&) {
+        error.message.clear();
     }
     return tl::unexpected<Error>(std::move(error));
 }

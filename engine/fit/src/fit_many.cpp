@@ -25,7 +25,7 @@ Result<Obb> fit_cluster(const Clusters& clusters, std::size_t i, const FitOption
     for (std::size_t j = begin; j < end; ++j) {
         const std::uint32_t index = clusters.indices[j];
         if (index >= clusters.positions.size())
-            return fail(ErrorCode::out_of_range, i, "index " + std::to_string(index) + " is out of range");
+            return fail(ErrorCode::out_of_range, i, {"index ", index, " is out of range"});
         worker.points.push_back(clusters.positions[index]);
     }
     return worker.fitter.fit(std::span<const glm::vec3>(worker.points), options);
@@ -57,8 +57,7 @@ Result<void> fit_many(const Clusters& clusters, const FitOptions& options, Execu
             std::min_element(workers.get(), workers.get() + count,
                              [](const Worker& a, const Worker& b) { return a.first_bad < b.first_bad; });
         if (first->first_bad == ~std::size_t{0}) return {};
-        return fail(first->error.code, first->first_bad,
-                    "cluster " + std::to_string(first->first_bad) + ": " + first->error.message);
+        return fail(first->error.code, first->first_bad, {"cluster ", first->first_bad, ": ", first->error.message});
     });
 }
 

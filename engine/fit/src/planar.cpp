@@ -69,9 +69,9 @@ Result<void> check_planar(std::span<const glm::dvec2> points) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::dvec2 p = points[i];
         if (!std::isfinite(p.x) || !std::isfinite(p.y))
-            return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
+            return fail(ErrorCode::non_finite, i, {"fit: point ", i, " is NaN or infinite"});
         if (std::max(std::abs(p.x), std::abs(p.y)) > kMaxCoordinate)
-            return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
+            return fail(ErrorCode::out_of_range, i, {"fit: point ", i, " exceeds 1e30"});
     }
     return {};
 }

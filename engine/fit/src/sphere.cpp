@@ -78,9 +78,9 @@ Result<Sphere> minimal_sphere(std::span<const glm::dvec3> points) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::dvec3 p = glm::abs(points[i]);
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
+            return fail(ErrorCode::non_finite, i, {"fit: point ", i, " is NaN or infinite"});
         if (std::max({p.x, p.y, p.z}) > kMaxCoordinate)
-            return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
+            return fail(ErrorCode::out_of_range, i, {"fit: point ", i, " exceeds 1e30"});
         const glm::dvec3 d = glm::abs(points[i] - points[0]);
         size = std::max({size, d.x, d.y, d.z});
     }

@@ -75,10 +75,9 @@ Result<Prepared> prepare(std::span<const Point> points) {
         const glm::dvec3 p(points[i]);
         for (int k = 0; k < 3; ++k) {
             if (!std::isfinite(p[k]))
-                return fail(ErrorCode::non_finite, i,
-                            "convex_hull: point " + std::to_string(i) + " is NaN or infinite");
+                return fail(ErrorCode::non_finite, i, {"convex_hull: point ", i, " is NaN or infinite"});
             if (std::abs(p[k]) > kMaxCoordinate)
-                return fail(ErrorCode::out_of_range, i, "convex_hull: point " + std::to_string(i) + " exceeds 1e30");
+                return fail(ErrorCode::out_of_range, i, {"convex_hull: point ", i, " exceeds 1e30"});
         }
         bounds.include(p);
     }

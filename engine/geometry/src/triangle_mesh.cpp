@@ -14,13 +14,12 @@ Result<void> validate(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         const glm::vec3& p = mesh.positions[i];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            return fail(ErrorCode::non_finite, i, "mesh: vertex " + std::to_string(i) + " is NaN or infinite");
+            return fail(ErrorCode::non_finite, i, {"mesh: vertex ", i, " is NaN or infinite"});
     }
     for (std::size_t i = 0; i < mesh.indices.size(); ++i)
         if (mesh.indices[i] >= mesh.positions.size())
             return fail(ErrorCode::out_of_range, i,
-                        "mesh: index " + std::to_string(i) + " refers to vertex " + std::to_string(mesh.indices[i]) +
-                            " of " + std::to_string(mesh.positions.size()));
+                        {"mesh: index ", i, " refers to vertex ", mesh.indices[i], " of ", mesh.positions.size()});
     return {};
 }
 

@@ -21,7 +21,7 @@ Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) con
                     "mesh refit: the tree is not refittable; build it with MeshTreeOptions::refittable");
     if (positions.size() != refit.vertex_count)
         return fail(ErrorCode::invalid_argument, positions.size(),
-                    "mesh refit: the tree was built from " + std::to_string(refit.vertex_count) + " positions");
+                    {"mesh refit: the tree was built from ", refit.vertex_count, " positions"});
     bool all_usable = true;
     for (const glm::vec3& p : positions) all_usable &= is_usable(p);
     if (all_usable) return {};
@@ -31,7 +31,7 @@ Result<void> MeshTree::check_positions(std::span<const glm::vec3> positions) con
             for (const std::uint32_t v : corner)
                 if (!is_usable(positions[v])) bad = std::min(bad, v);
     if (bad == ~std::uint32_t{0}) return {};
-    return fail(ErrorCode::non_finite, bad, "mesh refit: vertex " + std::to_string(bad) + " is not within 1e12");
+    return fail(ErrorCode::non_finite, bad, {"mesh refit: vertex ", bad, " is not within 1e12"});
 }
 
 Result<void> MeshTree::refit(std::span<const glm::vec3> positions) {

@@ -75,13 +75,13 @@ Result<void> OccluderSet::Data::replace(OccluderId id, Result<Occluder> occluder
 
 Result<void> OccluderSet::Data::check(OccluderId id) const {
     if (id >= occluders.size() || occluders[id].removed)
-        return fail(ErrorCode::out_of_range, id, "occluder: " + std::to_string(id) + " is not in the set");
+        return fail(ErrorCode::out_of_range, id, {"occluder: ", id, " is not in the set"});
     return {};
 }
 
 Result<void> OccluderSet::Data::check_shape(ShapeId id) const {
     if (id >= shapes.size() || shape_uses[id] == kNone)
-        return fail(ErrorCode::out_of_range, id, "occluder: there is no shape " + std::to_string(id));
+        return fail(ErrorCode::out_of_range, id, {"occluder: there is no shape ", id});
     return {};
 }
 

@@ -142,8 +142,7 @@ OcclusionBuffer& OcclusionBuffer::operator=(OcclusionBuffer&&) noexcept = defaul
 Result<OcclusionBuffer> OcclusionBuffer::create(const BufferSize& size) {
     if (size.width < 8 || size.height < 8 || size.width > 4096 || size.height > 4096)
         return fail(ErrorCode::out_of_range, kNoItem,
-                    "occlusion buffer: width and height must be 8 to 4096, not " + std::to_string(size.width) +
-                        " and " + std::to_string(size.height));
+                    {"occlusion buffer: width and height must be 8 to 4096, not ", size.width, " and ", size.height});
     OcclusionBuffer buffer;
     Data& data = *buffer.data_;
     data.size = size;

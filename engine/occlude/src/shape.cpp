@@ -195,9 +195,8 @@ Result<Shape> closed_shape(const TriangleMesh& mesh) {
         if (2 * static_cast<std::size_t>(forward) != group.size()) open = std::min(open, source[group[0].triangle]);
     });
     if (open != kNone)
-        return fail(
-            ErrorCode::invalid_argument, open,
-            "occluder: the mesh is open at triangle " + std::to_string(open) + "; close it, or give it to add_surface");
+        return fail(ErrorCode::invalid_argument, open,
+                    {"occluder: the mesh is open at triangle ", open, "; close it, or give it to add_surface"});
     const double extent = extent_of(*shape);
     const double volume = volume_of(*shape);
     if (std::fabs(volume) <= 1e-12 * extent * extent * extent)

@@ -64,7 +64,7 @@ Vector<std::byte> to_bytes(const Found& found) {
 
 Result<Found> found_from(std::span<const std::byte> bytes) {
     const auto damaged = [](const char* what) {
-        return fail(ErrorCode::parse, kNoItem, std::string("state of a pvs bake: ") + what);
+        return fail(ErrorCode::parse, kNoItem, {"state of a pvs bake: ", what});
     };
     const auto reader = bake::Reader::open(bytes);
     if (!reader) return tl::unexpected(reader.error());

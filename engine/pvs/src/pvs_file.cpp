@@ -22,7 +22,7 @@ struct Head {
 static_assert(sizeof(Head) == 80);
 
 tl::unexpected<Error> damaged(const char* what, std::uint64_t item = kNoItem) {
-    return fail(ErrorCode::parse, item, std::string("potentially visible sets: ") + what);
+    return fail(ErrorCode::parse, item, {"potentially visible sets: ", what});
 }
 
 Result<Cells> cells_from(const Head& head, std::span<const Aabb> boxes) {
@@ -147,7 +147,7 @@ Result<Pvs> Pvs::open(const std::string& path) {
         const auto file = bake::MappedFile::open(path);
         if (!file) return tl::unexpected(file.error());
         auto pvs = from_memory(file->bytes());
-        if (!pvs) return fail(pvs.error().code, pvs.error().item, path + ": " + pvs.error().message);
+        if (!pvs) return fail(pvs.error().code, pvs.error().item, {path, ": ", pvs.error().message});
         return pvs;
     });
 }

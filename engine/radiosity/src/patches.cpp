@@ -26,10 +26,10 @@ Result<void> check_materials(std::span<const Material> materials) {
     for (std::size_t p = 0; p < materials.size(); ++p) {
         const std::string name = "patch " + std::to_string(p);
         if (!in_range(materials[p].emission, 0.0f, 1e30f))
-            return fail(ErrorCode::out_of_range, p, name + ": its emission is negative or not finite");
+            return fail(ErrorCode::out_of_range, p, {name, ": its emission is negative or not finite"});
         if (!in_range(materials[p].reflectance, 0.0f, 1.0f))
             return fail(ErrorCode::out_of_range, p,
-                        name + ": its reflectance must lie in [0, 1): with 1 or more, light would never end");
+                        {name, ": its reflectance must lie in [0, 1): with 1 or more, light would never end"});
     }
     return {};
 }
@@ -51,18 +51,15 @@ Result<Patches> make_patches(TriangleMesh mesh, std::span<const std::uint32_t> p
         for (std::size_t t = 0; t < patch_of_triangle.size(); ++t) {
             const std::uint32_t p = patch_of_triangle[t];
             if (p >= materials.size())
-                return fail(ErrorCode::out_of_range, t,
-                            "triangle " + std::to_string(t) + ": patch " + std::to_string(p) + " of " +
-                                std::to_string(materials.size()));
+                return fail(ErrorCode::out_of_range, t, {"triangle ", t, ": patch ", p, " of ", materials.size()});
             const double area = glm::length(area_vector(mesh, t));
             if (!(area > 0.0) || !std::isfinite(area))
-                return fail(ErrorCode::degenerate, t, "triangle " + std::to_string(t) + ": has no area; leave it out");
+                return fail(ErrorCode::degenerate, t, {"triangle ", t, ": has no area; leave it out"});
             patches.triangle_areas[t] = area;
             patches.areas[p] += area;
         }
         for (std::size_t p = 0; p < materials.size(); ++p)
-            if (patches.areas[p] == 0.0)
-                return fail(ErrorCode::degenerate, p, "patch " + std::to_string(p) + ": has no triangles");
+            if (patches.areas[p] == 0.0) return fail(ErrorCode::degenerate, p, {"patch ", p, ": has no triangles"});
         patches.mesh = std::move(mesh);
         patches.patch_of_triangle.assign(patch_of_triangle.begin(), patch_of_triangle.end());
         patches.materials.assign(materials.begin(), materials.end());

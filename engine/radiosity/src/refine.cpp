@@ -118,7 +118,7 @@ Result<RefinedMesh> refine(const TriangleMesh& mesh, EdgeLength longest_edge, st
         while (refiner.round())
             if (refiner.result.source.size() > most_triangles)
                 return fail(ErrorCode::budget_exceeded, refiner.result.source.size(),
-                            "refine: more than " + std::to_string(most_triangles) + " triangles; allow longer edges");
+                            {"refine: more than ", most_triangles, " triangles; allow longer edges"});
         return std::move(refiner.result);
     });
 }

@@ -65,7 +65,7 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
 // Notes optional features; errors name the needed one that is missing.
 Result<void> examine(VulkanContext& context, const DeviceOptions& options) {
     const auto lacks = [&](const std::string& what) {
-        return fail(ErrorCode::unsupported, kNoItem, context.name + ": the device lacks " + what);
+        return fail(ErrorCode::unsupported, kNoItem, {context.name, ": the device lacks ", what});
     };
     if (context.properties.apiVersion < VK_API_VERSION_1_3) return lacks("Vulkan 1.3");
     if (context.queue_family == ~0u) return lacks("a graphics queue");
@@ -123,7 +123,7 @@ Result<void> choose_physical_device(VulkanContext& context, const DeviceOptions&
     }
     if (best < 0) {
         const std::string asked = wish.kind == DeviceKind::cpu ? "a software device" : "named '" + wish.name + "'";
-        return fail(ErrorCode::unavailable, kNoItem, "no Vulkan device is " + asked + "; there are: " + seen);
+        return fail(ErrorCode::unavailable, kNoItem, {"no Vulkan device is ", asked, "; there are: ", seen});
     }
     vkGetPhysicalDeviceMemoryProperties(context.physical_device, &context.memory);
     context.queue_family = graphics_family(context.physical_device);

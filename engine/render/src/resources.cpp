@@ -11,7 +11,8 @@ Result<VkDeviceMemory> allocate(const VulkanContext& context, const VkMemoryRequ
                                 VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags fallback, bool& host_visible) {
     std::uint32_t type = context.memory_type(needs.memoryTypeBits, wanted);
     if (type == ~0u) type = context.memory_type(needs.memoryTypeBits, fallback);
-    if (type == ~0u) return fail(ErrorCode::unsupported, kNoItem, context.name + ": no suitable kind of device memory");
+    if (type == ~0u)
+        return fail(ErrorCode::unsupported, kNoItem, {context.name, ": no suitable kind of device memory"});
     host_visible = (context.memory.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.allocationSize = needs.size;

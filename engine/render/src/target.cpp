@@ -18,8 +18,7 @@ Result<void> Target::create(VkRenderPass pass, VkExtent2D size, float share) {
     const std::uint32_t limit = context_->properties.limits.maxImageDimension2D;
     if (size.width == 0 || size.height == 0 || size.width > limit || size.height > limit)
         return fail(ErrorCode::out_of_range, kNoItem,
-                    "picture size " + std::to_string(size.width) + "x" + std::to_string(size.height) +
-                        " is not within 1 to " + std::to_string(limit));
+                    {"picture size ", size.width, "x", size.height, " is not within 1 to ", limit});
     if (!(share > 0.0f && share <= 1.0f))
         return fail(ErrorCode::out_of_range, kNoItem, "a picture's resolution must be above 0 and at most 1");
     extent = size;

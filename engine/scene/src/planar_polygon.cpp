@@ -14,17 +14,16 @@ Result<void> validate(const PlanarPolygon& polygon) {
     std::uint32_t begin = 0;
     for (std::size_t r = 0; r < ends.size(); ++r) {
         if (ends[r] > points.size())
-            return fail(ErrorCode::out_of_range, r, "polygon: ring " + std::to_string(r) + " ends beyond the points");
+            return fail(ErrorCode::out_of_range, r, {"polygon: ring ", r, " ends beyond the points"});
         if (ends[r] < begin + 3 || ends[r] < begin)
-            return fail(ErrorCode::degenerate, r,
-                        "polygon: ring " + std::to_string(r) + " has fewer than three points");
+            return fail(ErrorCode::degenerate, r, {"polygon: ring ", r, " has fewer than three points"});
         begin = ends[r];
     }
     if (begin != points.size())
-        return fail(ErrorCode::invalid_argument, begin, "polygon: point " + std::to_string(begin) + " is in no ring");
+        return fail(ErrorCode::invalid_argument, begin, {"polygon: point ", begin, " is in no ring"});
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y))
-            return fail(ErrorCode::non_finite, i, "polygon: point " + std::to_string(i) + " is NaN or infinite");
+            return fail(ErrorCode::non_finite, i, {"polygon: point ", i, " is NaN or infinite"});
     if (!is_finite(polygon.origin) || !is_finite(polygon.u) || !is_finite(polygon.v))
         return fail(ErrorCode::non_finite, kNoItem, "polygon: its origin or an axis is NaN or infinite");
     if (!(glm::length(glm::cross(polygon.u, polygon.v)) > 1e-9 * glm::length(polygon.u) * glm::length(polygon.v)))

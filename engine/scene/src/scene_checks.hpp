@@ -12,17 +12,13 @@ inline constexpr std::size_t kMaxItems = std::size_t{1} << 31;
 template <class T>
 [[nodiscard]] Result<void> check_room(const Vector<T>& items, const Vector<std::uint32_t>& free, const char* what) {
     if (items.size() < kMaxItems || !free.empty()) return {};
-    return fail(ErrorCode::out_of_range, items.size(), std::string("scene: more than 2^31 ") + what);
+    return fail(ErrorCode::out_of_range, items.size(), {"scene: more than 2^31 ", what});
 }
 
 [[nodiscard]] inline Result<void> check_id(std::uint32_t id, std::size_t count, bool removed, const char* what) {
     if (id >= count)
-        return fail(ErrorCode::out_of_range, id,
-                    std::string("scene: ") + what + " " + std::to_string(id) + " does not exist, there are " +
-                        std::to_string(count));
-    if (removed)
-        return fail(ErrorCode::invalid_argument, id,
-                    std::string("scene: ") + what + " " + std::to_string(id) + " was removed");
+        return fail(ErrorCode::out_of_range, id, {"scene: ", what, " ", id, " does not exist, there are ", count});
+    if (removed) return fail(ErrorCode::invalid_argument, id, {"scene: ", what, " ", id, " was removed"});
     return {};
 }
 

@@ -22,14 +22,12 @@ Result<void> Scene::set_local(std::span<const NodeId> nodes, std::span<const Tra
     State& s = *state_;
     if (nodes.size() != locals.size())
         return fail(ErrorCode::invalid_argument, locals.size(),
-                    "scene: " + std::to_string(nodes.size()) + " nodes and " + std::to_string(locals.size()) +
-                        " transforms, give as many of each");
+                    {"scene: ", nodes.size(), " nodes and ", locals.size(), " transforms, give as many of each"});
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (is_node(s.nodes, nodes[i]) && is_valid(locals[i])) continue;
         Result<void> good = check_node(s.nodes, nodes[i]);
         if (good) good = validate(locals[i], i);
-        return fail(good.error().code, i,
-                    good.error().message + " (entry " + std::to_string(i) + ", node " + std::to_string(nodes[i]) + ")");
+        return fail(good.error().code, i, {good.error().message, " (entry ", i, ", node ", nodes[i], ")"});
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         s.locals[nodes[i]] = locals[i];
@@ -58,8 +56,7 @@ Result<void> Scene::set_parent(NodeId node, NodeId parent) {
     for (NodeId a = parent; a != kNone && s.nodes[a].position >= position; a = s.nodes[a].parent)
         if (a == node)
             return fail(ErrorCode::invalid_argument, node,
-                        "scene: node " + std::to_string(parent) + " is node " + std::to_string(node) +
-                            " or below it, so it cannot be its parent");
+                        {"scene: node ", parent, " is node ", node, " or below it, so it cannot be its parent"});
     s.unlink_from_parent(node);
     s.link_to_parent(node, parent);
     if (parent != kNone && s.nodes[parent].position > position) {
@@ -112,8 +109,8 @@ Result<void> Scene::set_vertices(MeshId mesh, std::span<const glm::vec3> positio
     MeshRecord& record = s.meshes[mesh];
     if (positions.size() != record.mesh.positions.size())
         return fail(ErrorCode::invalid_argument, positions.size(),
-                    "scene: mesh " + std::to_string(mesh) + " has " + std::to_string(record.mesh.positions.size()) +
-                        " vertices, not " + std::to_string(positions.size()) + "; replace_mesh takes any number");
+                    {"scene: mesh ", mesh, " has ", record.mesh.positions.size(), " vertices, not ", positions.size(),
+                     "; replace_mesh takes any number"});
     auto box = fit::fit_oriented(positions, record.box.axes);
     if (!box) return tl::unexpected(box.error());
     std::copy(positions.begin(), positions.end(), record.mesh.positions.begin());
@@ -150,8 +147,8 @@ Result<void> Scene::remove_mesh(MeshId mesh) {
     if (auto known = check_mesh(s.meshes, mesh); !known) return known;
     if (const InstanceId user = s.meshes[mesh].first_instance; user != kNone)
         return fail(ErrorCode::invalid_argument, mesh,
-                    "scene: mesh " + std::to_string(mesh) + " is used by instance " + std::to_string(user) +
-                        "; remove its instances first or give them another mesh");
+                    {"scene: mesh ", mesh, " is used by instance ", user,
+                     "; remove its instances first or give them another mesh"});
     s.meshes[mesh] = MeshRecord();
     s.free_meshes.push_back(mesh);
     return {};

@@ -9,7 +9,7 @@ namespace crofton::scene {
 Result<MeshRecord> make_record(TriangleMesh mesh, std::string_view name, const measure::Criterion& criterion) {
     if (mesh.indices.empty() || mesh.positions.empty())
         return fail(ErrorCode::empty, kNoItem,
-                    "mesh: it has no triangles" + (name.empty() ? "" : " (" + std::string(name) + ")"));
+                    {"mesh: it has no triangles", name.empty() ? "" : " (", name, name.empty() ? "" : ")"});
     if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
     auto box = fit::fit_obb(std::span<const glm::vec3>(mesh.positions), fit::FitOptions{.criterion = criterion});
     if (!box) return tl::unexpected(box.error());

@@ -32,8 +32,7 @@ Result<Transform> from_trs(const glm::dvec3& translation, const glm::dquat& rota
     const double length = std::sqrt(squared);
     if (!(std::abs(length - 1.0) <= kUnitTolerance))
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "transform: the quaternion has length " + std::to_string(length) +
-                        ", not 1 within 1 %; normalise it first");
+                    {"transform: the quaternion has length ", length, ", not 1 within 1 %; normalise it first"});
     const bool is_unit = std::abs(squared - 1.0) <= kUnitRounding;
     Transform result{glm::mat3_cast(is_unit ? rotation : rotation / length), translation};
     for (int k = 0; k < 3; ++k) result.linear[k] *= scale[k];

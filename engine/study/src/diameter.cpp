@@ -24,7 +24,7 @@ Result<Diameter<glm::dvec2>> diameter(std::span<const glm::dvec2> points) {
         if (!(std::max(std::abs(points[i].x), std::abs(points[i].y)) <= kMaxCoordinate))
             return fail(std::isfinite(points[i].x) && std::isfinite(points[i].y) ? ErrorCode::out_of_range
                                                                                  : ErrorCode::non_finite,
-                        i, "diameter: point " + std::to_string(i) + " is NaN, infinite or beyond 1e30");
+                        i, {"diameter: point ", i, " is NaN, infinite or beyond 1e30"});
     const auto hull = measure::convex_hull(points);
     if (!hull) return tl::unexpected(hull.error());
     const Vector<glm::dvec2>& p = *hull;

@@ -68,7 +68,7 @@ bool contains(const convex::Hull& hull, std::span<const glm::dvec3> points) {
 Result<Vector<glm::dvec3>> k_dop_directions(std::uint32_t k) {
     Vector<glm::dvec3> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     if (k != 6 && k != 14 && k != 18 && k != 26)
-        return fail(ErrorCode::invalid_argument, kNoItem, "k-DOP: k must be 6, 14, 18 or 26, not " + std::to_string(k));
+        return fail(ErrorCode::invalid_argument, kNoItem, {"k-DOP: k must be 6, 14, 18 or 26, not ", k});
     if (k == 14 || k == 26)
         for (const double y : {1.0, -1.0})
             for (const double z : {1.0, -1.0}) directions.push_back(glm::dvec3(1.0, y, z) / std::sqrt(3.0));
@@ -84,13 +84,12 @@ Result<KDop> k_dop_around(std::span<const glm::dvec3> points, std::span<const gl
     if (directions.size() > 64) return fail(ErrorCode::out_of_range, kNoItem, "k-DOP: more than 64 directions");
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(points[i].z))
-            return fail(ErrorCode::non_finite, i, "k-DOP: point " + std::to_string(i) + " is NaN or infinite");
+            return fail(ErrorCode::non_finite, i, {"k-DOP: point ", i, " is NaN or infinite"});
     KDop dop;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         const double length = glm::length(directions[i]);
         if (!(length > 0.0) || !std::isfinite(length))
-            return fail(ErrorCode::invalid_argument, i,
-                        "k-DOP: direction " + std::to_string(i) + " is zero or not finite");
+            return fail(ErrorCode::invalid_argument, i, {"k-DOP: direction ", i, " is zero or not finite"});
         dop.directions.push_back(directions[i] / length);
     }
     double widest = 0.0;

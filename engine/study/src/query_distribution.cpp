@@ -50,19 +50,18 @@ Result<QueryDistribution> QueryDistribution::samples(std::span<const glm::dvec3>
     if (directions.empty()) return fail(ErrorCode::empty, kNoItem, "query distribution: no directions");
     if (!weights.empty() && weights.size() != directions.size())
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "query distribution: " + std::to_string(weights.size()) + " weights for " +
-                        std::to_string(directions.size()) + " directions");
+                    {"query distribution: ", weights.size(), " weights for ", directions.size(), " directions"});
     QueryDistribution result;
     double sum = 0.0;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         const double length = glm::length(directions[i]);
         if (!is_finite(directions[i]) || !(length > 0.0) || !std::isfinite(length))
             return fail(ErrorCode::invalid_argument, i,
-                        "query distribution: direction " + std::to_string(i) + " is zero or not finite");
+                        {"query distribution: direction ", i, " is zero or not finite"});
         const double weight = weights.empty() ? 1.0 : weights[i];
         if (!(weight >= 0.0) || !std::isfinite(weight))
             return fail(ErrorCode::invalid_argument, i,
-                        "query distribution: weight " + std::to_string(i) + " is negative or not finite");
+                        {"query distribution: weight ", i, " is negative or not finite"});
         result.directions_.push_back(directions[i] / length);
         result.weights_.push_back(weight);
         sum += weight;

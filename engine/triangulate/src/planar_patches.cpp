@@ -283,7 +283,7 @@ Result<Vector<PlanarPatch>> find_planar_patches(const TriangleMesh& mesh, double
         for (std::size_t i = 0; i < values.size(); ++i)
             if (values[i].values.size() != values[i].components * mesh.positions.size())
                 return fail(ErrorCode::invalid_argument, i,
-                            "vertex values " + std::to_string(i) + ": not `components` for each vertex");
+                            {"vertex values ", i, ": not `components` for each vertex"});
         return PatchFinder(mesh, tolerance, values).find();
     });
 }

@@ -34,8 +34,7 @@ Result<void> World::State::check(ObjectHandle object, std::uint64_t item) const 
     if (object.index >= table.objects.size())
         return fail(ErrorCode::stale_handle, item, "world: the handle names no object of this world");
     return fail(ErrorCode::stale_handle, item,
-                "world: object " + std::to_string(object.index) + " of generation " +
-                    std::to_string(object.generation) + " has been removed");
+                {"world: object ", object.index, " of generation ", object.generation, " has been removed"});
 }
 
 StagedChange& World::State::stage(std::uint32_t object) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kLargestLight = 1e12;
 
 tl::unexpected<Error> bad_light(std::size_t light, ErrorCode code, const char* why) {
-    return fail(code, light, "light " + std::to_string(light) + ": " + why);
+    return fail(code, light, {"light ", light, ": ", why});
 }
 
 Result<void> check_place(std::size_t light, const glm::dvec3& place, double range) {

@@ -24,9 +24,7 @@ Plane plane_of(const glm::dvec3& normal, double offset) {
 
 Result<void> check_grid(const Camera& camera, const FroxelOptions& options) {
     if (auto valid = validate(camera); !valid) return valid;
-    const auto bad = [](ErrorCode code, const char* why) {
-        return fail(code, kNoItem, std::string("froxels: ") + why);
-    };
+    const auto bad = [](ErrorCode code, const char* why) { return fail(code, kNoItem, {"froxels: ", why}); };
     for (const std::uint32_t size : {options.columns, options.rows, options.slices})
         if (size == 0 || size > kMostAlongAxis)
             return bad(ErrorCode::out_of_range, "columns, rows and slices must be 1 to 1024");
@@ -50,9 +48,7 @@ Result<void> check_grid(const Camera& camera, const FroxelOptions& options) {
 
 Result<void> check_depths(std::span<const double> depths, bool perspective) {
     for (std::size_t k = 0; k < depths.size(); ++k) {
-        const auto bad = [&](const char* why) {
-            return fail(ErrorCode::out_of_range, k, "froxels: depth " + std::to_string(k) + why);
-        };
+        const auto bad = [&](const char* why) { return fail(ErrorCode::out_of_range, k, {"froxels: depth ", k, why}); };
         if (!(std::fabs(depths[k]) <= kLargest)) return bad(" is not finite or beyond 1e12");
         if (perspective && !(depths[k] >= kSmallest)) return bad(" is below 1e-9; in perspective depths are positive");
         if (k > 0 && !(depths[k] - depths[k - 1] >= 0x1p-20 * std::fabs(depths[k]) && depths[k] > depths[k - 1]))

@@ -27,8 +27,8 @@ tl::unexpected<Error> first_bad(const T* points, std::size_t count) {
             finite = finite && std::isfinite(value);
             small = small && std::abs(value) <= kMaxCoordinate;
         }
-        if (!finite) return fail(ErrorCode::non_finite, i, "fit: point " + std::to_string(i) + " is NaN or infinite");
-        if (!small) return fail(ErrorCode::out_of_range, i, "fit: point " + std::to_string(i) + " exceeds 1e30");
+        if (!finite) return fail(ErrorCode::non_finite, i, {"fit: point ", i, " is NaN or infinite"});
+        if (!small) return fail(ErrorCode::out_of_range, i, {"fit: point ", i, " exceeds 1e30"});
     }
     return fail(ErrorCode::internal, kNoItem, "fit: the points changed while they were read");
 }

@@ -19,9 +19,7 @@ double halton(std::uint32_t k, std::uint32_t base) {
 }
 
 Result<void> check_scene(const SeenScene& scene) {
-    const auto bad = [](ErrorCode code, const char* why) {
-        return fail(code, kNoItem, std::string("occlusion_worth: ") + why);
-    };
+    const auto bad = [](ErrorCode code, const char* why) { return fail(code, kNoItem, {"occlusion_worth: ", why}); };
     const glm::dvec3 size = scene.eyes.max - scene.eyes.min;
     if (scene.eyes.is_empty() || !std::isfinite(size.x + size.y + size.z))
         return bad(ErrorCode::invalid_argument, "the eyes' region is empty or not finite");

@@ -17,9 +17,7 @@ constexpr std::uint32_t kEdgesOfSetup = 12;  // what an occluder costs besides i
 constexpr std::uint32_t kEdgesOfBox = 12;
 
 Result<void> check_options(const FindOptions& options) {
-    const auto bad = [](const char* why) {
-        return fail(ErrorCode::out_of_range, kNoItem, std::string("find_occluders: ") + why);
-    };
+    const auto bad = [](const char* why) { return fail(ErrorCode::out_of_range, kNoItem, {"find_occluders: ", why}); };
     if (options.grid < 4 || options.grid > SolidGrid::kMaxCells) return bad("grid must be 4 to 32");
     if (!(options.least_gain >= 0.0 && options.least_gain <= 1.0)) return bad("least_gain must be 0 to 1");
     if (!(options.flatness >= 0.0 && options.flatness <= 1.0)) return bad("flatness must be 0 to 1");

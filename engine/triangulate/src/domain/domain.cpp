@@ -246,7 +246,7 @@ std::string Domain::describe(Index input) const {
 }
 
 tl::unexpected<Error> Domain::fail_at(ErrorCode code, Index input, const std::string& what) const {
-    return fail(code, input, describe(input) + ": " + what);
+    return fail(code, input, {describe(input), ": ", what});
 }
 
 }  // namespace crofton::triangulate

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Errors as values; the log; assertions.
 #pragma once
+#include <concepts>
 #include <crofton/core/version.hpp>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -44,11 +46,42 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, std::string message) {
+// A text or a number within a message. Views what it is made of.
+class MessagePart {
+  public:
+    MessagePart(const char* text) : text_(text), kind_(Kind::text) {}
+    MessagePart(std::string_view text) : text_(text), kind_(Kind::text) {}
+    MessagePart(const std::string& text) : text_(text), kind_(Kind::text) {}
+    template <std::unsigned_integral T>
+    MessagePart(T number) : whole_(number), kind_(Kind::whole) {}
+    template <std::signed_integral T>
+    MessagePart(T number) : integer_(number), kind_(Kind::integer) {}
+    MessagePart(double number) : number_(number), kind_(Kind::number) {}
+    // Errors: std::bad_alloc.
+    void append_to(std::string& message) const;
+
+  private:
+    enum class Kind : std::uint8_t { text, whole, integer, number };
+    std::string_view text_;
+    union {
+        std::uint64_t whole_ = 0;
+        std::int64_t integer_;
+        double number_;
+    };
+    Kind kind_;
+};
+
+// Where memory has ended, the message is empty; code and item are told all the same.
+[[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item,
+                                         std::initializer_list<MessagePart> message) noexcept;
+[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message) noexcept {
+    return fail(code, item, {MessagePart(message)});
+}
+// A message that is there already; a template, so that braces mean parts.
+template <std::same_as<std::string> String>
+[[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, String message) {
     return tl::unexpected<Error>(Error{code, item, std::move(message)});
 }
-// Where memory has ended, the message is empty; code and item are told all the same.
-[[nodiscard]] tl::unexpected<Error> fail(ErrorCode code, std::uint64_t item, const char* message);
 
 // What the engine tells its host: messages for a person, and a caller's mistakes.
 
