@@ -24,7 +24,7 @@ constexpr double kRounding = 1e-6;
 
 // A box inside all tight boxes of a cell, and a box around them. A unit axis that turns by an angle moves by
 // s = 2 sin(angle / 2). A point's coordinate then changes by at most s times its distance from the middle. Let r be
-// the points' greatest distance: extents change by at most s r, and no corner of a tight box is farther than √3 r.
+// the points' greatest distance. Extents change by at most s r. No corner of a tight box is farther than √3 r.
 struct Boxes {
     Obb inner, outer;
     bool has_inner;

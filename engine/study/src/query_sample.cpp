@@ -151,8 +151,8 @@ bool QuerySample::surely_hits(std::uint32_t i, std::span<const glm::dvec3> point
     return false;
 }
 
-// Points relative to the query's own. Some point of the segment is inside every plane by `slack`, and by half of it for
-// sure: where along the segment is rounded, but rounding there moves the sides by less.
+// Points relative to the query's own. Some point of the segment is inside every plane by `slack`. Where it lies along
+// the segment is rounded, which moves the sides by less than half the slack.
 bool QuerySample::segment_enters(const Query& q, const glm::dvec3& from, const glm::dvec3& to, double slack) const {
     const glm::dmat3 back = glm::transpose(q.rotation);
     const glm::dvec3 a = back * from, b = back * to;

@@ -78,8 +78,9 @@ bool parts_in_plane(const ExactBody& a, const ExactBody& b) {
     return false;
 }
 
-// All points rounded, around the first of a, so that most axes need no exact arithmetic. With coordinates below R each
-// is off by 2^-53 R, an axis by 16 · 2^-53 R² and a product by 130 · 2^-53 R³ at most, far below the slack.
+// All points rounded, around the first of a, so that most axes need no exact arithmetic. Let R
+// be above all coordinates. Each is off by at most 2^-53 R, an axis by 16 · 2^-53 R² and a product by 130 · 2^-53 R³.
+// That is far below the slack.
 class RoundedPair {
   public:
     RoundedPair(const ExactBody& a, const ExactBody& b) {

@@ -34,9 +34,9 @@ class QuerySample {
     // Whether query i meets the box, decided in double: rounding decides where they touch.
     [[nodiscard]] bool hits(std::uint32_t i, const Obb& box) const;
 
-    // Whether query i meets the convex hull of points, by its triangles: what says yes meets every convex body around
-    // them, by a margin of 2^-46 of the distances from the origin. What only touches says no, and so do frusta that no
-    // edge of the hull enters. Planes need no triangles.
+    // Whether query i meets the convex hull of points, by its triangles. If so, it meets every convex body around them:
+    // by a margin of 2^-46 of the distances from the origin. What only touches says no, and so do frusta that no edge
+    // of the hull enters. Planes need no triangles.
     [[nodiscard]] bool surely_hits(std::uint32_t i, std::span<const glm::dvec3> points,
                                    std::span<const std::uint32_t> triangles) const;
 
