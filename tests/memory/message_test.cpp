@@ -50,7 +50,7 @@ TEST_SUITE("memory/messages") {
         sweep_refusal("fit", ErrorCode::non_finite, 7, [&] { return fit::fit_obb(span).error(); });
         sweep_refusal("hull", ErrorCode::non_finite, 7, [&] { return convex_hull(span).error(); });
         sweep_refusal("convex hull", ErrorCode::non_finite, 7, [&] { return convex::Hull::build(span).error(); });
-        const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 5}};
+        const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 5}, {}};
         sweep_refusal("mesh", ErrorCode::out_of_range, 2, [&] { return validate(mesh).error(); });
         scene::Scene scene;
         sweep_refusal("scene", ErrorCode::out_of_range, 3, [&] { return scene.set_layer_mask(3, 1).error(); });

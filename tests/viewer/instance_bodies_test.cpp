@@ -236,7 +236,7 @@ TEST_SUITE("viewer/instance_bodies") {
                 }
             }
     }
-    TEST_CASE("what is flat has no hull and meets nothing; its triangles are hit all the same") {
+    TEST_CASE("what is flat has no hull and meets nothing, its triangles are hit all the same") {
         const scene::Scene scene = squares({-5.0, -5.0});
         InstanceBodies bodies(scene);
         CHECK_FALSE(bodies.outline(0, [](const glm::dvec3&, const glm::dvec3&) {}));

@@ -40,6 +40,18 @@ const char* to_string(ErrorCode code) {
     return "unknown";
 }
 
+Error::Error(const Error& other) noexcept : code(other.code), item(other.item) {
+    try {
+        message = other.message;
+    } catch (const std::bad_alloc&) {
+    }
+}
+
+Error& Error::operator=(const Error& other) noexcept {
+    if (this != &other) *this = Error(other);
+    return *this;
+}
+
 void MessagePart::append_to(std::string& message) const {
     switch (kind_) {
         case Kind::text:

@@ -107,7 +107,7 @@ bool LoadedScene::needs_reload(const Method& method) const {
 Result<void> LoadedScene::configure(const Method& method, const Settings& settings) {
     const pipeline::PipelineOptions wanted = options_of(method, settings);
     if (pipeline_ && same(wanted, options_)) return {};
-    if (pipeline_ && wanted.bounds == options_.bounds) {
+    if (pipeline_ && wanted.bounds == options_.bounds && wanted.tree == options_.tree) {
         if (auto set = pipeline_->set_options(wanted); !set) return set;
     } else {
         const auto occluders = pipeline_ && pipeline_->occluders() ? pipeline_->occluders() : baked_.occluders;

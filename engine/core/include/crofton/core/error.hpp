@@ -41,6 +41,16 @@ struct Error {
     ErrorCode code = ErrorCode::internal;
     std::uint64_t item = kNoItem;
     std::string message;
+
+    Error() = default;
+    Error(ErrorCode the_code, std::uint64_t the_item, std::string the_message = {}) noexcept
+        : code(the_code), item(the_item), message(std::move(the_message)) {}
+    // Copies leave the message empty where memory has ended.
+    Error(const Error& other) noexcept;
+    Error& operator=(const Error& other) noexcept;
+    Error(Error&&) noexcept = default;
+    Error& operator=(Error&&) noexcept = default;
+    ~Error() = default;
 };
 
 template <class T>
