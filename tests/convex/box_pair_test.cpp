@@ -138,6 +138,44 @@ TEST_SUITE("convex/box_pair") {
         CHECK(kept > 10);
     }
 
+    TEST_CASE("thin plates that pass to a face's other side: its depth is not taken for theirs") {
+        for (const float half : {0.0f, 2e-5f}) {
+            const Body plate = Body::box({1, half, 1}).value();
+            std::vector<glm::vec3> corners;
+            for (int i = 0; i < 8; ++i)
+                corners.emplace_back(i & 1 ? 1.0f : -1.0f, i & 2 ? half : -half, i & 4 ? 1.0f : -1.0f);
+            std::vector<Body> plates{plate};
+            const auto hull = Hull::build(corners);
+            if (hull) plates.push_back(Body::hull(*hull));
+            for (const Body& body : plates)
+                for (const double below : {-5e-5, -1e-5, -4e-5, -1e-4}) {
+                    CAPTURE(half);
+                    CAPTURE(below);
+                    PairCache cache;
+                    REQUIRE(contact_manifold({body, at({})}, {body, at({0, 5e-5, 0})}, {.margin = 1e-3}, &cache).count >
+                            0);
+                    const Manifold warm =
+                        contact_manifold({body, at({})}, {body, at({0, below, 0})}, {.margin = 1e-3}, &cache);
+                    REQUIRE(warm.count > 0);
+                    CHECK(warm.normal.y == doctest::Approx(-1.0));
+                    CHECK(warm.depth == doctest::Approx(2.0 * double{half} + below).epsilon(1e-6));
+                }
+        }
+    }
+
+    TEST_CASE("faces a little farther than the margin, nearer to each other than rounding: no contact, warm or cold") {
+        const Body cube = Body::box(glm::vec3(1.0f)).value();
+        for (std::uint16_t reference = 0; reference < 3; ++reference) {
+            PairCache cache;
+            cache.reference = reference;
+            cache.face = 1;
+            for (const double more : {3e-12, 1e-12, 5e-12}) {
+                const RigidTransform place = at({2.01, 2.01 + more, 0.0});
+                CHECK(contact_manifold({cube, at({})}, {cube, place}, {.margin = 0.01}, &cache).count == 0);
+            }
+        }
+    }
+
     TEST_CASE("a pose that is not quite a rotation: the normal is that of the face, warm and cold, boxes and hulls") {
         const Body slab = Body::box({4, 1, 4}).value(), cube = Body::box(glm::vec3(0.5f)).value();
         std::vector<glm::vec3> corners;

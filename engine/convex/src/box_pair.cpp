@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "box_pair.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <crofton/geometry/expansion.hpp>
 #include <limits>
@@ -11,7 +12,7 @@ namespace {
 constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};
 constexpr double kParallel = 1e-9;  // squared: below, two edges make a sliver
 
-// a b − c d within 2 u of its size.
+// a b − c d within 2 u of its size, or 2^-104 of the products where they cancel.
 double difference_of_products(double a, double b, double c, double d) {
     const auto p = detail::two_product(a, b), q = detail::two_product(c, d);
     return (p.high - q.high) + (p.low - q.low);
@@ -53,7 +54,7 @@ bool BoxPair::try_faces(double far, BoxAxis& least) {
         reach_[0][k] = (half_a_[k] + radius) * share;
         along_[0][k] = at_[k] * share;
         const double extent = reach_[0][k] - std::abs(along_[0][k]);
-        if (k == 0 || extent < least.extent - slack_) least = {k, extent};
+        if (k == 0 || extent < far || extent < least.extent - slack_) least = {k, extent};
         if (extent < far) return false;
     }
     for (int j = 0; j < 3; ++j) across_[j] = glm::cross(edge_[kNext[j]], edge_[kLast[j]]);
@@ -65,7 +66,7 @@ bool BoxPair::try_faces(double far, BoxAxis& least) {
         reach_[1][j] = (std::abs(determinant) * half_b_[j] + radius_along(half_a_, n)) * share;
         along_[1][j] = glm::dot(n, at_) * share;
         const double extent = reach_[1][j] - std::abs(along_[1][j]);
-        if (extent < least.extent - slack_) least = {3 + j, extent};
+        if (extent < far || extent < least.extent - slack_) least = {3 + j, extent};
         if (extent < far) return false;
     }
     return true;
@@ -89,7 +90,7 @@ void BoxPair::try_edges(BoxAxis& least) {
             if (!(squared > kParallel)) {
                 slivers_ |= 1 << (3 * i + j);
                 sliver_width_ =
-                    std::max(sliver_width_, 2.0 * std::min(half_a_[i], half_b_[j]) * (std::sqrt(squared) + 1e-15));
+                    std::max(sliver_width_, 2.0 * std::min(half_a_[i], half_b_[j]) * (std::sqrt(squared) + 4e-15));
                 continue;
             }
             // Most axes are deeper, which needs no root to be seen.
@@ -128,7 +129,9 @@ glm::dvec3 BoxPair::normal(int axis) const {
     const glm::dvec3 n = axis < 3   ? to_a_[axis]
                          : axis < 6 ? glm::cross(rb[kNext[axis - 3]], rb[kLast[axis - 3]])
                                     : careful_cross(ra[(axis - 6) / 3], rb[(axis - 6) % 3]);
-    return (glm::dot(n, pair_.offset) < 0.0 ? -1.0 : 1.0) / glm::length(n) * n;
+    // As face_towards_other() has it, also where rounding decides.
+    const double along = axis < 6 ? along_[axis / 3][axis % 3] : glm::dot(n, pair_.offset);
+    return (along < 0.0 ? -1.0 : 1.0) / glm::length(n) * n;
 }
 
 BoxPair::Seen BoxPair::seen_by(bool a) const {

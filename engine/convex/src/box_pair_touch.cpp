@@ -125,8 +125,12 @@ Warm BoxToucher::ask(int& reference, int& face) {
     const double kept = kKeptDepth * pair_.size;
     const bool sure = std::abs(least_.extent) > axes_.error() + axes_.sliver_width();
     if (reference != 0 && sure) {
+        // Thin boxes may have passed to the face's other side, or be apart while the face is not left.
         const double extent = axes_.face_extent(reference == 1, face);
-        if (extent + axes_.sliver_width() <= least_.extent + kept && at_face(reference == 1, face, extent, kept))
+        const bool faces = face == axes_.face_towards_other((reference == 1 ? 0 : 3) + face / 2),
+                   same_side = (extent > 0.0) == (least_.extent > 0.0);
+        if (faces && same_side && extent + axes_.sliver_width() <= least_.extent + kept &&
+            at_face(reference == 1, face, extent, kept))
             return Warm::touching;
     }
     if (axes_.sliver_width() > 0.1 * kSameFace * pair_.size || !sure) axes_.try_slivers(least_);

@@ -18,6 +18,7 @@ class BodyContacts {
 
     // Where the object's body stands has changed otherwise than by its box.
     void note(std::uint32_t object) { changed_.push_back(object); }
+    void forget_changes() { changed_.clear(); }  // where contacts are not asked for
 
     // Pairs are computed that are new, or of an object among the index's moved_items(), or with another body, or noted.
     void update(std::span<const ObjectPair> pairs, const ObjectTable& table, const SpatialIndex& index,

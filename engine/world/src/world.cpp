@@ -164,6 +164,7 @@ Result<void> World::update(Executor& executor) {
         if (s.options.contacts)
             s.body_contacts.update(s.finder.pairs(), s.table, s.index, s.scene, s.options.contact_margin, executor);
     }
+    if (!s.options.pairs || !s.options.contacts) s.body_contacts.forget_changes();
     if (!changed) s.finder.stay();
     if (!changed) s.body_contacts.stay();
     s.statistics.contacts_us =
