@@ -69,7 +69,7 @@ TEST_SUITE("cli/bake") {
         const CliRun found = run_cli(frames), known = run_cli(frames + "--baked " + path);
         REQUIRE(found.status == 0);
         REQUIRE(known.status == 0);
-        for (int i = 0; i < 3; ++i) {
+        for (std::size_t i = 0; i < 3; ++i) {
             const auto a = found.json()["frames"][i]["occlusion"], b = known.json()["frames"][i]["occlusion"];
             CHECK(a["visible"] == b["visible"]);
             CHECK(a["occluders"] == b["occluders"]);
