@@ -56,6 +56,17 @@ Result<BakedParts> parts_of(std::span<const std::byte> file, const scene::Scene&
 
 }  // namespace
 
+bool same_parts(const scene::Scene& a, const scene::Scene& b) {
+    if (a.mesh_count() != b.mesh_count() || a.instance_count() != b.instance_count() ||
+        a.node_count() != b.node_count())
+        return false;
+    for (scene::MeshId i = 0; i < a.mesh_count(); ++i)
+        if (a.mesh(i).positions != b.mesh(i).positions || a.mesh(i).indices != b.mesh(i).indices) return false;
+    for (scene::InstanceId i = 0; i < a.instance_count(); ++i)
+        if (a.mesh_of(i) != b.mesh_of(i) || a.node_of(i) != b.node_of(i)) return false;
+    return true;
+}
+
 Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
                                     const assets::ReadLimits& limits) {
     const auto file = bake::MappedFile::open(path, {.access = bake::FileAccess::read, .largest = limits.bytes});

@@ -22,4 +22,8 @@ struct BakedParts {
 [[nodiscard]] Result<BakedParts> load_baked_parts(const std::string& path, const scene::Scene& scene,
                                                   const assets::ReadLimits& limits = {});
 
+// Whether meshes, and which node holds which, are the same in both: then what was found or baked for one is the
+// other's.
+[[nodiscard]] bool same_parts(const scene::Scene& a, const scene::Scene& b);
+
 }  // namespace crofton::pipeline

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint32_t kNotReached = ~0u;
 // Shares of the eye's height: the highest step, room above the floor, half the width of who walks, the lower line.
+constexpr std::uint64_t kMostTriangles = 8u << 20;  // of larger scenes nothing is found: lines would take gigabytes
 constexpr double kStep = 0.7, kRoom = 1.3, kHalfWidth = 0.25, kKnee = 0.5;
 // A straight way that leaves out places stays this near to them in height.
 constexpr double kHeightSlack = 0.25;
@@ -50,6 +51,10 @@ FreeSpace::FreeSpace(pvs::Subject subject, radiosity::LineTracer tracer, const A
 
 std::optional<FreeSpace> FreeSpace::find(const scene::Scene& scene, const Aabb& focus) {
     if (focus.is_empty()) return std::nullopt;
+    std::uint64_t triangles = 0;
+    for (scene::InstanceId i = 0; i < scene.instance_count(); ++i)
+        if (!scene.is_removed(i)) triangles += scene.mesh(scene.mesh_of(i)).triangle_count();
+    if (triangles > kMostTriangles) return std::nullopt;
     auto subject = pvs::subject_of(scene);
     if (!subject) return std::nullopt;
     auto tracer = radiosity::LineTracer::build(subject->mesh);

@@ -22,8 +22,8 @@ struct Stand {
 // kept, of two such regions the lower one. y is up. Lines are single precision: see radiosity::LineTracer.
 class FreeSpace {
   public:
-    // Vertical lines over `focus`, kColumns along its longer side. Nothing where no line meets a floor. The scene has
-    // been updated; all its instances are solid.
+    // Vertical lines over `focus`, kColumns along its longer side. Nothing where no line meets a floor, and of
+    // more than 2^23 triangles. The scene has been updated; all its instances are solid.
     [[nodiscard]] static std::optional<FreeSpace> find(const scene::Scene& scene, const Aabb& focus);
     static constexpr std::uint32_t kColumns = 128;
 

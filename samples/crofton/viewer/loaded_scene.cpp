@@ -85,7 +85,9 @@ Result<std::unique_ptr<LoadedScene>> LoadedScene::load(const SceneRequest& reque
 }
 
 Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& method, const LoadedScene* like) {
-    const bool same = like != nullptr && like->method_.triangulation == method.triangulation;
+    // The file may have changed since it was loaded.
+    const bool same = like != nullptr && like->method_.triangulation == method.triangulation &&
+                      pipeline::same_parts(like->scene(), scene());
     if (same) {
         baked_ = like->baked_;
         if (auto found = like->pipeline_->occluders()) baked_.occluders = std::move(found);

@@ -133,9 +133,9 @@ struct OccluderChoice {
 
 // The candidates that are worth most to the view, each by itself. Worth is the projected area over the squared distance
 // (in a parallel view: over the picture's area), times the way behind. Of objects spread evenly with density n and mean
-// shadow A, a solid angle ω with a way L behind hides n·A·L·ω of their solid angles. Any choice is right; a better one
-// hides more. Same ids for any instruction set. Allocates nothing once `choice` and the candidates have been as large.
-// Errors: as validate(Camera).
+// shadow A, a solid angle ω with a way L behind hides n·A·L·ω of their solid angles on average. Any choice is right; a
+// better one hides more. Same ids for any instruction set. Allocates nothing once `choice` and the candidates have been
+// as large. Errors: as validate(Camera).
 [[nodiscard]] Result<void> choose_occluders(const OccluderCandidates& candidates, const Camera& camera,
                                             const ChooseBudget& budget, OccluderChoice& choice);
 void choose_occluders(const OccluderCandidates& candidates, const OcclusionView& view, const ChooseBudget& budget,
@@ -177,10 +177,10 @@ class OcclusionBuffer {
     // Bit i % 64 of word i / 64 for boxes[i]: as hides(). Requires one bit for each box.
     void find_hidden(std::span<const Obb> boxes, std::span<std::uint64_t> hidden,
                      Executor& executor = serial_executor()) const;
-    // The occluders that hide a box that is hidden. If one does so alone, the nearest such. Else those whose depth is
-    // stored in a pixel of the rectangle around its picture. Also those that cover a pixel there and have the box
-    // behind all of their faces. Ascending; empty where the box is not hidden. Slow and allocating: draws each occluder
-    // again.
+    // The occluders that hide a box that is hidden. If one does so alone, the nearest such. Else they are of two kinds.
+    // Some have their depth stored in a pixel of the rectangle around its picture. The others cover a pixel there and
+    // have the box behind all of their faces. Ascending; empty where the box is not hidden. Slow and allocating: draws
+    // each occluder again.
     void hidden_by(const Obb& box, Vector<OccluderId>& ids) const;
 
     [[nodiscard]] BufferSize size() const;
