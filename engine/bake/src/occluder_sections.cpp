@@ -43,7 +43,8 @@ Result<void> check_occluder(const FoundOccluder& occluder, std::uint64_t item) {
         return bad_occluder("one is of a kind that is not known", item);
     if (box && !validate(occluder.box, item)) return bad_occluder("one's box is no box", item);
     if (!box && occluder.surface.indices.empty()) return bad_occluder("one has no triangles", item);
-    if (!occluder.surface.indices.empty() && !validate(occluder.surface))
+    if (occluder.surface.indices.empty() != occluder.surface.positions.empty() ||
+        (!occluder.surface.indices.empty() && !validate(occluder.surface)))
         return bad_occluder("one's triangles are no mesh", item);
     if (!is_box(occluder.eyes_within) || !is_bounds_or_none(occluder.piece_bounds))
         return bad_occluder("one's bounds are none", item);
