@@ -37,6 +37,30 @@ double perimeters(const BoxTree& tree) {
     return sum;
 }
 
+// Corners of the bounds of leaves, drawn inwards a little, where the node above takes bounds along other axes.
+std::vector<glm::dvec3> corners_of_leaves(const BoxTree& tree) {
+    std::vector<glm::dvec3> corners;
+    const boxtree::Structure& structure = tree.structure();
+    for (const boxtree::Node& node : structure.nodes()) {
+        if (node.parent == boxtree::kNone || structure.nodes()[node.parent].axes == node.axes) continue;
+        for (unsigned lane = 0; lane < node.count; ++lane) {
+            if (!(node.child[lane] & boxtree::kLeafBit)) continue;
+            for (unsigned corner = 0; corner < 8; ++corner) {
+                glm::dvec3 place(node.origin[0], node.origin[1], node.origin[2]);
+                for (unsigned k = 0; k < 3; ++k) {
+                    const double* row = structure.axes()[node.axes].rows[k];
+                    const int end = corner >> k & 1 ? 1 : -1;
+                    const double at = static_cast<double>(node.unit) *
+                                      (boxtree::middle_of(node, lane, k) + 0.9 * end * boxtree::half_of(node, lane, k));
+                    place += at * glm::dvec3(row[0], row[1], row[2]);
+                }
+                corners.push_back(place);
+            }
+        }
+    }
+    return corners;
+}
+
 BoxTree tree_of(const oracle::Crowd& crowd, Orientation orientation) {
     auto tree = BoxTree::build(crowd.boxes, crowd.layers, {.orientation = orientation});
     REQUIRE(tree.has_value());
@@ -96,6 +120,19 @@ TEST_SUITE("boxtree/oriented") {
                 if (frame % 10 == 0) check_sound(aged.tree);
             }
             check_sound(aged.tree);
+        }
+    }
+
+    TEST_CASE("small boxes in the corners of bounds along other axes than those of the node above are held at once") {
+        for (const std::uint64_t seed : {10u, 11u}) {
+            BoxTree tree = tree_of(oracle::turned_crowd(2500, 0.0, seed), Orientation::oriented);
+            for (const glm::dvec3& corner : corners_of_leaves(tree)) {
+                Obb box;
+                box.center = corner;
+                box.half_extents = glm::vec3(1e-3f);
+                REQUIRE(tree.insert(box).has_value());
+                check_sound(tree);
+            }
         }
     }
 

@@ -232,23 +232,42 @@ void Placement::make_node(NodeId n, std::span<const std::uint32_t> children, Nod
     for (const std::uint32_t child : children) link(n, nodes_[n].count++, child);
 }
 
-// The lanes on the path from a leaf or a node whose bound or contents have changed, up to the first node in which
-// nothing changes: those above depend on it alone. As in a refit, other lanes and the frame stay where the frame takes
-// the bound.
-void Placement::refresh_above(std::uint32_t child) {
+// The lanes on the path from a leaf or a node whose bound or contents have changed. As in a refit, other lanes and the
+// frame stay where the frame takes the bound. Where all bounds lie along the same axes, the first node in which nothing
+// changes ends the path: those above depend on it alone. Bounds along other axes do not depend on it, so the path ends
+// at the root.
+void Placement::refresh_above(std::uint32_t first) {
+    const bool turned = structure_.axes_.size() > 1;
+    std::uint32_t child = first;
     for (Place place = place_of(child); place.node != kNone; place = place_of(child)) {
         const NodeId n = place.node;
         const Node before = nodes_[n];
         const NodeRadii radii_before = structure_.node_radii_[n];
-        const Axes& axes = structure_.axes_of(nodes_[n]);
-        if (!write_lane(nodes_[n], place.lane, structure_.bounds_below(child, nodes_[n].axes), axes))
-            structure_.refresh_bounds(n);
+        if (!write_path_lane(place, first, child)) structure_.refresh_bounds(n);
         structure_.refresh_contents(n, place.lane);
-        if (std::memcmp(&before, &nodes_[n], sizeof(Node)) == 0 &&
+        if (!turned && std::memcmp(&before, &nodes_[n], sizeof(Node)) == 0 &&
             std::memcmp(&radii_before, &structure_.node_radii_[n], sizeof(NodeRadii)) == 0)
             return;
         child = n;
     }
+}
+
+// The lane that holds what lies below `child`; false if the node's frame does not take it. Where child's own bounds lie
+// along other axes, to bound all below it anew would be dear. Then the lane's bound grows by what has changed: the
+// bounds of the highest node on the path from `first` that lie along the lane's axes, or those of `first`.
+bool Placement::write_path_lane(Place above, std::uint32_t first, std::uint32_t child) {
+    Node& node = nodes_[above.node];
+    const Axes& axes = structure_.axes_of(node);
+    if (child == first || nodes_[child].axes == node.axes)
+        return write_lane(node, above.lane, structure_.bounds_below(child, node.axes), axes);
+    std::uint32_t changed = first;
+    for (NodeId n = place_of(first).node; n != child; n = nodes_[n].parent)
+        if (nodes_[n].axes == node.axes) changed = n;
+    const Aabb before = bounds_of_lane(node, above.lane, axes);
+    Aabb bounds = before;
+    bounds.include(structure_.bounds_below(changed, node.axes));
+    const bool held = bounds.min == before.min && bounds.max == before.max;
+    return held || write_lane(node, above.lane, bounds, axes);
 }
 
 Placement::Place Placement::place_of(std::uint32_t child) const {

@@ -31,7 +31,8 @@ class Placement {
     NodeId split_node(NodeId n);
     void make_node(NodeId n, std::span<const std::uint32_t> children, NodeId parent, unsigned lane_in_parent,
                    std::uint32_t axes);
-    void refresh_above(std::uint32_t child);
+    void refresh_above(std::uint32_t first);
+    [[nodiscard]] bool write_path_lane(Place above, std::uint32_t first, std::uint32_t child);
     [[nodiscard]] Place place_of(std::uint32_t child) const;
     void invalidate_item_count(NodeId n);
 
