@@ -54,7 +54,7 @@ BoxCase random_case(RandomBodies& random) {
     if (random.index(2) == 0) c.pose_b.rotation = nearly(random, c.pose_a.rotation);
     if (random.index(2) == 0) skew(random, c.pose_a.rotation);
     if (random.index(2) == 0) skew(random, c.pose_b.rotation);
-    c.size = c.a.tolerance() + c.b.tolerance() + c.a.radius() + c.b.radius() +
+    c.size = c.a.reach() + c.b.reach() + c.a.radius() + c.b.radius() +
              glm::length(c.pose_b.translation - c.pose_a.translation);
     return c;
 }

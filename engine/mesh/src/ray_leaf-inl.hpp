@@ -24,10 +24,10 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 
 // Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
 // passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
-// taken from a point of the ray beside the leaf; all roundings up to there, and of the shear, are within 2 e, e the
-// query's error bound. With m the largest plane coordinate, an edge's value is off by at most 8 m e + 8 e² + 2^-21 m².
-// No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 / direction_f[z]
-// is at most 1.
+// taken from a point of the ray beside the leaf. Let e be the query's error bound: all roundings up to there, and of
+// the shear, are within 2 e. With m the largest plane coordinate, an edge's value is off by at most 8 m e + 8 e² +
+// 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
+// direction_f[z] is at most 1.
 HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float limit) {
     const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
     using VF = hn::Vec<decltype(d)>;
