@@ -137,19 +137,29 @@ OccludeSetup slivers(Random& random, double offset) {
     return setup;
 }
 
-// Plates and needles, so small that all of them together leave about every other ray free.
+// Plates and needles, so small that together they leave many rays free; one plate in 1,000 is some pixels large. Specks
+// lie just beyond the edges of these: who covers a pixel too much hides them.
 OccludeSetup many_slivers(Random& random, double offset) {
     OccludeSetup setup = random_setup(random, offset);
+    setup.size = {640, 360};
+    setup.camera.projection = Projection::perspective;
+    setup.camera.fov_y = random.uniform(0.5, 1.2);
     setup.occluders.resize(1);
-    setup.objects.resize(32);
+    setup.objects.resize(16);
     setup.occluders.reserve(1'000'001);
     for (int i = 0; i < 1'000'000; ++i) {
-        const glm::dvec3 at = point_in_view(random, setup.camera, random.uniform(2.0, 40.0));
-        Obb box = box_at(random, at, 1e-3, i % 2 ? 0.03 : 0.3);
-        const auto k = static_cast<int>(random.bits() % 3);
+        const bool is_large = i % 1000 == 0;
+        const double distance = random.uniform(2.0, 40.0), size = is_large ? 0.05 : 0.002;
+        const glm::dvec3 at = point_in_view(random, setup.camera, distance);
+        Obb box = box_at(random, at, 0.4 * size * distance, size * distance);
+        const auto k = static_cast<int>(random.bits() % 3), edge = (k + 1) % 3;
         box.half_extents[k] = 1e-5f;
-        if (i % 2 == 0) box.half_extents[(k + 1) % 3] = 1e-4f;
+        if (i % 2 == 1) box.half_extents[edge] = 1e-4f;
         setup.occluders.push_back(box);
+        if (!is_large || setup.objects.size() >= 256) continue;
+        const double half = 1.01 * static_cast<double>(box.half_extents[edge]);
+        add_behind(random, at + half * glm::dvec3(box.axes[edge]), setup);
+        setup.objects.back().half_extents = glm::vec3(1e-4f);
     }
     return setup;
 }
