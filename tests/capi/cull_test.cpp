@@ -19,6 +19,12 @@ std::vector<crofton_box> random_boxes(std::size_t count) {
     return boxes;
 }
 
+crofton_camera default_camera() {
+    auto camera = sized<crofton_camera>();
+    REQUIRE(crofton_camera_default(&camera) == CROFTON_OK);
+    return camera;
+}
+
 }  // namespace
 
 TEST_SUITE("capi/cull") {
@@ -103,6 +109,105 @@ TEST_SUITE("capi/cull") {
         auto statistics = sized<crofton_cull_statistics>();
         REQUIRE(crofton_visible_set_statistics(visible.get(), &statistics) == CROFTON_OK);
         if (crofton::cull::kCountStatistics) CHECK(statistics.nodes_tested > 0);
+    }
+
+    TEST_CASE("what is too small or too far is left out of trees and lists alike, and what was drawn stays longer") {
+        const auto boxes = random_boxes(3000);
+        const crofton_camera camera = default_camera();
+        auto limits = sized<crofton_draw_limits>();
+        REQUIRE(crofton_draw_limits_of_camera(&camera, 1080.0, 16.0, &limits) == CROFTON_OK);
+        CHECK(limits.radii > 0.0);
+        std::vector<float> item_distances(boxes.size(), 60.0f), layer_distances(32, 50.0f);
+        const std::vector<std::uint64_t> drawn_before(boxes.size() / 64, 0x5555555555555555u);
+        limits.item_distances = item_distances.data();
+        limits.item_count = item_distances.size();
+        limits.layer_distances = layer_distances.data();
+        limits.drawn_before = drawn_before.data();
+        limits.drawn_word_count = drawn_before.size();
+        limits.longer = 1.25;
+        crofton::cull::DrawLimits same = *crofton::cull::limits_of(crofton::Camera{}, 1080.0, 16.0);
+        same.item_distances = item_distances;
+        same.layer_distances = layer_distances;
+        same.drawn_before = drawn_before;
+        same.longer = 1.25;
+
+        const crofton_view view = default_view();
+        std::vector<uint8_t> verdicts(boxes.size());
+        REQUIRE(crofton_classify(&view.frustum, boxes.data(), boxes.size(), verdicts.data()) == CROFTON_OK);
+        std::vector<std::uint32_t> expected;
+        std::size_t in_view = 0;
+        for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+            if (verdicts[i] == CROFTON_OUTSIDE) continue;
+            ++in_view;
+            const auto& box = reinterpret_cast<const crofton::Obb&>(boxes[i]);
+            if (crofton::cull::is_worth_drawing(same, box, i)) expected.push_back(i);
+        }
+        REQUIRE(expected.size() > 50);
+        REQUIRE(expected.size() + 50 < in_view);
+
+        crofton_tree* tree = nullptr;
+        REQUIRE(crofton_tree_create(boxes.data(), nullptr, boxes.size(), nullptr, &tree) == CROFTON_OK);
+        const Tree owner(tree);
+        const VisibleSet visible = make_visible_set();
+        auto options = sized<crofton_cull_options>();
+        options.limits = &limits;
+        const auto ask = [&](bool use_tree) {
+            return use_tree ? crofton_cull_tree(tree, &view, &options, nullptr, visible.get())
+                            : crofton_cull_boxes(boxes.data(), nullptr, boxes.size(), &view, &options, nullptr,
+                                                 visible.get());
+        };
+        const auto found = [&] {
+            const uint32_t* ids = nullptr;
+            std::size_t count = 0;
+            REQUIRE(crofton_visible_set_items(visible.get(), &ids, nullptr, &count) == CROFTON_OK);
+            return std::vector<std::uint32_t>(ids, ids + count);
+        };
+        for (const bool use_tree : {false, true}) {
+            CAPTURE(use_tree);
+            options.size = sizeof options;
+            limits.longer = 1.25;
+            REQUIRE(ask(use_tree) == CROFTON_OK);
+            CHECK(found() == expected);
+            // A caller's older struct lacks the limits.
+            options.size = offsetof(crofton_cull_options, limits);
+            REQUIRE(ask(use_tree) == CROFTON_OK);
+            CHECK(found().size() == in_view);
+            options.size = sizeof options;
+            limits.longer = 0.5;
+            CHECK(ask(use_tree) == CROFTON_OUT_OF_RANGE);
+        }
+        // A World's objects are items of the limits by their index.
+        limits.longer = 1.25;
+        const WorldHandle world = make_world();
+        for (const crofton_box& box : boxes) {
+            auto description = sized<crofton_object_description>();
+            const crofton_bound bound = box_bound(box);
+            description.bound = &bound;
+            crofton_object object{};
+            REQUIRE(crofton_world_add(world.get(), &description, &object) == CROFTON_OK);
+        }
+        REQUIRE(crofton_world_update(world.get(), nullptr) == CROFTON_OK);
+        const VisibleObjectsHandle objects = make_visible_objects();
+        REQUIRE(crofton_world_view(world.get(), &view, &options, nullptr, objects.get()) == CROFTON_OK);
+        const uint32_t* ids = nullptr;
+        std::size_t count = 0;
+        REQUIRE(crofton_visible_objects_ids(objects.get(), &ids, &count, nullptr, nullptr) == CROFTON_OK);
+        CHECK(std::vector<std::uint32_t>(ids, ids + count) == expected);
+    }
+
+    TEST_CASE("limits of a camera: bad cameras, sizes and structs are refused") {
+        crofton_camera camera = default_camera();
+        auto limits = sized<crofton_draw_limits>();
+        CHECK(crofton_draw_limits_of_camera(nullptr, 1080.0, 2.0, &limits) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_draw_limits_of_camera(&camera, 1080.0, 2.0, nullptr) == CROFTON_INVALID_ARGUMENT);
+        CHECK(crofton_draw_limits_of_camera(&camera, 0.0, 2.0, &limits) != CROFTON_OK);
+        camera.projection = CROFTON_ORTHOGRAPHIC;
+        camera.height = 10.0;
+        REQUIRE(crofton_draw_limits_of_camera(&camera, 1000.0, 2.0, &limits) == CROFTON_OK);
+        CHECK(limits.radii == 0.0);
+        CHECK(limits.least_radius == doctest::Approx(0.01));
+        limits.size = sizeof limits + 8;
+        CHECK(crofton_draw_limits_of_camera(&camera, 1000.0, 2.0, &limits) == CROFTON_WRONG_SIZE);
     }
 
     TEST_CASE("a tree changes: items come, move and go, wrong ids and boxes change nothing") {

@@ -66,15 +66,17 @@ TEST_SUITE("cli/verify") {
     TEST_CASE("nothing seen is culled, in set-ups that break others and in a whole scene") {
         CliRun run = run_cli("verify occlude --trials 3000 --json -");
         CHECK(run.status == 0);
-        std::size_t rows = 0;
+        std::size_t rows = 0, refusals = 0;
         for (const auto& row : run.json()) {
             CHECK(row["holds"] == true);
             const std::string claim = row["claim"];
+            refusals += claim.find("refused by name") != std::string::npos;
             if (claim.find("witness") == std::string::npos) continue;
             ++rows;
             if (claim.find("touch") == std::string::npos) CHECK(row["cases"].get<std::uint64_t>() > 0);
         }
-        CHECK(rows == 12);
+        CHECK(rows == 13);
+        CHECK(refusals == 4);  // open, inside out, flat, not finite
         run = run_cli("verify occlude --scene town --trials 5000 --json -");
         CHECK(run.status == 0);
         CHECK(run.json().size() == 4);

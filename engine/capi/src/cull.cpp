@@ -94,9 +94,10 @@ crofton_status crofton_cull_tree(const crofton_tree* tree, const crofton_view* v
     if (use_tree.failed()) return use_tree.status();
     const ExclusiveUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_query(view, options, jobs, __func__));
+    CullAsked asked;
+    CROFTON_CHECK(read_query(view, options, jobs, __func__, asked));
     HostJobs executor(jobs);
-    cull::find_visible(tree->tree, set_view(*visible, *view), visible->visible, to_options(options), executor);
+    cull::find_visible(tree->tree, set_view(*visible, *view), visible->visible, asked.options, executor);
     return CROFTON_OK;
 }
 
@@ -106,10 +107,11 @@ crofton_status crofton_cull_boxes(const crofton_box* boxes, const uint32_t* laye
     const ExclusiveUse use(visible, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_array(boxes, count, __func__));
-    CROFTON_CHECK(check_query(view, options, jobs, __func__));
+    CullAsked asked;
+    CROFTON_CHECK(read_query(view, options, jobs, __func__, asked));
     HostJobs executor(jobs);
     cull::find_visible(to_boxes(boxes, count), std::span(layer_masks, layer_masks ? count : 0),
-                       set_view(*visible, *view), visible->visible, to_options(options), executor);
+                       set_view(*visible, *view), visible->visible, asked.options, executor);
     return CROFTON_OK;
 }
 
@@ -124,6 +126,20 @@ crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible
     const SharedUse use(visible, __func__);
     if (use.failed()) return use.status();
     return give_statistics(visible->visible.statistics(), statistics, __func__);
+}
+
+crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, double picture_height, double pixels,
+                                             crofton_draw_limits* limits) {
+    CROFTON_CHECK(check_camera(camera, __func__));
+    CROFTON_CHECK(check_growing(limits, __func__));
+    const auto found = cull::limits_of(to_camera(*camera), picture_height, pixels);
+    if (!found) return report(found.error(), __func__);
+    crofton_draw_limits result{};
+    for (int k = 0; k < 3; ++k) result.eye[k] = found->eye[k];
+    if (found->radii != cull::DrawLimits::kNone) result.radii = found->radii;
+    result.least_radius = found->least_radius;
+    write_growing(result, limits);
+    return CROFTON_OK;
 }
 
 crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,

@@ -26,27 +26,55 @@ namespace crofton::capi {
     return check_frustum(&view->frustum, function);
 }
 
-[[nodiscard]] inline crofton_status check_options(const crofton_cull_options* options, const char* function) {
+// What a query is asked with. `options` points to `limits` where there are any.
+struct CullAsked {
+    cull::CullOptions options;
+    cull::DrawLimits limits;
+
+    CullAsked() = default;
+    CullAsked(const CullAsked&) = delete;
+    CullAsked& operator=(const CullAsked&) = delete;
+};
+
+// `limits` or NULL: `asked` keeps what it has.
+[[nodiscard]] inline crofton_status read_limits(const crofton_draw_limits* limits, const char* function,
+                                                CullAsked& asked) {
+    if (!limits) return CROFTON_OK;
+    crofton_draw_limits given;
+    CROFTON_CHECK(read_growing(limits, function, given));
+    CROFTON_CHECK(check_array(given.item_distances, given.item_count, function));
+    CROFTON_CHECK(check_array(given.drawn_before, given.drawn_word_count, function));
+    if (given.longer != 0.0 && !(given.longer >= 1.0))
+        return report(CROFTON_OUT_OF_RANGE, function, "draw limits: `longer` is less than 1 or NaN");
+    asked.limits = {.eye = to_vector(given.eye),
+                    .radii = given.radii != 0.0 ? given.radii : cull::DrawLimits::kNone,
+                    .least_radius = given.least_radius,
+                    .layer_distances = std::span(given.layer_distances, given.layer_distances ? 32 : 0),
+                    .item_distances = std::span(given.item_distances, given.item_count),
+                    .drawn_before = std::span(given.drawn_before, given.drawn_word_count),
+                    .longer = given.longer != 0.0 ? given.longer : 1.0};
+    asked.options.limits = &asked.limits;
+    return CROFTON_OK;
+}
+
+// `options` or NULL.
+[[nodiscard]] inline crofton_status read_options(const crofton_cull_options* options, const char* function,
+                                                 CullAsked& asked) {
     if (!options) return CROFTON_OK;
     crofton_cull_options given;
     CROFTON_CHECK(read_growing(options, function, given));
-    return check_array(given.among, given.among_words, function);
+    CROFTON_CHECK(check_array(given.among, given.among_words, function));
+    asked.options = {.mode = given.conservative ? cull::CullMode::conservative : cull::CullMode::exact,
+                     .order = given.tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending,
+                     .among = std::span(given.among, given.among ? given.among_words : 0)};
+    return read_limits(given.limits, function, asked);
 }
 
-[[nodiscard]] inline crofton_status check_query(const crofton_view* view, const crofton_cull_options* options,
-                                                const crofton_jobs* jobs, const char* function) {
+[[nodiscard]] inline crofton_status read_query(const crofton_view* view, const crofton_cull_options* options,
+                                               const crofton_jobs* jobs, const char* function, CullAsked& asked) {
     CROFTON_CHECK(check_view(view, function));
-    CROFTON_CHECK(check_options(options, function));
+    CROFTON_CHECK(read_options(options, function, asked));
     return check_jobs(jobs, function);
-}
-
-// Requires options that have been checked.
-[[nodiscard]] inline cull::CullOptions to_options(const crofton_cull_options* options) {
-    crofton_cull_options given;
-    if (!options || read_growing(options, __func__, given) != CROFTON_OK) return {};
-    return {.mode = given.conservative ? cull::CullMode::conservative : cull::CullMode::exact,
-            .order = given.tree_order ? cull::ResultOrder::tree : cull::ResultOrder::ascending,
-            .among = std::span(given.among, given.among ? given.among_words : 0)};
 }
 
 // Requires a view that has been checked.

@@ -13,21 +13,6 @@ using namespace crofton::capi;
 
 namespace {
 
-crofton_status to_limits(const crofton_draw_limits& given, const char* function, cull::DrawLimits& limits) {
-    CROFTON_CHECK(check_array(given.item_distances, given.item_count, function));
-    CROFTON_CHECK(check_array(given.drawn_before, given.drawn_word_count, function));
-    if (given.longer != 0.0 && !(given.longer >= 1.0))
-        return report(CROFTON_OUT_OF_RANGE, function, "draw limits: `longer` is less than 1 or NaN");
-    limits.eye = to_vector(given.eye);
-    if (given.radii != 0.0) limits.radii = given.radii;
-    limits.least_radius = given.least_radius;
-    if (given.layer_distances) limits.layer_distances = {given.layer_distances, 32};
-    limits.item_distances = {given.item_distances, given.item_count};
-    limits.drawn_before = {given.drawn_before, given.drawn_word_count};
-    if (given.longer != 0.0) limits.longer = given.longer;
-    return CROFTON_OK;
-}
-
 crofton_status to_occlusion(const crofton_occlusion_options* argument, const char* function, OcclusionOptions& result) {
     crofton_occlusion_options given{};
     if (argument) CROFTON_CHECK(read_growing(argument, function, given));
@@ -65,23 +50,16 @@ crofton_status to_view(const crofton_occluding_view& given, const char* function
 // What a call is asked with, beside its views.
 struct Asked {
     OcclusionOptions occlusion;
-    cull::CullOptions options;
-    cull::DrawLimits limits;
+    CullAsked cull;
 };
 
 crofton_status to_asked(const crofton_draw_limits* limits, const crofton_occlusion_options* occlusion,
                         const crofton_cull_options* options, const crofton_jobs* jobs, const char* function,
                         Asked& asked) {
     CROFTON_CHECK(to_occlusion(occlusion, function, asked.occlusion));
-    CROFTON_CHECK(check_options(options, function));
+    CROFTON_CHECK(read_options(options, function, asked.cull));
     CROFTON_CHECK(check_jobs(jobs, function));
-    asked.options = capi::to_options(options);
-    if (!limits) return CROFTON_OK;
-    crofton_draw_limits given;
-    CROFTON_CHECK(read_growing(limits, function, given));
-    CROFTON_CHECK(to_limits(given, function, asked.limits));
-    asked.options.limits = &asked.limits;
-    return CROFTON_OK;
+    return read_limits(limits, function, asked.cull);
 }
 
 crofton_status write_statistics(const OcclusionStatistics& s, crofton_occlusion_statistics* result,
@@ -141,8 +119,8 @@ crofton_status crofton_world_view_occluding(const crofton_world* world, const cr
     OccludingView occluding;
     CROFTON_CHECK(to_view(given, __func__, occluding));
     HostJobs executor(jobs);
-    CROFTON_CHECK(
-        status_of(world->world.view(occluding, asked.occlusion, visible->visible, asked.options, executor), __func__));
+    CROFTON_CHECK(status_of(
+        world->world.view(occluding, asked.occlusion, visible->visible, asked.cull.options, executor), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -167,7 +145,7 @@ crofton_status crofton_world_views_occluding(const crofton_world* world, const c
     }
     HostJobs executor(jobs);
     CROFTON_CHECK(status_of(world->world.view(std::span<const OccludingView>(occluding).first(count), asked.occlusion,
-                                              visible->visible, asked.options, executor),
+                                              visible->visible, asked.cull.options, executor),
                             __func__));
     visible->serial = world->serial;
     return CROFTON_OK;

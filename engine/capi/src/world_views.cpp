@@ -42,9 +42,10 @@ crofton_status crofton_world_view(const crofton_world* world, const crofton_view
     if (use_world.failed()) return use_world.status();
     const ExclusiveUse use(visible, __func__);
     if (use.failed()) return use.status();
-    CROFTON_CHECK(check_query(view, options, jobs, __func__));
+    CullAsked asked;
+    CROFTON_CHECK(read_query(view, options, jobs, __func__, asked));
     HostJobs executor(jobs);
-    world->world.view(set_view(*visible, *view), visible->visible, to_options(options), executor);
+    world->world.view(set_view(*visible, *view), visible->visible, asked.options, executor);
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -57,11 +58,12 @@ crofton_status crofton_world_view_camera(const crofton_world* world, const croft
     const ExclusiveUse use(visible, __func__);
     if (use.failed()) return use.status();
     CROFTON_CHECK(check_camera(camera, __func__));
-    CROFTON_CHECK(check_options(options, __func__));
+    CullAsked asked;
+    CROFTON_CHECK(read_options(options, __func__, asked));
     CROFTON_CHECK(check_jobs(jobs, __func__));
     HostJobs executor(jobs);
     CROFTON_CHECK(
-        status_of(world->world.view(to_camera(*camera), visible->visible, to_options(options), executor), __func__));
+        status_of(world->world.view(to_camera(*camera), visible->visible, asked.options, executor), __func__));
     visible->serial = world->serial;
     return CROFTON_OK;
 }
@@ -112,10 +114,10 @@ crofton_status crofton_world_views(const crofton_world* world, const crofton_vie
     CROFTON_CHECK(check_array(views, count, __func__));
     if (count > cull::kMaxViews) return report(CROFTON_OUT_OF_RANGE, __func__, "more than 32 views");
     for (std::size_t i = 0; i < count; ++i) CROFTON_CHECK(check_view(&views[i], __func__));
-    CROFTON_CHECK(check_options(options, __func__));
+    CullAsked asked;
+    CROFTON_CHECK(read_options(options, __func__, asked));
     for (std::size_t i = 0; i < count; ++i) copy_view(views[i], visible->views[i]);
-    world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible,
-                      to_options(options).mode);
+    world->world.view(std::span<const cull::View>(visible->views).first(count), visible->visible, asked.options.mode);
     visible->serial = world->serial;
     return CROFTON_OK;
 }

@@ -22,13 +22,8 @@ struct OccludeSetup {
 struct HardSetup {
     const char* name;
     OccludeSetup (*make)(sampling::Random& random, double offset);
+    std::uint64_t trials_a_ray = 5;  // more where rays are dear
 };
 [[nodiscard]] std::vector<HardSetup> hard_setups();
-
-// Of open, inverted, flat and NaN occluders, how many are not refused by name; and how many there are.
-struct Refusals {
-    std::uint64_t tried = 0, taken = 0;
-};
-[[nodiscard]] Refusals try_bad_occluders();
 
 }  // namespace crofton::cli

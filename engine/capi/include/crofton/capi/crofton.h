@@ -388,20 +388,6 @@ typedef struct crofton_find_options {
     uint32_t max_patch_triangles;
 } crofton_find_options;
 
-/* What is not worth drawing: too small or too far; docs/lights.md. */
-typedef struct crofton_draw_limits {
-    size_t size;
-    double eye[3];
-    double radii;                 /* farther than so many times its radius; 0: no limit */
-    double least_radius;          /* smaller than this */
-    const float* layer_distances; /* 32, or NULL */
-    const float* item_distances;  /* by object index, or NULL */
-    size_t item_count;
-    const uint64_t* drawn_before; /* bit i % 64 of word i / 64 for object i, or NULL */
-    size_t drawn_word_count;
-    double longer; /* times as long are the limits of what was drawn before; 0: 1 */
-} crofton_draw_limits;
-
 typedef struct crofton_occlusion_options {
     size_t size;
     uint32_t disabled;      /* 1: without occlusion, for comparison */
@@ -419,7 +405,7 @@ typedef struct crofton_occluding_view {
     double origin[3];
     uint32_t depth;                    /* a crofton_depth_range */
     uint32_t hidden_layers;            /* not drawn; 0: all are */
-    const crofton_draw_limits* limits; /* or NULL */
+    const crofton_draw_limits* limits; /* or NULL: those of the options */
 } crofton_occluding_view;
 
 typedef struct crofton_occlusion_statistics {

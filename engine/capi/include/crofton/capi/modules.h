@@ -65,6 +65,20 @@ typedef struct crofton_view {
     crofton_frustum frustum;
 } crofton_view;
 
+/* What is not worth drawing: too small or too far; docs/lights.md. */
+typedef struct crofton_draw_limits {
+    size_t size;
+    double eye[3];
+    double radii;                 /* farther than so many times its radius; 0: no limit */
+    double least_radius;          /* smaller than this */
+    const float* layer_distances; /* 32, or NULL */
+    const float* item_distances;  /* by item id or object index, or NULL */
+    size_t item_count;
+    const uint64_t* drawn_before; /* bit i % 64 of word i / 64 for item i, or NULL */
+    size_t drawn_word_count;
+    double longer; /* times as long are the limits of what was drawn before; 0: 1 */
+} crofton_draw_limits;
+
 typedef struct crofton_cull_options {
     size_t size;
     uint32_t conservative; /* 0: exact; 1: planes only, which keeps some boxes near the frustum's corners */
@@ -74,6 +88,8 @@ typedef struct crofton_cull_options {
      * lacks it: all. Views of many frusta at once do not look at it. */
     const uint64_t* among;
     size_t among_words;
+    const crofton_draw_limits*
+        limits; /* or NULL: everything is worth drawing. crofton_world_views does not look at it */
 } crofton_cull_options;
 
 typedef struct crofton_cull_statistics {
@@ -117,6 +133,11 @@ CROFTON_API crofton_status crofton_visible_set_items(const crofton_visible_set* 
                                                      const uint8_t** verdicts, size_t* count);
 CROFTON_API crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible,
                                                           crofton_cull_statistics* statistics);
+
+/* Limits for a camera: nothing whose ball is less than `pixels` wide in a picture so many pixels high, as it would look
+ * in the middle. Fills a struct whose `size` is set; all else is 0. */
+CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, double picture_height,
+                                                         double pixels, crofton_draw_limits* limits);
 
 /* Writes verdicts[i] for boxes[i], exactly. */
 CROFTON_API crofton_status crofton_classify(const crofton_frustum* frustum, const crofton_box* boxes, size_t count,
