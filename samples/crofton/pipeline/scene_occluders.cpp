@@ -14,6 +14,9 @@ void append(TriangleMesh& to, const TriangleMesh& part) {
     for (const std::uint32_t index : part.indices) to.indices.push_back(first + index);
 }
 
+// A node of more meshes is a level that was cut into pieces, not a house of several parts.
+constexpr std::size_t kMostParts = 16;
+
 // Nodes with the same meshes are of one kind; no occluders yet.
 SceneOccluders kinds_of(const scene::Scene& scene) {
     std::map<scene::NodeId, std::vector<scene::MeshId>> parts;
@@ -27,9 +30,21 @@ SceneOccluders kinds_of(const scene::Scene& scene) {
         result.objects.push_back({node, kind->second});
         if (!is_new) continue;
         result.kinds.emplace_back();
+        result.kinds.back().is_level = meshes.size() > kMostParts;
         for (const scene::MeshId mesh : meshes) append(result.kinds.back().mesh, scene.mesh(mesh));
     }
     return result;
+}
+
+// A level's flat parts are welded; bodies in it stay as they are found.
+void find_in(SceneOccluders::Kind& kind) {
+    if (auto found = occlude::find_occluders(kind.mesh)) kind.found = std::move(*found);
+    if (!kind.is_level) return;
+    auto welded = occlude::find_level_occluders(kind.mesh);
+    if (!welded) return;
+    std::erase_if(kind.found.occluders,
+                  [](const occlude::FoundOccluder& occluder) { return occluder.kind == occlude::OccluderKind::patch; });
+    for (occlude::FoundOccluder& part : welded->occluders) kind.found.occluders.push_back(std::move(part));
 }
 
 void forget_what_hides_nothing(SceneOccluders& occluders) {
@@ -43,8 +58,7 @@ void forget_what_hides_nothing(SceneOccluders& occluders) {
 SceneOccluders find_scene_occluders(const scene::Scene& scene, Executor& executor) {
     SceneOccluders result = kinds_of(scene);
     executor.parallel_for(result.kinds.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t k = begin; k < end; ++k)
-            if (auto found = occlude::find_occluders(result.kinds[k].mesh)) result.kinds[k].found = std::move(*found);
+        for (std::size_t k = begin; k < end; ++k) find_in(result.kinds[k]);
     });
     forget_what_hides_nothing(result);
     return result;

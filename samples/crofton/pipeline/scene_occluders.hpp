@@ -13,7 +13,8 @@ namespace crofton::pipeline {
 // Instances on one node are one object, as houses of several parts are: occluders are found in its meshes together.
 struct SceneOccluders {
     struct Kind {
-        TriangleMesh mesh;  // all parts, in the node's frame
+        TriangleMesh mesh;      // all parts, in the node's frame
+        bool is_level = false;  // so many parts that their surfaces are welded
         occlude::FoundOccluders found;
     };
     struct Object {

@@ -37,6 +37,21 @@ void append(TriangleMesh& to, const TriangleMesh& mesh) {
     for (const std::uint32_t i : mesh.indices) to.indices.push_back(first + i);
 }
 
+// What a node of many meshes hides: it is in no answer itself, its meshes are.
+Result<void> add_level(scene::Scene& scene, scene::NodeId node, const std::vector<scene::MeshId>& ids, Stage& stage) {
+    TriangleMesh all;
+    for (const scene::MeshId id : ids) append(all, scene.mesh(id));
+    const auto mesh = stage.world.add_mesh({.positions = all.positions, .indices = all.indices, .triangles = false});
+    if (!mesh) return tl::unexpected(mesh.error());
+    const auto found = occlude::find_level_occluders(all, {.sides = occlude::Sides::both});
+    if (!found) return tl::unexpected(found.error());
+    if (auto set = stage.world.set_occluders(*mesh, found->occluders); !set) return set;
+    const auto object =
+        stage.world.add({.mesh = *mesh, .node = stage.root, .transform = scene.world(node), .only_occludes = true});
+    if (!object) return tl::unexpected(object.error());
+    return {};
+}
+
 // Few meshes of a node are one object: a house of seven parts has better occluders as a whole. Rays meet both sides of
 // a triangle, so both sides are drawn.
 Result<Stage> stage_of(assets::SceneSource& source) {
@@ -52,8 +67,9 @@ Result<Stage> stage_of(assets::SceneSource& source) {
     std::vector<std::pair<scene::NodeId, std::vector<scene::MeshId>>> objects;
     for (const auto& [node, ids] : parts) {
         if (ids.size() <= kMostParts) objects.emplace_back(node, ids);
-        if (ids.size() > kMostParts)
-            for (const scene::MeshId id : ids) objects.push_back({node, {id}});
+        if (ids.size() <= kMostParts) continue;
+        for (const scene::MeshId id : ids) objects.push_back({node, {id}});
+        if (auto added = add_level(scene, node, ids, stage); !added) return tl::unexpected(added.error());
     }
     std::map<std::vector<scene::MeshId>, MeshHandle> meshes;
     for (const auto& [node, ids] : objects) {

@@ -93,9 +93,13 @@ Result<void> LoadedScene::take_baked(const SceneRequest& request, const Method& 
         if (auto found = like->pipeline_->occluders()) baked_.occluders = std::move(found);
     } else if (!request.baked.empty()) {
         auto parts = pipeline::load_baked_parts(request.baked, source_.scene, request.limits);
-        // Occluders lie within the triangles as they were loaded; cut in another way they may be others.
-        if (!parts && method.triangulation == Triangulation::loaded) return tl::unexpected(std::move(parts.error()));
+        // Occluders lie within the triangles as they were loaded; cut in another way they may be others. Any other
+        // error is the file's.
+        const bool may_differ = method.triangulation != Triangulation::loaded;
+        if (!parts && !(may_differ && parts.error().code == ErrorCode::invalid_argument))
+            return tl::unexpected(std::move(parts.error()));
         if (parts) baked_ = std::move(*parts);
+        if (!parts) source_.warnings.push_back(std::move(parts.error().message));
     }
     return {};
 }

@@ -149,6 +149,18 @@ struct FoundOccluders {
 // range.
 [[nodiscard]] Result<FoundOccluders> find_occluders(const TriangleMesh& mesh, const FindOptions& options = {});
 
+struct LevelOptions {
+    Sides sides = Sides::front;        // that are drawn
+    std::uint32_t max_triangles = 48;  // of an occluder
+};
+
+// All triangles of a level made of many small pieces, in occluders of kind patch that need not be flat: walls, floors
+// and ceilings that are near each other are one surface, so that no pixel is lost where they meet. Triangles are cut
+// where a vertex of another lies on one of their sides along an axis, which covers the same points exactly. The sum of
+// areas stands for mean_shadow and covered, a quarter of it or half as of a patch. Each triangle is drawn: slower than
+// boxes, for what has none. Errors: as find_occluders(); 2^26 triangles or more; max_triangles of 0.
+[[nodiscard]] Result<FoundOccluders> find_level_occluders(const TriangleMesh& level, const LevelOptions& options = {});
+
 // How much an occluder hides from a region of eyes: a measure to rank occluders by, before any view is known.
 
 // From where one looks, and at what.

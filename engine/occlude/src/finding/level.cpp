@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// Levels: many small pieces that meet along walls. Their sides are cut to each other, then neighbours are one surface.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <crofton/occlude/occluder.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "finding/candidates.hpp"
+
+namespace crofton::occlude {
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+// All vertices, sorted along the lines parallel to each axis that they lie on.
+class AxisLines {
+  public:
+    explicit AxisLines(const Vector<glm::vec3>& positions) : positions_(positions) {
+        for (int k = 0; k < 3; ++k) {
+            Vector<std::uint32_t>& order = order_[static_cast<std::size_t>(k)];
+            order.resize(positions.size());
+            for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+            std::sort(order.begin(), order.end(),
+                      [&](std::uint32_t i, std::uint32_t j) { return is_before(k, positions_[i], positions_[j]); });
+        }
+    }
+
+    // A vertex strictly between two others of a line along an axis, or kNoNeighbor. Exact: coordinates are equal.
+    [[nodiscard]] std::uint32_t between(std::uint32_t a, std::uint32_t b) const {
+        const glm::vec3 &p = positions_[a], &q = positions_[b];
+        for (int k = 0; k < 3; ++k) {
+            const int u = (k + 1) % 3, v = (k + 2) % 3;
+            if (p[u] != q[u] || p[v] != q[v] || p[k] == q[k]) continue;
+            const glm::vec3 &low = p[k] < q[k] ? p : q, &high = p[k] < q[k] ? q : p;
+            const Vector<std::uint32_t>& order = order_[static_cast<std::size_t>(k)];
+            const auto next =
+                std::upper_bound(order.begin(), order.end(), low,
+                                 [&](const glm::vec3& at, std::uint32_t i) { return is_before(k, at, positions_[i]); });
+            return next != order.end() && is_before(k, positions_[*next], high) ? *next : kNoNeighbor;
+        }
+        return kNoNeighbor;
+    }
+
+  private:
+    static bool is_before(int k, const glm::vec3& p, const glm::vec3& q) {
+        const int u = (k + 1) % 3, v = (k + 2) % 3;
+        if (p[u] != q[u]) return p[u] < q[u];
+        if (p[v] != q[v]) return p[v] < q[v];
+        return p[k] < q[k];
+    }
+
+    const Vector<glm::vec3>& positions_;
+    std::array<Vector<std::uint32_t>, 3> order_;
+};
+
+// Cuts triangles from their corners to the vertices on their sides, up to four times as many as there were. No vertex
+// is new, so that what is cut covers the same points exactly.
+Vector<Corners> cut_at_vertices(const PieceMesh& mesh) {
+    const AxisLines lines(mesh.positions);
+    const std::size_t most = 4 * mesh.triangles.size();
+    Vector<Corners> cut, open(mesh.triangles.rbegin(), mesh.triangles.rend());
+    while (!open.empty()) {
+        const Corners t = open.back();
+        open.pop_back();
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        bool whole = true;
+        for (std::size_t s = 0; s < 3 && whole && cut.size() + open.size() < most; ++s) {
+            const std::uint32_t a = t[s], b = t[(s + 1) % 3], c = t[(s + 2) % 3], m = lines.between(a, b);
+            if (m == kNoNeighbor) continue;
+            open.push_back({m, b, c});
+            open.push_back({a, m, c});
+            whole = false;
+        }
+        if (whole) cut.push_back(t);
+    }
+    return cut;
+}
+
+class LevelDivision {
+  public:
+    LevelDivision(const PieceMesh& mesh, const LevelOptions& options)
+        : mesh_(mesh), options_(options), triangles_(cut_at_vertices(mesh)) {}
+
+    void run(Vector<FoundOccluder>& found) {
+        Vector<std::uint32_t> all(triangles_.size());
+        for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+        divide(all, found);
+    }
+
+  private:
+    [[nodiscard]] double along(std::uint32_t t, int axis) const {
+        double sum = 0.0;
+        for (const std::uint32_t v : triangles_[t]) sum += static_cast<double>(mesh_.positions[v][axis]);
+        return sum;
+    }
+
+    // In halves across the longest axis of the middles.
+    void divide(std::span<std::uint32_t> triangles, Vector<FoundOccluder>& found) const {
+        if (triangles.empty()) return;
+        if (triangles.size() <= options_.max_triangles) return add(triangles, found);
+        int axis = 0;
+        double longest = -1.0;
+        for (int k = 0; k < 3; ++k) {
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            for (const std::uint32_t t : triangles) {
+                low = std::min(low, along(t, k));
+                high = std::max(high, along(t, k));
+            }
+            if (high - low > longest) {
+                longest = high - low;
+                axis = k;
+            }
+        }
+        const std::size_t half = triangles.size() / 2;
+        std::sort(triangles.begin(), triangles.end(), [&](std::uint32_t i, std::uint32_t j) {
+            const double a = along(i, axis), b = along(j, axis);
+            return a != b ? a < b : i < j;
+        });
+        divide(triangles.first(half), found);
+        divide(triangles.subspan(half), found);
+    }
+
+    void add(std::span<std::uint32_t> triangles, Vector<FoundOccluder>& found) const {
+        std::sort(triangles.begin(), triangles.end());
+        FoundOccluder occluder;
+        occluder.kind = OccluderKind::patch;
+        occluder.sides = options_.sides;
+        Vector<std::uint32_t> used;
+        Vector<std::pair<std::uint32_t, std::uint32_t>> sides;
+        double area = 0.0;
+        for (const std::uint32_t t : triangles) {
+            const Corners& c = triangles_[t];
+            for (std::size_t s = 0; s < 3; ++s) {
+                used.push_back(c[s]);
+                sides.emplace_back(std::minmax(c[s], c[(s + 1) % 3]));
+            }
+            const glm::dvec3 a(mesh_.positions[c[0]]);
+            area += 0.5 * glm::length(
+                              glm::cross(glm::dvec3(mesh_.positions[c[1]]) - a, glm::dvec3(mesh_.positions[c[2]]) - a));
+        }
+        if (!(area > 0.0)) return;
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        for (const std::uint32_t v : used) occluder.surface.positions.push_back(mesh_.positions[v]);
+        for (const std::uint32_t t : triangles)
+            for (const std::uint32_t v : triangles_[t])
+                occluder.surface.indices.push_back(
+                    static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin()));
+        std::sort(sides.begin(), sides.end());
+        for (std::size_t i = 0; i < sides.size();) {
+            std::size_t end = i + 1;
+            while (end < sides.size() && sides[end] == sides[i]) ++end;
+            occluder.edges += end - i == 1 ? 1u : 0u;
+            i = end;
+        }
+        occluder.mean_shadow = area * (options_.sides == Sides::front ? 0.25 : 0.5);
+        occluder.gain = occluder.mean_shadow;
+        found.push_back(std::move(occluder));
+    }
+
+    const PieceMesh& mesh_;
+    const LevelOptions& options_;
+    Vector<Corners> triangles_;
+};
+
+}  // namespace
+
+Result<FoundOccluders> find_level_occluders(const TriangleMesh& level, const LevelOptions& options) {
+    if (options.max_triangles == 0)
+        return fail(ErrorCode::out_of_range, kNoItem, "find_level_occluders: max_triangles must be 1 or more");
+    if (level.indices.size() % 3 != 0)
+        return fail(ErrorCode::invalid_argument, level.indices.size(),
+                    "find_level_occluders: the index count is no multiple of three");
+    if (level.triangle_count() >= std::size_t{1} << 26)
+        return fail(ErrorCode::out_of_range, level.triangle_count(),
+                    "find_level_occluders: 2^26 triangles or more; split the level");
+    const PieceMesh mesh = split_into_pieces(level);
+    if (mesh.triangles.empty())
+        return fail(ErrorCode::empty, kNoItem, "find_level_occluders: the level has no valid triangle");
+    FoundOccluders result;
+    result.rejected = mesh.rejected;
+    result.pieces = static_cast<std::uint32_t>(mesh.pieces.size());
+    LevelDivision(mesh, options).run(result.occluders);
+    for (const FoundOccluder& occluder : result.occluders) result.mean_shadow += occluder.mean_shadow;
+    result.covered = result.mean_shadow;
+    return result;
+}
+
+}  // namespace crofton::occlude
