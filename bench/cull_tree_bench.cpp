@@ -121,7 +121,7 @@ void tree_insert(benchmark::State& state) {
     for (auto _ : state) insert();
 }
 // A tree a tenth of which was inserted one by one, beside one that was built of all.
-enum class Grown { built, inserted, refitted };
+enum class Grown { built, inserted, refitted, rebuilt };
 
 const boxtree::BoxTree& grown_tree(std::int64_t count, Grown grown) {
     if (grown == Grown::built) return tree_of(count);
@@ -132,7 +132,8 @@ const boxtree::BoxTree& grown_tree(std::int64_t count, Grown grown) {
     const std::size_t before = boxes.size() - boxes.size() / 10;
     boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes.first(before));
     for (const Obb& box : boxes.subspan(before)) benchmark::DoNotOptimize(tree.insert(box).has_value());
-    if (grown == Grown::refitted) tree.refit();
+    if (grown != Grown::inserted) tree.refit();
+    while (grown == Grown::rebuilt && !tree.rebuild_step(1'000'000)) tree.refit();
     return trees.emplace(std::pair(count, grown), std::move(tree)).first->second;
 }
 
@@ -151,9 +152,11 @@ void tree_cull_grown(benchmark::State& state, Grown grown, double share) {
 BENCHMARK_CAPTURE(tree_cull_grown, built, Grown::built, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull_grown, inserted, Grown::inserted, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull_grown, refitted, Grown::refitted, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, rebuilt, Grown::rebuilt, 0.2)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull_grown, built_1_percent, Grown::built, 0.01)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull_grown, inserted_1_percent, Grown::inserted, 0.01)->Arg(1000000);
 BENCHMARK_CAPTURE(tree_cull_grown, refitted_1_percent, Grown::refitted, 0.01)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, rebuilt_1_percent, Grown::rebuilt, 0.01)->Arg(1000000);
 
 BENCHMARK(tree_insert)->Arg(1000000)->Iterations(20000)->Unit(benchmark::kMicrosecond);
 
