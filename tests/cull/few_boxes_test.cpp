@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Few boxes about bodies of one to twelve planes, which wedges, slabs and repeated planes are among: every list path
-// must give classify's verdict, which edge_test.cpp compares with exact arithmetic.
+// Few boxes about bodies of one to twelve planes, which wedges, slabs and repeated planes are among. Every list path
+// must give classify's verdict. edge_test.cpp compares that with exact arithmetic.
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
 #include <algorithm>
