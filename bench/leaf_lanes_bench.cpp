@@ -30,7 +30,7 @@ struct alignas(64) NarrowLeaf {
 
 // A normal in units of 2^-15 and what a plane's value may be off by, in units.
 struct NarrowPlane {
-    std::int16_t normal[3], offset, slack;
+    std::int16_t normal[3], offset, error_bound;
 };
 
 struct LaneLists {
@@ -127,18 +127,18 @@ std::size_t narrow_lanes(const LaneInput& input, const LaneLists& lists) {
         const NarrowLeaf& leaf = input.narrow[i];
         const NarrowPlane& plane = input.planes[i];
         const V16 normal[3] = {hn::Set(d, plane.normal[0]), hn::Set(d, plane.normal[1]), hn::Set(d, plane.normal[2])};
-        const V16 slack = hn::Set(d, plane.slack);
+        const V16 error_bound = hn::Set(d, plane.error_bound);
         const std::uint32_t used = (std::uint32_t{1} << input.wide[i].count) - 1;
         for (std::size_t l = 0; l < 16; l += hn::Lanes(d)) {
             const V16 middle = narrow_dot(hn::Set(d, plane.offset), leaf.center, l, normal);
             V16 sum = hn::Zero(d);
             for (unsigned k = 0; k < 3; ++k)
                 sum = hn::Add(sum, hn::Abs(narrow_dot(hn::Zero(d), leaf.edge + 3 * k, l, normal)));
-            const V16 reach = hn::ShiftRightSame(sum, input.wide[i].edge_shift);
-            const V16 across = hn::Sub(reach, hn::Abs(middle));
-            const V16 bottom = hn::Sub(hn::Max(middle, hn::Zero(d)), reach);
-            const auto cuts = hn::Gt(across, slack), sure = hn::Gt(hn::Abs(across), slack),
-                       inside = hn::Gt(bottom, slack);
+            const V16 projected_radius = hn::ShiftRightSame(sum, input.wide[i].edge_shift);
+            const V16 across = hn::Sub(projected_radius, hn::Abs(middle));
+            const V16 bottom = hn::Sub(hn::Max(middle, hn::Zero(d)), projected_radius);
+            const auto cuts = hn::Gt(across, error_bound), sure = hn::Gt(hn::Abs(across), error_bound),
+                       inside = hn::Gt(bottom, error_bound);
             const std::uint32_t present = used >> l;
             const std::uint32_t in = bits_of_16(inside) & present, cut = bits_of_16(cuts) & present,
                                 unsure = ~bits_of_16(sure) & present;
@@ -187,7 +187,7 @@ struct Leaves {
             for (unsigned j = 0; j < 3; ++j)
                 planes[i].normal[j] = static_cast<std::int16_t>(std::lround(normal[j] * 32767.0));
             planes[i].offset = static_cast<std::int16_t>(std::lround(offset));
-            planes[i].slack = 6;
+            planes[i].error_bound = 6;
         }
     }
 

@@ -60,11 +60,12 @@ Obb box_about(oracle::NearMisses& random, const Frustum& body) {
     const unsigned passes = random.index(4);
     for (unsigned pass = 0; pass < passes; ++pass) {
         const Plane& plane = body.planes[random.index(body.plane_count)];
-        double reach = 0.0;
+        double projected_radius = 0.0;
         for (int k = 0; k < 3; ++k)
-            reach += double{box.half_extents[k]} * std::fabs(glm::dot(plane.normal, glm::dvec3(box.axes[k])));
+            projected_radius +=
+                double{box.half_extents[k]} * std::fabs(glm::dot(plane.normal, glm::dvec3(box.axes[k])));
         const double side = random.index(3) == 0 ? 0.0 : random.index(2) ? 1.0 : -1.0;
-        at -= (glm::dot(plane.normal, at) + plane.offset + side * reach) * plane.normal;
+        at -= (glm::dot(plane.normal, at) + plane.offset + side * projected_radius) * plane.normal;
     }
     if (random.index(2)) at += std::exp(random.number(-36.0, -4.0)) * random.direction();
     box.center = body.origin + at;
@@ -127,10 +128,12 @@ TEST_SUITE("cull/few boxes") {
                 box = box_about(random, body);
                 box.center = body.origin + size * random.number(0.0, 1.0) * random.direction();
                 box.half_extents *= static_cast<float>(size);
-                double reach = 0.0;
+                double projected_radius = 0.0;
                 for (int k = 0; k < 3; ++k)
-                    reach += double{box.half_extents[k]} * std::fabs(glm::dot(plane.normal, glm::dvec3(box.axes[k])));
-                least = std::min(least, glm::dot(plane.normal, box.center - body.origin) + plane.offset - reach);
+                    projected_radius +=
+                        double{box.half_extents[k]} * std::fabs(glm::dot(plane.normal, glm::dvec3(box.axes[k])));
+                least =
+                    std::min(least, glm::dot(plane.normal, box.center - body.origin) + plane.offset - projected_radius);
             }
             const double margin = size * random.number(-0.01, 0.01) * random.index(2);
             for (Obb& box : boxes) box.center += (margin - least) * plane.normal;
