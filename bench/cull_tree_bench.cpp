@@ -4,6 +4,9 @@
 
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/cull/cull.hpp>
+#include <map>
+#include <span>
+#include <utility>
 
 #include "cull_inputs.hpp"
 
@@ -117,6 +120,44 @@ void tree_insert(benchmark::State& state) {
     for (int i = 0; i < 1000; ++i) insert();
     for (auto _ : state) insert();
 }
+// A tree a tenth of which was inserted one by one, beside one that was built of all.
+enum class Grown { built, inserted, refitted, rebuilt };
+
+const boxtree::BoxTree& grown_tree(std::int64_t count, Grown grown) {
+    if (grown == Grown::built) return tree_of(count);
+    static std::map<std::pair<std::int64_t, Grown>, boxtree::BoxTree> trees;
+    const auto found = trees.find({count, grown});
+    if (found != trees.end()) return found->second;
+    const std::span<const Obb> boxes = boxes_of(count);
+    const std::size_t before = boxes.size() - boxes.size() / 10;
+    boxtree::BoxTree tree = *boxtree::BoxTree::build(boxes.first(before));
+    for (const Obb& box : boxes.subspan(before)) benchmark::DoNotOptimize(tree.insert(box).has_value());
+    if (grown != Grown::inserted) tree.refit();
+    while (grown == Grown::rebuilt && !tree.rebuild_step(1'000'000)) tree.refit();
+    return trees.emplace(std::pair(count, grown), std::move(tree)).first->second;
+}
+
+void tree_cull_grown(benchmark::State& state, Grown grown, double share) {
+    const boxtree::BoxTree& tree = grown_tree(state.range(0), grown);
+    const cull::View view = bench::view_of_share(boxes_of(state.range(0)), share);
+    cull::VisibleSet visible;
+    for (auto _ : state) {
+        cull::find_visible(tree, view, visible, {cull::CullMode::exact, cull::ResultOrder::tree});
+        benchmark::DoNotOptimize(visible.ids().data());
+    }
+    report(state, visible.size());
+    state.counters["boxes_tested"] = static_cast<double>(visible.statistics().boxes_tested);
+    state.counters["nodes_tested"] = static_cast<double>(visible.statistics().nodes_tested);
+}
+BENCHMARK_CAPTURE(tree_cull_grown, built, Grown::built, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, inserted, Grown::inserted, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, refitted, Grown::refitted, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, rebuilt, Grown::rebuilt, 0.2)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, built_1_percent, Grown::built, 0.01)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, inserted_1_percent, Grown::inserted, 0.01)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, refitted_1_percent, Grown::refitted, 0.01)->Arg(1000000);
+BENCHMARK_CAPTURE(tree_cull_grown, rebuilt_1_percent, Grown::rebuilt, 0.01)->Arg(1000000);
+
 BENCHMARK(tree_insert)->Arg(1000000)->Iterations(20000)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

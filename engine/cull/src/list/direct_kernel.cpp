@@ -161,16 +161,18 @@ HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* 
     return {bits_of(hn::Lt(least, hn::Neg(margin))) & valid, bits_of(hn::Ge(least, margin)) & valid, 0, 0};
 }
 
-// By the boxes themselves.
+// By the boxes themselves. `cut` are the planes that a box is not certainly inside of, as PlaneBits.
 HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
-                                  float error_bound, bool exact) {
+                                  float error_bound, bool exact, VU& cut) {
     const DF d;
+    const DU du;
     VF edge[9];
     for (unsigned k = 0; k < 9; ++k) edge[k] = hn::Mul(boxes.axis[k], boxes.half[k / 3]);
     const VF error = hn::MulAdd(boxes.size(), hn::Set(d, kDirectError), hn::Set(d, error_bound)),
              beyond = hn::Neg(error);
     const VF most = hn::Set(d, 3e38f);
-    VF top = most, bottom = most, next_bottom = most, middle = most;  // the least of all planes, and the next
+    VF top = most, bottom = most, middle = most;  // the least of all planes
+    cut = hn::Zero(du);
     for (std::uint32_t i = 0; i < count; ++i) {
         const VF x = hn::Set(d, planes[i].normal[0]), y = hn::Set(d, planes[i].normal[1]),
                  z = hn::Set(d, planes[i].normal[2]);
@@ -181,14 +183,17 @@ HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* p
         const VF projected_radius = hn::Add(hn::Add(slope[0], slope[1]), slope[2]);
         const VF low = hn::Sub(value, projected_radius);
         top = hn::Min(top, hn::Add(value, projected_radius));
-        next_bottom = hn::Min(next_bottom, hn::Max(bottom, low));
         bottom = hn::Min(bottom, low);
         middle = hn::Min(middle, value);
+        const auto open = hn::RebindMask(du, hn::Lt(low, error)), out = hn::RebindMask(du, hn::Lt(value, error));
+        const VU bit = hn::IfThenElse(out, hn::Set(du, PlaneBits::bit(i + 1)), hn::Set(du, PlaneBits::late_bit(i + 1)));
+        cut = hn::Or(cut, hn::IfThenElseZero(open, bit));
     }
     const MF outside = hn::Lt(top, beyond), inside = hn::Ge(bottom, error);
     const MF crossing = hn::And(hn::Ge(top, error), hn::Lt(bottom, beyond));
     // A box that crosses one plane and lies inside all others meets the frustum; so does one whose centre is inside.
-    const MF meets = hn::Or(hn::Ge(next_bottom, error), hn::Ge(middle, error));
+    const auto once = hn::Eq(hn::And(cut, hn::Sub(cut, hn::Set(du, 1))), hn::Zero(du));
+    const MF meets = hn::Or(hn::RebindMask(d, once), hn::Ge(middle, error));
     const std::uint32_t valid = bits_of(are_valid(boxes)), out = bits_of(outside) & valid, in = bits_of(inside) & valid,
                         cross = bits_of(crossing) & valid;
     return {out, in, exact ? cross & ~bits_of(meets) : 0, ~(out | in | cross)};
@@ -212,9 +217,11 @@ class DirectQuery {
         if (resolve_count_ > 0) {
             ListChunk chunk{};  // the view's origin as the boxes'
             std::copy_n(origin_, 3, chunk.origin);
-            OpenRecords<DirectBox, DirectQuery, DirectBoxes> records(
-                *in_.view, chunk, boxes_, (1u << in_.view->plane_count) - 1, in_.exact, *this);
-            counts = records.resolve(resolve_, resolve_count_);
+            const std::uint32_t planes = (1u << in_.view->plane_count) - 1;
+            OpenRecords<DirectBox, DirectQuery, DirectBoxes> records(*in_.view, chunk, boxes_, planes, in_.exact,
+                                                                     *this);
+            counts = PlaneTable::takes(planes) ? records.resolve(resolve_, resolve_count_, resolve_cuts_)
+                                               : records.resolve(resolve_, resolve_count_);
         }
         out_.resolved_count = resolve_count_;
         out_.improper = counts.improper;
@@ -243,8 +250,8 @@ class DirectQuery {
             planes[i].offset = static_cast<float>(offset);
             error_bound = std::max(error_bound, static_cast<float>(0x1.41p-20 * std::fabs(offset) + 1e-37));
         }
-        const auto by_planes = [&](const DirectLanes& boxes) HWY_ATTR {
-            return test_planes(boxes, planes, view.plane_count, error_bound, in_.exact);
+        const auto by_planes = [&](const DirectLanes& boxes, VU& cut) HWY_ATTR {
+            return test_planes(boxes, planes, view.plane_count, error_bound, in_.exact, cut);
         };
         const auto by_spheres = [&](const DirectLanes& boxes)
                                     HWY_ATTR { return test_spheres(boxes, planes, view.plane_count, error_bound); };
@@ -254,7 +261,11 @@ class DirectQuery {
             const std::uint64_t present = ~std::uint64_t{0} >> (64 - size);
             WordBits bits;
             if (in_.count < kFew) {
-                for (std::size_t l = 0; l < size; l += kLanes) bits.add(by_planes(lanes_from(first + l)), l);
+                for (std::size_t l = 0; l < size; l += kLanes) {
+                    VU cut;
+                    bits.add(by_planes(lanes_from(first + l), cut), l);
+                    hn::StoreU(cut, DU(), cuts_ + l);
+                }
             } else {
                 for (std::size_t l = 0; l < size; l += kLanes) bits.add(by_spheres(lanes_from(first + l)), l);
                 test_open(first, ~(bits.outside | bits.inside) & present, by_planes, bits);
@@ -264,7 +275,7 @@ class DirectQuery {
             const std::uint64_t needs_edge_test = bits.needs_edge_test & present, undecided = bits.undecided & present;
             straddling += hwy::PopCount(~(bits.outside | bits.inside | needs_edge_test | undecided) & present);
             const auto base = static_cast<std::uint32_t>(first);
-            append(needs_edge_test, base, resolve_, resolve_count_);
+            append_needing(needs_edge_test, base);
             append(undecided, base, out_.undecided, out_.undecided_count);
         }
         return straddling;
@@ -299,7 +310,12 @@ class DirectQuery {
         WordBits found;
         for (std::size_t i = 0; i < count; i += kLanes) {
             const Picked<DirectBoxes> picked{boxes, which + i};
-            found.add(test(lanes_of_picked(picked)), i);
+            VU cut;
+            const DirectBits tested = test(lanes_of_picked(picked), cut);
+            found.add(tested, i);
+            alignas(64) std::uint32_t cuts[kLanes];
+            hn::Store(cut, DU(), cuts);
+            for_each_bit(tested.needs_edge_test & kAllLanes, [&](unsigned l) { cuts_[which[i + l]] = cuts[l]; });
         }
         bits.put(found, open);
     }
@@ -307,6 +323,15 @@ class DirectQuery {
     static HWY_INLINE void append(std::uint64_t bits, std::uint32_t base, std::uint32_t* list, std::size_t& count) {
         for (; bits; bits &= bits - 1)
             list[count++] = base + static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+    }
+
+    // With the planes that they cross.
+    HWY_INLINE void append_needing(std::uint64_t bits, std::uint32_t base) {
+        for (; bits; bits &= bits - 1) {
+            const auto i = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+            resolve_cuts_[resolve_count_] = cuts_[i];
+            resolve_[resolve_count_++] = base + i;
+        }
     }
 
     // Boxes `first` on. Where there are fewer than lanes, the last ones are copied, and zeros follow.
@@ -333,7 +358,8 @@ class DirectQuery {
     double origin_[4] = {0.0, 0.0, 0.0, 1.0};  // the last is taken from a pair of floats: keeps that from underflow
     DirectBoxes boxes_;
     std::size_t resolve_count_ = 0;
-    std::uint32_t resolve_[kChunk + 16];
+    std::uint32_t resolve_[kChunk + 16], resolve_cuts_[kChunk + 16];
+    std::uint32_t cuts_[64];  // of 64 boxes, those that need an edge test
 };
 
 void run_direct(const DirectKernelInput& input, ListKernelOutput& output) {

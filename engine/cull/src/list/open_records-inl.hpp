@@ -130,6 +130,12 @@ class OpenRecords {
         return counts_;
     }
 
+    // The same, where PlaneTable takes the planes. `cuts` are those that each box is not certainly inside of, as
+    // PlaneBits, with room for 16 more.
+    HWY_INLINE OpenCounts resolve(std::uint32_t* indices, std::size_t count, std::uint32_t* cuts) {
+        return resolve_own(PlaneTable(view_, planes_, local_), indices, count, cuts);
+    }
+
   private:
     // Those that cross several planes are listed with them, so that the second stage's lanes are full.
     OpenCounts test_own(std::uint32_t* indices, std::size_t count, std::uint32_t* needs_edge_test) {
@@ -148,9 +154,14 @@ class OpenRecords {
             });
             note(at, which, valid, test);
         });
-        std::fill_n(cuts + counts_.resolved, 16, 0);
-        resolve_all(needs_edge_test, counts_.resolved, [&](const auto& bounds, std::size_t at) HWY_ATTR {
-            return resolve_own_planes(table, bounds, hn::LoadU(du, cuts + at));
+        return resolve_own(table, needs_edge_test, counts_.resolved, cuts);
+    }
+
+    HWY_INLINE OpenCounts resolve_own(const PlaneTable& table, std::uint32_t* indices, std::size_t count,
+                                      std::uint32_t* cuts) {
+        std::fill_n(cuts + count, 16, 0);
+        resolve_all(indices, count, [&](const auto& bounds, std::size_t at) HWY_ATTR {
+            return resolve_own_planes(table, bounds, hn::LoadU(DU(), cuts + at));
         });
         return counts_;
     }

@@ -59,12 +59,12 @@ class PlaneTable {
     float largest_error_bound_ = 0.0f;
 };
 
-// Planes as bits, lane by lane: bit n + 1 is entry n of the table, and so is bit kEntries + n + 1. Lanes take them one
-// after the other, those of the first half first.
+// Planes as bits, lane by lane: bit n + 1 is entry n of the table, and so is bit n + 17. Lanes take them one after the
+// other, those of the first half first. Up to twelve planes have bits of their own, more than a table may have entries.
 class PlaneBits {
   public:
     static constexpr std::uint32_t bit(unsigned entry) { return 2u << entry; }
-    static constexpr std::uint32_t late_bit(unsigned entry) { return bit(entry) << PlaneTable::kEntries; }
+    static constexpr std::uint32_t late_bit(unsigned entry) { return bit(entry) << 16; }
 
     HWY_INLINE explicit PlaneBits(VU bits) : bits_(hn::BitCast(DI(), bits)) {}
     [[nodiscard]] HWY_INLINE bool any() const { return !hn::AllTrue(DI(), hn::Eq(bits_, hn::Zero(DI()))); }
