@@ -11,7 +11,7 @@ using cull::Answer;
 
 namespace {
 
-// A spot `gap` from reaching the lower face of a box, with the face's normal inside its cone: the first point that it
+// A spot `gap` from reaching the lower face of a box, with the face's normal inside its cone. The first point that it
 // reaches is that of its cap along the normal, in the middle third of the face.
 struct SpotBelowBox {
     cull::KernelLight spot{};
