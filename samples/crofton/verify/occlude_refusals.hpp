@@ -10,8 +10,8 @@ namespace crofton::cli {
 struct Refusals {
     const char* kind;
     std::uint64_t tried = 0;
-    // Taken, refused under another name or for another item, or the set of occluders hides something else since; or the
-    // occluder as it was before the damage is refused.
+    // Taken, refused under another name or for another item, or the set of occluders hides something else since. Also
+    // counts the occluder before the damage, if it is refused.
     std::uint64_t wrong = 0;
 };
 

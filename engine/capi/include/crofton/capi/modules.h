@@ -134,8 +134,8 @@ CROFTON_API crofton_status crofton_visible_set_items(const crofton_visible_set* 
 CROFTON_API crofton_status crofton_visible_set_statistics(const crofton_visible_set* visible,
                                                           crofton_cull_statistics* statistics);
 
-/* Limits for a camera: nothing whose ball is less than `pixels` wide in a picture so many pixels high, as it would look
- * in the middle. Fills a struct whose `size` is set; all else is 0. */
+/* Limits for a camera: nothing whose ball is less than `pixels` wide in a picture so many pixels high. It counts as in
+ * the middle. Fills a struct whose `size` is set; all else is 0. */
 CROFTON_API crofton_status crofton_draw_limits_of_camera(const crofton_camera* camera, double picture_height,
                                                          double pixels, crofton_draw_limits* limits);
 

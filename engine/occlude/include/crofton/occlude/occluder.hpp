@@ -154,8 +154,8 @@ struct LevelOptions {
     std::uint32_t max_triangles = 48;  // of an occluder
 };
 
-// All triangles of a level made of many small pieces, in occluders of kind patch that need not be flat: walls, floors
-// and ceilings that are near each other are one surface, so that no pixel is lost where they meet. Triangles are cut
+// All triangles of a level made of many small pieces, in occluders of kind patch that need not be flat. Walls, floors
+// and ceilings that are near each other are one surface: no pixel is lost where they meet. Triangles are cut
 // where a vertex of another lies on one of their sides along an axis, which covers the same points exactly. The sum of
 // areas stands for mean_shadow and covered, a quarter of it or half as of a patch. Each triangle is drawn: slower than
 // boxes, for what has none. Errors: as find_occluders(); 2^26 triangles or more; max_triangles of 0.
