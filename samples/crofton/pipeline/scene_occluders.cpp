@@ -8,12 +8,6 @@
 namespace crofton::pipeline {
 namespace {
 
-void append(TriangleMesh& to, const TriangleMesh& part) {
-    const auto first = static_cast<std::uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), part.positions.begin(), part.positions.end());
-    for (const std::uint32_t index : part.indices) to.indices.push_back(first + index);
-}
-
 // Nodes with the same meshes are of one kind; no occluders yet.
 SceneOccluders kinds_of(const scene::Scene& scene) {
     std::map<scene::NodeId, std::vector<scene::MeshId>> parts;

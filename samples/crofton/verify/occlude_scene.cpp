@@ -31,12 +31,6 @@ struct Stage {
     glm::dvec3 offset{0.0};
 };
 
-void append(TriangleMesh& to, const TriangleMesh& mesh) {
-    const auto first = static_cast<std::uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const std::uint32_t i : mesh.indices) to.indices.push_back(first + i);
-}
-
 // Few meshes of a node are one object: a house of seven parts has better occluders as a whole. Rays meet both sides of
 // a triangle, so both sides are drawn.
 Result<Stage> stage_of(assets::SceneSource& source) {
