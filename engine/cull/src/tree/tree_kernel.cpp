@@ -17,6 +17,7 @@
 
 #include "limits/limit_tests-inl.hpp"
 #include "tree/leaf_tests-inl.hpp"
+#include "tree/open_list-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
@@ -40,47 +41,25 @@ class Walk {
     // stay open. These follow when all nodes are done. The groups set the order of the answer.
     HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
         constexpr std::size_t kMaxGroups = boxtree::kWidth * boxtree::kWidth / kTreeGroup;
-        std::size_t crossing_ends[kMaxGroups + 1] = {}, cornered_ends[kMaxGroups + 1] = {}, groups = 0;
+        std::size_t one_plane_ends[kMaxGroups + 1] = {}, many_plane_ends[kMaxGroups + 1] = {}, groups = 0;
         for (std::size_t first = 0; first < entry_count; first += kTreeGroup, ++groups) {
             descend(entries + first, std::min(kTreeGroup, entry_count - first));
             list_whole();
-            crossing_ends[groups + 1] = crossing_.count;
-            cornered_ends[groups + 1] = cornered_.count;
+            one_plane_ends[groups + 1] = one_plane_leaves_.count;
+            many_plane_ends[groups + 1] = many_plane_leaves_.count;
         }
-        crossing_.pad();
-        cornered_.pad();
-        for (std::size_t i = 0; i < kLeavesAhead; ++i) prefetch_leaf(crossing_.children[i]);
+        one_plane_leaves_.pad();
+        many_plane_leaves_.pad();
+        for (std::size_t i = 0; i < kLeavesAhead; ++i) prefetch_leaf(one_plane_leaves_.children[i]);
         if (out_.runs == nullptr) copy_runs();
         for (std::size_t g = 0; g < groups; ++g) {
-            visit_crossing(crossing_ends[g], crossing_ends[g + 1]);
-            visit_cornered(cornered_ends[g], cornered_ends[g + 1]);
+            visit_one_plane_leaves(one_plane_ends[g], one_plane_ends[g + 1]);
+            visit_many_plane_leaves(many_plane_ends[g], many_plane_ends[g + 1]);
         }
     }
 
   private:
-    static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = 8;
-
-    // Children and the planes that they straddle.
-    struct List {
-        std::uint32_t* children;
-        std::uint32_t* planes;
-        std::size_t count = 0;
-
-        HWY_INLINE void append(VU which, VU their_planes, hn::Mask<DU> mask) {
-            const DU du;
-            simd::compress_store(du, which, mask, children + count);
-            count += simd::compress_store(du, their_planes, mask, planes + count);
-        }
-        HWY_INLINE void append(std::uint32_t child, std::uint32_t child_planes) {
-            children[count] = child;
-            planes[count++] = child_planes;
-        }
-        // Pads the list with its last entry, so that prefetching past the end stays in range.
-        HWY_INLINE void pad() {
-            const std::uint32_t last = count > 0 ? children[count - 1] : 0;
-            for (std::size_t i = 0; i < kLeavesAhead; ++i) children[count + i] = last;
-        }
-    };
+    static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = kOpenPadding;
 
     // Level by level; memory is asked for ahead, and lists grow without a branch on what is found.
     HWY_INLINE void descend(const std::uint64_t* entries, std::size_t count) {
@@ -103,9 +82,9 @@ class Walk {
                     continue;
                 }
             if (is_one(planes))
-                visit_crossed_once(node, planes);
+                visit_one_plane_node(node, planes);
             else
-                visit_crossed(node, planes);
+                visit_many_plane_node(node, planes);
         }
     }
 
@@ -117,13 +96,13 @@ class Walk {
         if (planes & kWhole)
             whole_[whole_count_++] = child;
         else if (child & boxtree::kLeafBit)
-            (is_one(planes) ? crossing_ : cornered_).append(child & ~boxtree::kLeafBit, planes);
+            (is_one(planes) ? one_plane_leaves_ : many_plane_leaves_).append(child & ~boxtree::kLeafBit, planes);
         else
             nodes_.append(child, planes);
     }
 
     // Below the first levels most nodes that cross a frustum cross one plane.
-    HWY_INLINE void visit_crossed_once(const boxtree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_one_plane_node(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(planes);
         const BlockPlane plane = block_plane(*in_.view, i, node);
@@ -136,7 +115,7 @@ class Walk {
         }
     }
 
-    HWY_INLINE void visit_crossed(const boxtree::Node& node, std::uint32_t planes) {
+    HWY_INLINE void visit_many_plane_node(const boxtree::Node& node, std::uint32_t planes) {
         const DU du;
         const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
         for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(du))
@@ -177,12 +156,12 @@ class Walk {
         }
         // Where every child is in a layer that the view sees, a leaf is open only because it straddles a plane.
         if (kOnce && HWY_LIKELY(node.layers_every & in_.view->layer_mask))
-            return crossing_.append(leaves, straddled, of_leaves);
+            return one_plane_leaves_.append(leaves, straddled, of_leaves);
         const auto few = hn::Eq(hn::And(straddled, hn::Sub(straddled, hn::Set(du, 1))), zero);
         auto once = hn::And(few, straddles);
         if constexpr (Limits::kAny) once = hn::And(once, hn::Lt(straddled, hn::Set(du, kLimited)));
-        crossing_.append(leaves, straddled, hn::And(of_leaves, once));
-        cornered_.append(leaves, straddled, hn::AndNot(once, of_leaves));
+        one_plane_leaves_.append(leaves, straddled, hn::And(of_leaves, once));
+        many_plane_leaves_.append(leaves, straddled, hn::AndNot(once, of_leaves));
     }
 
     HWY_INLINE void prefetch_leaf(boxtree::LeafId leaf) const {
@@ -261,14 +240,14 @@ class Walk {
                    out_.undecided_count);
     }
 
-    HWY_INLINE void visit_crossing(std::size_t begin, std::size_t end) {
+    HWY_INLINE void visit_one_plane_leaves(std::size_t begin, std::size_t end) {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
-            prefetch_leaf(crossing_.children[at + kLeavesAhead]);
-            const boxtree::LeafId id = crossing_.children[at];
+            prefetch_leaf(one_plane_leaves_.children[at + kLeavesAhead]);
+            const boxtree::LeafId id = one_plane_leaves_.children[at];
             const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
-            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(crossing_.planes[at]);
+            const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(one_plane_leaves_.planes[at]);
             const LeafPlane plane{&view.pair_planes[i], block_plane(view, i, leaf)};
             for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(DU())) {
                 const MF lanes = present(view, leaf.layers_every, leaf.layers, leaf.count, l);
@@ -277,21 +256,21 @@ class Walk {
         }
     }
 
-    HWY_INLINE void visit_cornered(std::size_t begin, std::size_t end) {
+    HWY_INLINE void visit_many_plane_leaves(std::size_t begin, std::size_t end) {
         const KernelView& view = *in_.view;
         for (std::size_t at = begin; at < end; ++at) {
-            prefetch_leaf(cornered_.children[at + kLeavesAhead]);
-            const boxtree::LeafId id = cornered_.children[at];
+            prefetch_leaf(many_plane_leaves_.children[at + kLeavesAhead]);
+            const boxtree::LeafId id = many_plane_leaves_.children[at];
             const boxtree::Leaf& leaf = in_.leaves[id];
             if (kCountStatistics) out_.boxes_tested += leaf.count;
             if constexpr (Limits::kAny)
-                if (cornered_.planes[at] & kLimited) {
-                    visit_limited_leaf(id, cornered_.planes[at] & ~kLimited);
+                if (many_plane_leaves_.planes[at] & kLimited) {
+                    visit_limited_leaf(id, many_plane_leaves_.planes[at] & ~kLimited);
                     continue;
                 }
             LeafPlane planes[KernelView::kMaxPlanes];
             unsigned count = 0;
-            for (std::uint32_t rest = cornered_.planes[at]; rest; rest &= rest - 1) {
+            for (std::uint32_t rest = many_plane_leaves_.planes[at]; rest; rest &= rest - 1) {
                 const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
                 planes[count++] = {&view.pair_planes[i], block_plane(view, i, leaf)};
             }
@@ -336,10 +315,10 @@ class Walk {
     const TreeKernelInput& in_;
     TreeKernelOutput out_;
     TurnedPlanes turned_{*in_.view, in_.axes};
-    List nodes_{work(0), work(1)};     // open, from the first on
-    List crossing_{work(2), work(3)};  // leaves that cross one plane
-    List cornered_{work(4), work(5)};  // leaves that cross several, fewer and dearer
-    std::uint32_t* whole_ = work(6);   // children that lie inside as a whole
+    OpenList nodes_{work(0), work(1)};              // open, from the first on
+    OpenList one_plane_leaves_{work(2), work(3)};   // that one plane crosses
+    OpenList many_plane_leaves_{work(4), work(5)};  // that several cross: fewer, and slower to test
+    std::uint32_t* whole_ = work(6);                // children that lie inside as a whole
     std::size_t whole_count_ = 0;
     SlotRun* runs_ = out_.runs != nullptr ? out_.runs : reinterpret_cast<SlotRun*>(work(7));
     std::uint32_t run_end_ = 0;
