@@ -47,16 +47,16 @@ template <Kind kKind>
             }
         }
         for (const auto& p : planes) {
-            float reach;
+            float projected_radius;
             if constexpr (kKind == Kind::obb) {
-                reach = 0.0f;
+                projected_radius = 0.0f;
                 for (int k = 0; k < 9; k += 3)
-                    reach +=
+                    projected_radius +=
                         std::fabs(p[0] * block.edge[k][i] + p[1] * block.edge[k + 1][i] + p[2] * block.edge[k + 2][i]);
             } else {
-                reach = std::fabs(p[0]) * h[0] + std::fabs(p[1]) * h[1] + std::fabs(p[2]) * h[2];
+                projected_radius = std::fabs(p[0]) * h[0] + std::fabs(p[1]) * h[1] + std::fabs(p[2]) * h[2];
             }
-            const float top = p[0] * c[0] + p[1] * c[1] + p[2] * c[2] + p[3] + reach;
+            const float top = p[0] * c[0] + p[1] * c[1] + p[2] * c[2] + p[3] + projected_radius;
             least = top < least ? top : least;
         }
         block.out[i] = least;

@@ -10,8 +10,8 @@ def planes_say(frustum, boxes):
     planes = frustum.planes
     outside = np.zeros(len(boxes), dtype=bool)
     for n, d in zip(planes[:, :3], planes[:, 3]):
-        reach = np.abs(boxes["axes"].astype("f8") @ n) * boxes["half_extents"]
-        outside |= (boxes["center"] - frustum.origin) @ n + d + reach.sum(axis=1) < -1e-9
+        projected_radii = np.abs(boxes["axes"].astype("f8") @ n) * boxes["half_extents"]
+        outside |= (boxes["center"] - frustum.origin) @ n + d + projected_radii.sum(axis=1) < -1e-9
     return outside
 
 

@@ -23,8 +23,8 @@ std::optional<Character::Hit> Character::sweep(const World& world, const glm::dv
     if (way == glm::dvec3(0.0)) return std::nullopt;
     const RigidTransform pose{glm::dmat3(1.0), position_};
     // The time is the share of the way.
-    const double length = glm::length(way), reach = 1.0 + 4.0 * options_.skin / length;
-    const convex::CastOptions cast_options{.duration = reach, .tolerance = 0.01 * options_.skin};
+    const double length = glm::length(way), duration = 1.0 + 4.0 * options_.skin / length;
+    const convex::CastOptions cast_options{.duration = duration, .tolerance = 0.01 * options_.skin};
     const auto found = world.cast(body_, pose, {.velocity = way}, cast_options, options_.layers);
     if (!found) return Hit{0.0, glm::dvec3(0.0)};
     if (!*found) {
@@ -33,7 +33,7 @@ std::optional<Character::Hit> Character::sweep(const World& world, const glm::dv
     }
     const glm::dvec3 away = -(*found)->normal;
     const double closing = -glm::dot(way, away);
-    const double share = (*found)->time - (closing > 0.0 ? options_.skin / closing : reach);
+    const double share = (*found)->time - (closing > 0.0 ? options_.skin / closing : duration);
     if (share >= 1.0) {
         position_ += way;
         return std::nullopt;

@@ -86,8 +86,9 @@ TEST_SUITE("boxtree/box_tree") {
     // curve.
     TEST_CASE("crowds in clumps make leaves as small as a crowd of one scale") {
         oracle::NearMisses random(8);
-        const auto place = [&](double reach) {
-            return glm::dvec3(random.number(-reach, reach), random.number(-reach, reach), random.number(-reach, reach));
+        const auto place = [&](double half_width) {
+            return glm::dvec3(random.number(-half_width, half_width), random.number(-half_width, half_width),
+                              random.number(-half_width, half_width));
         };
         std::vector<Obb> boxes;
         for (int clump = 0; clump < 2; ++clump) {

@@ -44,11 +44,11 @@ inline double touching_distance(const Obb& a, const Obb& b, const glm::dvec3& di
             const glm::dvec3 n = glm::cross(edge[p], edge[q]);
             const double speed = std::abs(glm::dot(n, direction));
             if (speed < 1e-14 * glm::length(n) || speed == 0.0) continue;
-            double reach = 0.0;
+            double projected_radius = 0.0;
             for (int k = 0; k < 6; ++k)
                 if (k != p && k != q)
-                    reach += double((k < 3 ? a : b).half_extents[k % 3]) * std::abs(glm::dot(edge[k], n));
-            distance = std::min(distance, reach / speed);
+                    projected_radius += double((k < 3 ? a : b).half_extents[k % 3]) * std::abs(glm::dot(edge[k], n));
+            distance = std::min(distance, projected_radius / speed);
         }
     return distance;
 }

@@ -25,11 +25,11 @@ bool oracle_triangle(const Obb& box, const Triangle& t) {
     for (int k = 0; k < 3; ++k) {
         const Vec3q u = rational(box.axes[k]);
         const Vec3q n = cross(rational(box.axes[(k + 1) % 3]), rational(box.axes[(k + 2) % 3]));
-        const Rational reach = abs(dot(u, n)) * Rational(double(box.half_extents[k]));
+        const Rational projected_radius = abs(dot(u, n)) * Rational(double(box.half_extents[k]));
         const Rational center = dot(n, rational(box.center));
         for (const int sign : {1, -1}) {
             std::vector<Vec3q> kept;
-            const auto over = [&](const Vec3q& p) { return Rational(sign * (dot(n, p) - center) - reach); };
+            const auto over = [&](const Vec3q& p) { return Rational(sign * (dot(n, p) - center) - projected_radius); };
             for (std::size_t i = 0; i < polygon.size(); ++i) {
                 const Vec3q &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
                 const Rational at_p = over(p), at_q = over(q);

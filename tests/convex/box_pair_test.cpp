@@ -107,10 +107,10 @@ TEST_SUITE("convex/box_pair") {
             CHECK(wrong_depth(c, cold) <= 1e-9 * c.size);
             CHECK(std::abs(warm.depth - cold.depth) <= 1.1e-4 * c.size);
             CHECK(glm::length(cold.normal) == doctest::Approx(1.0).epsilon(1e-12));
-            const double reach = 1e-9 * c.size + 1e-15 * glm::length(c.pose_a.translation);
+            const double tolerance = 1e-9 * c.size + 1e-15 * glm::length(c.pose_a.translation);
             for (int k = 0; k < cold.count; ++k) {
                 CHECK(cold.points[k].depth <= cold.depth);
-                CHECK(wrong_place(c, cold.points[k]) <= reach + 1e-6 * c.size);
+                CHECK(wrong_place(c, cold.points[k]) <= tolerance + 1e-6 * c.size);
                 edges += cold.points[k].on_a.kind == FeatureKind::edge && cold.points[k].on_b.kind == FeatureKind::edge;
             }
         }

@@ -166,12 +166,12 @@ TEST_SUITE("cull/kernel edges") {
             oracle::NearMisses& random = trial % 4 == 3 ? away : near;
             Camera camera = random.camera();
             // Far off the surface lies far from the view's origin: then the planes' own rounding counts.
-            const double reach = trial % 3 == 0 ? 1e9 : trial % 3 == 1 ? 1e4 : 1.0;
-            camera.far_distance = camera.near_distance + reach * random.number(1.0, 30.0);
-            if (camera.projection == Projection::orthographic) camera.height *= reach;
-            const double size = std::exp(random.number(reach > 1e6 || trial % 4 == 3 ? -14.0 : -7.0, 3.0));
+            const double distance = trial % 3 == 0 ? 1e9 : trial % 3 == 1 ? 1e4 : 1.0;
+            camera.far_distance = camera.near_distance + distance * random.number(1.0, 30.0);
+            if (camera.projection == Projection::orthographic) camera.height *= distance;
+            const double size = std::exp(random.number(distance > 1e6 || trial % 4 == 3 ? -14.0 : -7.0, 3.0));
             Shape shape{glm::dvec3(size), size * std::exp(random.number(-12.0, 1.0))};
-            // Lines and sheets: the block's reach, and with it the share of the normals' rounding, is small.
+            // Lines and sheets: the block's L1 radius, and with it the share of the normals' rounding, is small.
             for (int j = 0; j < 3; ++j)
                 if (random.index(2)) shape.size[j] *= 0.01;
             const std::size_t counts[] = {1, 2, 16, 16, 40, 300};
@@ -246,12 +246,14 @@ TEST_SUITE("cull/kernel edges") {
                 const bool sheared = random.index(3) == 0;
                 if (sheared) box.axes[(k + 1) % 3] = 0.9f * box.axes[k] + 0.2f * box.axes[(k + 1) % 3];
                 if (!sheared && random.index(3)) box.half_extents[(k + 1) % 3] = box.half_extents[(k + 2) % 3] = 0.0f;
-                double reach = 0.0;
+                double projected_radius = 0.0;
                 for (int j = 0; j < 3; ++j)
-                    reach += double{box.half_extents[j]} * std::fabs(glm::dot(n, glm::dvec3(box.axes[j])));
+                    projected_radius += double{box.half_extents[j]} * std::fabs(glm::dot(n, glm::dvec3(box.axes[j])));
                 const double value = glm::dot(n, box.center - frustum.origin) + plane.offset;
                 const double share = random.number(-1.0, 1.0);
-                box.center += ((random.index(2) ? reach : -reach) + share * share * share * 0.01 * reach - value) * n;
+                box.center += ((random.index(2) ? projected_radius : -projected_radius) +
+                               share * share * share * 0.01 * projected_radius - value) *
+                              n;
             }
             check_lists(boxes, {frustum});
         }

@@ -104,7 +104,7 @@ TEST_SUITE("cull/shadow_casters") {
         CHECK(!set.wants(box));
     }
 
-    TEST_CASE("above what is seen casts, beside, below and out of reach does not") {
+    TEST_CASE("above what is seen casts, beside, below and out of length does not") {
         // A floor at y = −1; the view looks along −z.
         const Frustum view =
             *frustum_of(Camera{.fov_y = 1.0, .aspect = 1.0, .near_distance = 1.0, .far_distance = 20.0});
@@ -149,9 +149,9 @@ TEST_SUITE("cull/shadow_casters") {
             const glm::dvec3 aim = scene.seen[random.index(std::uint32_t(scene.seen.size()))] - place;
             const cull::SpotLight lamp{place, glm::vec3(aim), float(random.number(0.0, 0.9)),
                                        float(random.number(0.5, 3.0) * glm::length(aim))};
-            const double reach = random.index(2) ? 1e9 : random.number(1.0, 40.0);
+            const double length = random.index(2) ? 1e9 : random.number(1.0, 40.0);
             const Sphere ball{lamp.apex, double(lamp.range)};
-            REQUIRE((kind == 0   ? set.set_sun(scene.view, scene.receivers, toward, reach)
+            REQUIRE((kind == 0   ? set.set_sun(scene.view, scene.receivers, toward, length)
                      : kind == 1 ? set.set_point(scene.view, scene.receivers, ball)
                                  : set.set_spot(scene.view, scene.receivers, lamp))
                         .has_value());
@@ -170,7 +170,7 @@ TEST_SUITE("cull/shadow_casters") {
                 bool casts = false;
                 for (const glm::dvec3& point : scene.seen) {
                     if (kind == 0) {
-                        casts = way_meets(caster, point, std::min(reach, 1e3) * toward, margin);
+                        casts = way_meets(caster, point, std::min(length, 1e3) * toward, margin);
                     } else {
                         const glm::dvec3 way = lamp.apex - point;
                         if (glm::length(way) > ball.radius) continue;
@@ -238,9 +238,9 @@ TEST_SUITE("cull/cascades") {
         oracle::NearMisses random(6);
         for (int trial = 0; trial < 300; ++trial) {
             const Camera camera = random.camera();
-            const double near = camera.near_distance + 0.3, far = camera.far_distance - 0.3, reach = 10.0;
+            const double near = camera.near_distance + 0.3, far = camera.far_distance - 0.3, length = 10.0;
             const glm::dvec3 toward = random.direction();
-            const Camera light = *cull::cascade_camera(camera, near, far, toward, reach);
+            const Camera light = *cull::cascade_camera(camera, near, far, toward, length);
             const Frustum around = *frustum_of(light);
             Camera part = camera;
             part.near_distance = near;
@@ -254,10 +254,10 @@ TEST_SUITE("cull/cascades") {
                     least[i] =
                         std::min(least[i], glm::dot(around.planes[i].normal, seen.origin + corner - around.origin) +
                                                around.planes[i].offset);
-            // Every side touches what is seen, but for the near one, which is the casters' reach away.
+            // Every side touches what is seen, but for the near one, which is the casters' distance away.
             for (std::size_t i = 0; i < 6; ++i) {
                 CHECK(least[i] >= 0.0);
-                CHECK(least[i] <= (i == 4 ? reach : 0.0) + 1e-5);
+                CHECK(least[i] <= (i == 4 ? length : 0.0) + 1e-5);
             }
             // No rectangle turned otherwise is smaller.
             for (int turn = 0; turn < 90; ++turn) {

@@ -68,10 +68,10 @@ crofton::Frustum far_from_the_origin(const glm::dvec3& eye, const glm::dmat4& pr
 // −1 clearly outside, 1 clearly inside, 0 too near the boundary for rounding to tell; from the clip inequalities alone.
 int side(const glm::dvec4& clip, double near_z) {
     const double w = clip.w, margin = 1e-9 * std::abs(w);
-    double slack = w;
+    double least = w;
     for (const double s : {w + clip.x, w - clip.x, w + clip.y, w - clip.y, clip.z - near_z * w, w - clip.z})
-        slack = std::min(slack, s);
-    return slack > margin ? 1 : slack < -margin ? -1 : 0;
+        least = std::min(least, s);
+    return least > margin ? 1 : least < -margin ? -1 : 0;
 }
 
 bool inside(const crofton::Frustum& frustum, const glm::dvec3& point) {

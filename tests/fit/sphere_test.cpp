@@ -18,7 +18,7 @@ Result<Sphere> sphere_of(const Points& points) {
     return fit::minimal_sphere(points);
 }
 
-double reach(const Points& points, const glm::dvec3& center) {
+double farthest(const Points& points, const glm::dvec3& center) {
     double r = 0.0;
     for (const glm::dvec3& p : points) r = std::max(r, glm::distance(p, center));
     return r;
@@ -29,10 +29,10 @@ double by_descent(const Points& points) {
     std::mt19937_64 random(2);
     std::normal_distribution<double> normal;
     glm::dvec3 center = points[0];
-    double best = reach(points, center);
+    double best = farthest(points, center);
     for (double step = 2.0; step > 1e-9; step *= 0.995) {
         const glm::dvec3 next = center + step * best * glm::dvec3(normal(random), normal(random), normal(random));
-        if (const double r = reach(points, next); r < best) best = r, center = next;
+        if (const double r = farthest(points, next); r < best) best = r, center = next;
     }
     return best;
 }
@@ -78,7 +78,7 @@ TEST_SUITE("fit/sphere") {
             }
             const auto sphere = sphere_of(points);
             REQUIRE(sphere.has_value());
-            CHECK(reach(points, sphere->center) <= sphere->radius);
+            CHECK(farthest(points, sphere->center) <= sphere->radius);
             CHECK(sphere->radius <= by_descent(points) * (1.0 + 1e-8));
         }
     }

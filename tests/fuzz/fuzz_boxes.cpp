@@ -76,14 +76,14 @@ bool box_meets_triangle(const Obb& box, const Triangle& triangle) {
         // |dot(n, x − center)| ≤ h |dot(n, axis_k)| with n across the two other axes.
         const oracle::Vec3q n =
             oracle::cross(oracle::rational(box.axes[(k + 1) % 3]), oracle::rational(box.axes[(k + 2) % 3]));
-        const oracle::Rational reach =
+        const oracle::Rational projected_radius =
             abs(oracle::dot(n, oracle::rational(box.axes[k]))) * oracle::Rational(double(box.half_extents[k]));
         const auto at = [&](const glm::dvec3& p) {
             return oracle::Rational(side *
                                     oracle::dot(n, oracle::minus(oracle::rational(p), oracle::rational(box.center))));
         };
         const oracle::Rational fa = at(triangle[0]);
-        rows.push_back({at(triangle[1]) - fa, at(triangle[2]) - fa, fa + reach});
+        rows.push_back({at(triangle[1]) - fa, at(triangle[2]) - fa, fa + projected_radius});
     };
     for (int k = 0; k < 3; ++k)
         for (const int side : {-1, 1}) volume_row(k, side);

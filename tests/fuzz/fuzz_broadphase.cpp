@@ -14,12 +14,13 @@ using fuzz::demand;
 // Whether the aligned bounds meet, in rationals.
 bool bounds_meet(const Obb& a, const Obb& b) {
     for (int i = 0; i < 3; ++i) {
-        oracle::Rational reach = 0;
+        oracle::Rational half_size = 0;
         for (const Obb* box : {&a, &b})
             for (int k = 0; k < 3; ++k)
-                reach +=
+                half_size +=
                     oracle::Rational(double(box->half_extents[k])) * abs(oracle::Rational(double(box->axes[k][i])));
-        if (abs(oracle::Rational(oracle::Rational(a.center[i]) - oracle::Rational(b.center[i]))) > reach) return false;
+        if (abs(oracle::Rational(oracle::Rational(a.center[i]) - oracle::Rational(b.center[i]))) > half_size)
+            return false;
     }
     return true;
 }

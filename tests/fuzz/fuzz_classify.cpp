@@ -19,10 +19,10 @@ Verdict conservative_of_ball(const Frustum& frustum, const Sphere& ball) {
     for (const Plane& plane : frustum.view()) {
         const mpq_class value = oracle::plane_value(
             frustum, plane, {mpq_class(ball.center.x), mpq_class(ball.center.y), mpq_class(ball.center.z)});
-        mpq_class reach = 0;
-        for (int k = 0; k < 3; ++k) reach += mpq_class(plane.normal[k]) * mpq_class(plane.normal[k]) * squared;
-        if (value < 0 && value * value > reach) return Verdict::outside;
-        inside = inside && value >= 0 && value * value >= reach;
+        mpq_class squared_radius = 0;
+        for (int k = 0; k < 3; ++k) squared_radius += mpq_class(plane.normal[k]) * mpq_class(plane.normal[k]) * squared;
+        if (value < 0 && value * value > squared_radius) return Verdict::outside;
+        inside = inside && value >= 0 && value * value >= squared_radius;
     }
     return inside ? Verdict::inside : Verdict::straddling;
 }

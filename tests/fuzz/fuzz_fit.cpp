@@ -69,10 +69,10 @@ bool holds(const Obb& outer, const Obb& inner) {
     using namespace oracle;
     for (int k = 0; k < 3; ++k) {
         const Vec3q n = cross(rational(outer.axes[(k + 1) % 3]), rational(outer.axes[(k + 2) % 3]));
-        Rational reach = abs(oracle::dot(n, minus(rational(inner.center), rational(outer.center))));
+        Rational farthest = abs(oracle::dot(n, minus(rational(inner.center), rational(outer.center))));
         for (int j = 0; j < 3; ++j)
-            reach += Rational(double(inner.half_extents[j])) * abs(oracle::dot(n, rational(inner.axes[j])));
-        if (reach > Rational(double(outer.half_extents[k])) * abs(oracle::dot(n, rational(outer.axes[k]))))
+            farthest += Rational(double(inner.half_extents[j])) * abs(oracle::dot(n, rational(inner.axes[j])));
+        if (farthest > Rational(double(outer.half_extents[k])) * abs(oracle::dot(n, rational(outer.axes[k]))))
             return false;
     }
     return true;

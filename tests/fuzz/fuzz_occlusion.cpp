@@ -17,9 +17,9 @@ Obb box_before(fuzz::Shapes& in, const Camera& camera, double depth) {
     Obb box = in.box();
     const glm::dvec3 side = glm::normalize(glm::cross(camera.forward, camera.up));
     const glm::dvec3 above = glm::cross(side, camera.forward);
-    const double reach = 0.03 * depth;
+    const double half_width = 0.03 * depth;
     const double across = in.grid(), up = in.grid();
-    box.center = camera.position + depth * camera.forward + reach * (across * side + up * above);
+    box.center = camera.position + depth * camera.forward + half_width * (across * side + up * above);
     return validate(box) ? box : Obb{};
 }
 
@@ -100,7 +100,7 @@ void check_queries(const occlude::OcclusionBuffer& buffer, const std::vector<Obb
     occlude::VisibleSet visible;
     occlude::find_visible(boxes, {}, buffer, visible);
     demand(std::equal(expected.begin(), expected.end(), visible.ids().begin(), visible.ids().end()), "a list's answer");
-    // A node's bound may be hidden where a box's own filter leaves a doubt: never fewer hidden, never one that is seen.
+    // A node's bound may be hidden where a box's own filter cannot decide: never fewer hidden, never one that is seen.
     const auto tree = boxtree::BoxTree::build(boxes);
     demand(tree.has_value(), "a tree");
     occlude::find_visible(*tree, buffer, visible);

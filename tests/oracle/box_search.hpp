@@ -47,8 +47,8 @@ inline BoxSearch search_boxes(std::span<const glm::dvec3> points, const crofton:
         const glm::dvec3 e = box_edges(points, frame);
         if (const double value = criterion(e.x, e.y, e.z); value < best.value) best = {value, frame};
     };
-    const double reach = std::tan(std::acos(-1.0) / 8.0);
-    const auto at = [&](int i) { return reach * (2.0 * (i + 0.5) / steps - 1.0); };
+    const double most = std::tan(std::acos(-1.0) / 8.0);
+    const auto at = [&](int i) { return most * (2.0 * (i + 0.5) / steps - 1.0); };
     for (int i = 0; i < steps; ++i)
         for (int j = 0; j < steps; ++j)
             for (int k = 0; k < steps; ++k) look(frame_of_quaternion(1.0, at(i), at(j), at(k)));

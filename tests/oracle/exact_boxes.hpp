@@ -41,10 +41,10 @@ inline bool boxes_meet_by_axes(const Obb& a, const Obb& b) {
     for (std::size_t p = 0; p < 6; ++p)
         for (std::size_t q = p + 1; q < 6; ++q) {
             const Vec3q n = cross(edge[p], edge[q]);
-            Rational reach = 0;
+            Rational projected_radius = 0;
             for (std::size_t k = 0; k < 6; ++k)
-                if (k != p && k != q) reach += half[k] * abs(dot(edge[k], n));
-            if (abs(dot(offset, n)) > reach) return false;
+                if (k != p && k != q) projected_radius += half[k] * abs(dot(edge[k], n));
+            if (abs(dot(offset, n)) > projected_radius) return false;
         }
     return true;
 }
@@ -89,14 +89,15 @@ inline bool boxes_meet_by_integers(const Obb& a, const Obb& b) {
         for (int q = p + 1; q < 6; ++q) {
             for (int i = 0; i < 3; ++i)
                 n[i] = edge[p][(i + 1) % 3] * edge[q][(i + 2) % 3] - edge[p][(i + 2) % 3] * edge[q][(i + 1) % 3];
-            mpz_class reach = 0, distance = offset[0] * n[0] + offset[1] * n[1] + offset[2] * n[2];
+            mpz_class projected_radius = 0, distance = offset[0] * n[0] + offset[1] * n[1] + offset[2] * n[2];
             for (int k = 0; k < 6; ++k)
                 if (k != p && k != q)
-                    reach += half[k] * abs(mpz_class(edge[k][0] * n[0] + edge[k][1] * n[1] + edge[k][2] * n[2]));
+                    projected_radius +=
+                        half[k] * abs(mpz_class(edge[k][0] * n[0] + edge[k][1] * n[1] + edge[k][2] * n[2]));
             // In units of 2^-(2 axes + centers) and 2^-(3 axes + halves).
             distance = abs(distance) << static_cast<unsigned>(axes.bits() + halves.bits());
-            reach <<= static_cast<unsigned>(centers.bits());
-            if (distance > reach) return false;
+            projected_radius <<= static_cast<unsigned>(centers.bits());
+            if (distance > projected_radius) return false;
         }
     return true;
 }
@@ -113,11 +114,11 @@ inline bool boxes_meet_by_vertices(const Obb& a, const Obb& b) {
         for (int k = 0; k < 3; ++k) {
             const Vec3q u = rational(box->axes[k]);
             Vec3q n = cross(rational(box->axes[(k + 1) % 3]), rational(box->axes[(k + 2) % 3]));
-            const Rational reach = abs(dot(u, n)) * Rational(double(box->half_extents[k]));
+            const Rational projected_radius = abs(dot(u, n)) * Rational(double(box->half_extents[k]));
             const Rational center = dot(n, rational(box->center));
-            sides.push_back({n, center + reach});
+            sides.push_back({n, center + projected_radius});
             for (Rational& c : n) c = -c;
-            sides.push_back({n, reach - center});
+            sides.push_back({n, projected_radius - center});
         }
     for (std::size_t i = 0; i < 12; ++i)
         for (std::size_t j = i + 1; j < 12; ++j)

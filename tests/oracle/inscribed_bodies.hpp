@@ -29,10 +29,10 @@ inline std::vector<HalfSpaceQ> half_spaces_of(const Obb& box) {
     const Vec3q center = rational(box.center);
     for (int k = 0; k < 3; ++k) {
         Vec3q n = cross(rational(box.axes[(k + 1) % 3]), rational(box.axes[(k + 2) % 3]));
-        const Rational reach = abs(dot(n, rational(box.axes[k]))) * Rational(double(box.half_extents[k]));
-        sides.push_back({n, dot(n, center) + reach});
+        const Rational projected_radius = abs(dot(n, rational(box.axes[k]))) * Rational(double(box.half_extents[k]));
+        sides.push_back({n, dot(n, center) + projected_radius});
         for (Rational& c : n) c = -c;
-        sides.push_back({n, dot(n, center) + reach});
+        sides.push_back({n, dot(n, center) + projected_radius});
     }
     return sides;
 }

@@ -15,7 +15,7 @@ inline bool lies_in(const boxtree::Structure& structure, boxtree::NodeId n, unsi
     const boxtree::Node& node = structure.nodes()[n];
     const boxtree::Axes& axes = structure.axes()[node.axes];
     for (unsigned k = 0; k < 3; ++k) {
-        long double middle = 0.0L, reach = 0.0L, size = 0.0L;
+        long double middle = 0.0L, projected_radius = 0.0L, size = 0.0L;
         for (int j = 0; j < 3; ++j) {
             const long double away = static_cast<long double>(box.center[j]) - node.origin[j];
             middle += away * axes.rows[k][j];
@@ -24,11 +24,11 @@ inline bool lies_in(const boxtree::Structure& structure, boxtree::NodeId n, unsi
         for (int i = 0; i < 3; ++i) {
             long double edge = 0.0L;
             for (int j = 0; j < 3; ++j) edge += static_cast<long double>(box.axes[i][j]) * axes.rows[k][j];
-            reach += std::abs(edge) * box.half_extents[i];
+            projected_radius += std::abs(edge) * box.half_extents[i];
         }
-        const long double slack = 0x1p-44L * (size + reach), unit = node.unit;
-        if (unit * boxtree::low_of(node, lane, k) > middle - reach + slack) return false;
-        if (unit * boxtree::high_of(node, lane, k) < middle + reach - slack) return false;
+        const long double error_bound = 0x1p-44L * (size + projected_radius), unit = node.unit;
+        if (unit * boxtree::low_of(node, lane, k) > middle - projected_radius + error_bound) return false;
+        if (unit * boxtree::high_of(node, lane, k) < middle + projected_radius - error_bound) return false;
     }
     return true;
 }
@@ -53,14 +53,15 @@ inline bool holds_all(const boxtree::BoxTree& tree) {
                 if (tree.structure().slot_of(item) != l * boxtree::kWidth + i) return false;
                 const Aabb exact = aabb_of(tree.boxes()[item]);
                 // aabb_of itself is rounded outward by a step.
-                const double slack = 0x1p-50 * (glm::length(exact.min) + glm::length(exact.max));
+                const double error_bound = 0x1p-50 * (glm::length(exact.min) + glm::length(exact.max));
                 unsigned at = lane;
                 for (boxtree::NodeId up = n; up != boxtree::kNone;
                      at = tree.structure().nodes()[up].lane_in_parent, up = tree.structure().nodes()[up].parent) {
                     if (!lies_in(tree.structure(), up, at, tree.boxes()[item])) return false;
                     const Aabb bounds = tree.structure().child_bounds(up, at);
                     for (int j = 0; j < 3; ++j)
-                        if (bounds.min[j] > exact.min[j] + slack || bounds.max[j] < exact.max[j] - slack) return false;
+                        if (bounds.min[j] > exact.min[j] + error_bound || bounds.max[j] < exact.max[j] - error_bound)
+                            return false;
                 }
             }
         }

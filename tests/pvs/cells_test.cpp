@@ -50,10 +50,10 @@ TEST_SUITE("pvs/cells") {
             for (int i = 0; i < 1000; ++i) {
                 const glm::dvec3 p = sampling::box_point(bounds, random.point<3>());
                 const Aabb box = cells.box(cells.find(p));
-                const double slack = 1e-15 * offset + 1e-12;
+                const double tolerance = 1e-15 * offset + 1e-12;
                 for (int k = 0; k < 3; ++k) {
-                    CHECK(p[k] >= box.min[k] - slack);
-                    CHECK(p[k] <= box.max[k] + slack);
+                    CHECK(p[k] >= box.min[k] - tolerance);
+                    CHECK(p[k] <= box.max[k] + tolerance);
                 }
             }
             CHECK(cells.find(bounds.max) == 230);

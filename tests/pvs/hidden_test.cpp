@@ -93,9 +93,9 @@ double least_depth(const Obb& body, const Aabb& cell, const Obb& object) {
     return least;
 }
 
-bool is_near(const Obb& body, const Aabb& cell, double reach) {
+bool is_near(const Obb& body, const Aabb& cell, double distance) {
     const Aabb bounds = aabb_of(body);
-    return intersects(Aabb{bounds.min - reach, bounds.max + reach}, cell);
+    return intersects(Aabb{bounds.min - distance, bounds.max + distance}, cell);
 }
 
 glm::dvec3 point_in(const Obb& box, sampling::Random& random) {
@@ -116,7 +116,7 @@ TEST_SUITE("pvs/hidden") {
                 const Walls walls = random_walls(seed, 14, 40, o);
                 const Aabb bounds{o + glm::dvec3(-12.0, 0.0, -12.0), o + glm::dvec3(12.0, 3.0, 12.0)};
                 const Cells cells = Cells::grid(bounds, {6, 2, 6}).value();
-                const Pvs pvs = finished(walls, cells, {.near_reach = 0.1, .halvings = seed % 2 ? 0u : 4u});
+                const Pvs pvs = finished(walls, cells, {.near_radius = 0.1, .halvings = seed % 2 ? 0u : 4u});
                 sampling::Random random(seed);
                 for (std::size_t c = 0; c < cells.size(); ++c)
                     for (std::uint32_t i = 0; i < 40 && pvs.kind(c) == CellKind::open; ++i) {
@@ -157,9 +157,9 @@ TEST_SUITE("pvs/hidden") {
         occlude::FoundOccluder wall;
         wall.box = subject.boxes[1];
         wall.piece_bounds = aabb_of(wall.box);
-        const auto state = [&](const occlude::FoundOccluder& found, const glm::dmat3& linear, double near_reach) {
+        const auto state = [&](const occlude::FoundOccluder& found, const glm::dmat3& linear, double near_radius) {
             const std::vector<PlacedOccluder> placed = {{&found, {linear, glm::dvec3(0.0)}}};
-            return Pvs::finish(bake, placed, {.near_reach = near_reach}).value().state(0, 0);
+            return Pvs::finish(bake, placed, {.near_radius = near_radius}).value().state(0, 0);
         };
         CHECK(state(wall, glm::dmat3(1.0), 0.5) == PairState::hidden);
         CHECK(state(wall, glm::dmat3(1.0), 2.9) == PairState::hidden);
@@ -189,7 +189,7 @@ TEST_SUITE("pvs/hidden") {
 
         const std::vector<PlacedOccluder> none = {{nullptr, {}}};
         CHECK(Pvs::finish(bake, none).value().state(0, 0) == PairState::unseen);
-        CHECK(error_of(Pvs::finish(bake, {}, {.near_reach = -1.0})).code == ErrorCode::invalid_argument);
+        CHECK(error_of(Pvs::finish(bake, {}, {.near_radius = -1.0})).code == ErrorCode::invalid_argument);
         CHECK(error_of(Pvs::finish(bake, {}, {.halvings = 99})).code == ErrorCode::invalid_argument);
     }
 

@@ -85,17 +85,17 @@ glm::mat4 some_matrix(Projection projection = Projection::perspective, double fa
 }
 
 // Snapped coordinates put many vertices on planes and make many degenerate triangles.
-glm::vec3 random_point(std::mt19937_64& random, float reach, float snap) {
-    std::uniform_real_distribution<float> coordinate(-reach, reach);
+glm::vec3 random_point(std::mt19937_64& random, float half_width, float snap) {
+    std::uniform_real_distribution<float> coordinate(-half_width, half_width);
     glm::vec3 p(coordinate(random), coordinate(random), coordinate(random));
     return snap > 0.0f ? glm::round(p / snap) * snap : p;
 }
 
-Soup random_soup(std::uint64_t seed, int count, float reach, float size, float snap) {
+Soup random_soup(std::uint64_t seed, int count, float half_width, float size, float snap) {
     std::mt19937_64 random(seed);
     Soup soup;
     for (int i = 0; i < count; ++i) {
-        const glm::vec3 base = random_point(random, reach, snap);
+        const glm::vec3 base = random_point(random, half_width, snap);
         soup.triangle(base, base + random_point(random, size, snap), base + random_point(random, size, snap));
     }
     return soup;
@@ -152,9 +152,9 @@ TEST_SUITE("geometry/clip_space") {
             camera.projection = i % 3 == 0 ? Projection::orthographic : Projection::perspective;
             camera.far_distance = i % 5 == 0 ? std::numeric_limits<double>::infinity() : 50.0;
             if (camera.projection == Projection::orthographic) camera.far_distance = 50.0;
-            const double reach = std::exp2(6.0 * unit(random));
+            const double half_width = std::exp2(6.0 * unit(random));
             const glm::dvec3 place(60.0 * unit(random), 60.0 * unit(random), 40.0 * unit(random) - 25.0);
-            const glm::mat4 matrix = ModelToClip(camera)(glm::dmat3(reach), camera.position + place);
+            const glm::mat4 matrix = ModelToClip(camera)(glm::dmat3(half_width), camera.position + place);
             // Snapped corners land on the planes of cameras that look along an axis.
             const Soup soup = random_soup(static_cast<std::uint64_t>(i), 12, 2.0f, 2.0f, i % 2 == 0 ? 0.5f : 0.0f);
             Aabb bounds;

@@ -54,9 +54,9 @@ TEST_SUITE("triangulate/triangles_passed") {
         REQUIRE(b.has_value());
         // Every camera whose frustum may reach the façade stands in this box.
         const double half_far = camera.far_distance * std::tan(camera.fov_y / 2);
-        const double reach = std::sqrt(camera.far_distance * camera.far_distance +
-                                       half_far * half_far * (1.0 + camera.aspect * camera.aspect));
-        const glm::dvec3 low(-reach, -reach, -reach), size(12.0 + 2 * reach, 8.0 + 2 * reach, 2 * reach);
+        const double radius = std::sqrt(camera.far_distance * camera.far_distance +
+                                        half_far * half_far * (1.0 + camera.aspect * camera.aspect));
+        const glm::dvec3 low(-radius, -radius, -radius), size(12.0 + 2 * radius, 8.0 + 2 * radius, 2 * radius);
         const double area = oracle::twice_polygon_area(polygon).get_d() / 2;
         struct Run {
             triangulate::Triangulation result;

@@ -47,14 +47,14 @@ BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle, const 
     for (int j = 0; j < 3; ++j) center[j] = box.center[j] - middle[j];
     BuildItem item{};
     for (unsigned k = 0; k < 3; ++k) {
-        double reach = 0.0;
+        double projected_radius = 0.0;
         for (int i = 0; i < 3; ++i) {
             const double edge[3] = {box.axes[i].x, box.axes[i].y, box.axes[i].z};
-            reach += std::fabs(along(axes, k, edge)) * double{box.half_extents[i]};
+            projected_radius += std::fabs(along(axes, k, edge)) * double{box.half_extents[i]};
         }
         const double at = along(axes, k, center);
-        item.extreme[k] = static_cast<float>(reach - at);
-        item.extreme[4 + k] = static_cast<float>(at + reach);
+        item.extreme[k] = static_cast<float>(projected_radius - at);
+        item.extreme[4 + k] = static_cast<float>(at + projected_radius);
     }
     item.set_id(id);
     return item;

@@ -76,7 +76,7 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest) {
     leaf.position_unit = std::max(leaf.edge_unit, unit_for(farthest, 14));  // boxes may stray as far again
     leaf.per_quantum = 0x1p14f / leaf.position_unit;
     leaf.edge_shift = edge_shift_of(leaf);
-    leaf.reach = 0.0f;
+    leaf.l1_radius = 0.0f;
     leaf.rounding = rounding_of(leaf);
 }
 
@@ -89,12 +89,12 @@ bool is_frame(const Leaf& leaf) {
 bool write_lane(Leaf& leaf, unsigned lane, const Obb& box) {
     // Scaling by a power of two is exact, and so is a product of two floats in double.
     const double per_position = 1.0 / double{leaf.position_unit}, per_edge = 1.0 / double{leaf.edge_unit};
-    double position[3], edge[9], reach = 0.0;
+    double position[3], edge[9], l1_radius = 0.0;
     bool fits = true;
     for (int j = 0; j < 3; ++j) {
         position[j] = nearest((box.center[j] - leaf.origin[j]) * per_position);
         fits = fits && std::fabs(position[j]) <= kMost;
-        reach += std::fabs(position[j]);
+        l1_radius += std::fabs(position[j]);
     }
     for (int k = 0; k < 3; ++k) {
         const double half = double{box.half_extents[k]} * per_edge;
@@ -111,7 +111,7 @@ bool write_lane(Leaf& leaf, unsigned lane, const Obb& box) {
     leaf.z_edge2_z[lane] = pair(position[2], edge[8]);
     leaf.edge01_z[lane] = pair(edge[2], edge[5]);
     for (int k = 0; k < 3; ++k) leaf.edge_xy[k][lane] = pair(edge[3 * k], edge[3 * k + 1]);
-    leaf.reach = std::max(leaf.reach, static_cast<float>(reach) * leaf.position_unit);  // exact: reach < 2^17
+    leaf.l1_radius = std::max(leaf.l1_radius, static_cast<float>(l1_radius) * leaf.position_unit);  // exact: below 2^17
     leaf.rounding = rounding_of(leaf);
     return true;
 }
@@ -139,7 +139,7 @@ double size_of(const double* vector) {
 }
 
 // What bounds along the axes may be off by, seen from the node's origin.
-double slack_of(const Axes& axes, const Node& node, const Aabb& bounds) {
+double error_bound_of(const Axes& axes, const Node& node, const Aabb& bounds) {
     return axes.rounding * (size_of(node.origin) + size_of(&bounds.min.x) + size_of(&bounds.max.x));
 }
 
@@ -153,11 +153,11 @@ void fit_frame(Node& node, const Aabb& whole, const Axes& axes) {
         for (unsigned k = 0; k < 3; ++k)
             for (int j = 0; j < 3; ++j) node.origin[j] += axes.rows[k][j] * center[static_cast<int>(k)];
         for (int j = 0; j < 3; ++j) farthest = std::max(farthest, whole.half_extents()[j]);
-        farthest += 2.0 * slack_of(axes, node, whole);
+        farthest += 2.0 * error_bound_of(axes, node, whole);
     }
     node.unit = unit_for(farthest * (1.0 + 0x1p-10), 14);
     node.per_quantum = 0x1p14f / node.unit;
-    node.reach = 0.0f;
+    node.l1_radius = 0.0f;
     node.rounding = rounding_of(node);
 }
 
@@ -166,26 +166,26 @@ bool is_frame(const Node& node) {
 }
 
 bool write_lane(Node& node, unsigned lane, const Aabb& bounds, const Axes& axes) {
-    int middle[3] = {}, half[3] = {-32767, -32767, -32767}, reach = 0;
+    int middle[3] = {}, half[3] = {-32767, -32767, -32767}, l1_radius = 0;
     if (!bounds.is_empty()) {
-        const double per_unit = 1.0 / double{node.unit}, slack = slack_of(axes, node, bounds);
+        const double per_unit = 1.0 / double{node.unit}, error_bound = error_bound_of(axes, node, bounds);
         for (int j = 0; j < 3; ++j) {
             const double origin = along(axes, static_cast<unsigned>(j), node.origin);
-            const double from = (bounds.min[j] - origin - slack) * per_unit,
-                         to = (bounds.max[j] - origin + slack) * per_unit;
+            const double from = (bounds.min[j] - origin - error_bound) * per_unit,
+                         to = (bounds.max[j] - origin + error_bound) * per_unit;
             // Half a unit outward, then to the nearest; the 0.01 is for the roundings, 2^-38 units at most.
             const double low = nearest(from - 0.51), high = nearest(to + 0.51);
             if (!(std::fabs(low) < kMost && std::fabs(high) < kMost)) return false;
             const int first = static_cast<int>(low), last = static_cast<int>(high);
             middle[j] = (first + last) / 2;
             half[j] = std::max(last - middle[j], middle[j] - first);
-            reach += std::abs(middle[j]) + half[j];
+            l1_radius += std::abs(middle[j]) + half[j];
         }
     }
     node.middle_xy[lane] = pair_of(middle[0], middle[1]);
     node.middle_half_z[lane] = pair_of(middle[2], half[2]);
     node.half_xy[lane] = pair_of(half[0], half[1]);
-    node.reach = std::max(node.reach, static_cast<float>(reach) * node.unit);  // exact: reach < 2^17
+    node.l1_radius = std::max(node.l1_radius, static_cast<float>(l1_radius) * node.unit);  // exact: below 2^17
     node.rounding = rounding_of(node);
     return true;
 }
@@ -196,9 +196,9 @@ Aabb around(const Axes& axes, const double* origin, const double (&low)[3], cons
     Aabb result;
     for (int j = 0; j < 3; ++j) {
         const double middle = along(axes, static_cast<unsigned>(j), origin);
-        const double slack = (std::fabs(middle) + std::fabs(low[j]) + std::fabs(high[j])) * 0x1p-52 + off;
-        result.min[j] = middle + low[j] - slack;
-        result.max[j] = middle + high[j] + slack;
+        const double error_bound = (std::fabs(middle) + std::fabs(low[j]) + std::fabs(high[j])) * 0x1p-52 + off;
+        result.min[j] = middle + low[j] - error_bound;
+        result.max[j] = middle + high[j] + error_bound;
     }
     return result;
 }
@@ -234,9 +234,9 @@ void bounds_of_lanes(const Node& node, const Axes& axes, LaneBounds& bounds) {
         const double middle = along(axes, j, node.origin), middle_size = std::fabs(middle);
         for (unsigned lane = 0; lane < kWidth; ++lane) {
             const double from = bounds.min[j][lane], to = bounds.max[j][lane];
-            const double slack = (middle_size + std::fabs(from) + std::fabs(to)) * 0x1p-52 + off[lane];
-            bounds.min[j][lane] = middle + from - slack;
-            bounds.max[j][lane] = middle + to + slack;
+            const double error_bound = (middle_size + std::fabs(from) + std::fabs(to)) * 0x1p-52 + off[lane];
+            bounds.min[j][lane] = middle + from - error_bound;
+            bounds.max[j][lane] = middle + to + error_bound;
         }
     }
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -265,11 +265,11 @@ Aabb bounds_of(const Leaf& leaf, const LeafExtent& extent) {
     if (leaf.count == 0) return {};
     // Positions are within half a unit of the truth (and the difference's rounding, 2^-38 units), and so is each of the
     // three edges' components.
-    const double slack = 0.51 * double{leaf.position_unit} + 1.51 * double{leaf.edge_unit};
+    const double error_bound = 0.51 * double{leaf.position_unit} + 1.51 * double{leaf.edge_unit};
     double low[3], high[3];
     for (int j = 0; j < 3; ++j) {
-        low[j] = double{extent.low[j]} - std::fabs(double{extent.low[j]}) * 0x1p-23 - slack;
-        high[j] = double{extent.high[j]} + std::fabs(double{extent.high[j]}) * 0x1p-23 + slack;
+        low[j] = double{extent.low[j]} - std::fabs(double{extent.low[j]}) * 0x1p-23 - error_bound;
+        high[j] = double{extent.high[j]} + std::fabs(double{extent.high[j]}) * 0x1p-23 + error_bound;
     }
     return around(Axes{}, leaf.origin, low, high, 0.0);
 }

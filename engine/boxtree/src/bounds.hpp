@@ -18,8 +18,8 @@ void fit_frame(Leaf& leaf, const Aabb& centers, double longest_edge);
 // Does the frame keep the promises that Leaf states?
 [[nodiscard]] bool is_frame(const Leaf& leaf);
 
-// Puts a box into a lane; the leaf's frame stays, its reach grows where needed. False, and nothing is written, if the
-// box does not fit into the frame.
+// Puts a box into a lane; the leaf's frame stays, its L1 radius grows where needed. False, and nothing is written, if
+// the box does not fit into the frame.
 [[nodiscard]] bool write_lane(Leaf& leaf, unsigned lane, const Obb& box);
 void write_layers(Leaf& leaf, unsigned lane, std::uint32_t layers);
 void clear_lane(Leaf& leaf, unsigned lane);
@@ -30,7 +30,7 @@ void clear_lane(Leaf& leaf, unsigned lane);
 void fit_frame(Node& node, const Aabb& whole, const Axes& axes);
 [[nodiscard]] bool is_frame(const Node& node);
 
-// Puts a child's bound into a lane; the node's frame stays, its reach grows where needed. False, and nothing is
+// Puts a child's bound into a lane; the node's frame stays, its L1 radius grows where needed. False, and nothing is
 // written, if it does not fit.
 [[nodiscard]] bool write_lane(Node& node, unsigned lane, const Aabb& bounds, const Axes& axes);
 void clear_lane(Node& node, unsigned lane);

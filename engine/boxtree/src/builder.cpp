@@ -55,14 +55,14 @@ ItemId Builder::item_of(std::uint64_t key) {
 // Large boxes first, by powers of two of their size in cells of the mean spacing: beside small ones they would blow up
 // bounds. Then a Z-order curve through the centres.
 std::uint64_t Builder::key_of(ItemId id, const Obb& box) const {
-    float reach = 0.0f;
+    float half_size = 0.0f;
     for (int j = 0; j < 3; ++j) {
         float sum = 0.0f;
         for (int k = 0; k < 3; ++k) sum += std::fabs(box.axes[k][j]) * box.half_extents[k];
-        reach = std::max(reach, sum);
+        half_size = std::max(half_size, sum);
     }
     std::uint64_t size_class = 0;
-    for (float limit = 4.0f * cell_; reach > limit && size_class < 15; limit *= 2.0f) ++size_class;
+    for (float limit = 4.0f * cell_; half_size > limit && size_class < 15; limit *= 2.0f) ++size_class;
     return ((15 - size_class) << 3 * kFineBits | z_order(cell_of(box.center), kFineBits)) << kItemBits | id;
 }
 

@@ -98,7 +98,7 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
     const auto per_position = hn::Set(d, 1.0 / static_cast<double>(leaf.position_unit)),
                per_edge = hn::Set(d, 1.0 / static_cast<double>(leaf.edge_unit)), most = hn::Set(d, 32767.0),
                magic = hn::Set(d, 0x1.8p52);  // added and taken away again it leaves the nearest integer
-    auto reach = hn::Zero(d);
+    auto l1_radius = hn::Zero(d);
     bool fits = true;
     for (std::size_t l = 0; l < kWidth; l += hn::Lanes(d)) {
         const auto used = hn::FirstN(d, leaf.count > l ? leaf.count - l : 0);
@@ -115,7 +115,7 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
             sum = hn::Add(sum, hn::Abs(position[j]));
             half[j] = hn::Mul(hn::PromoteTo(d, hn::Load(df, rows.half[j] + l)), per_edge);
         }
-        reach = hn::Max(reach, sum);
+        l1_radius = hn::Max(l1_radius, sum);
         // Scaling by a power of two is exact, and so is a product of two floats in double.
         const auto edge = [&](std::size_t k, std::size_t j) HWY_ATTR {
             return rounded(hn::Mul(hn::PromoteTo(d, hn::Load(df, rows.axes[3 * k + j] + l)), half[k]));
@@ -126,7 +126,8 @@ HWY_INLINE bool compress(const Sixteen& boxes, Leaf& leaf) {
         for (std::size_t k = 0; k < 3; ++k) store_pairs(edge(k, 0), edge(k, 1), leaf.edge_xy[k] + l);
         fits = fits && hn::AllTrue(d, near);
     }
-    leaf.reach = static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, reach))) * leaf.position_unit;  // exact: below 2^17
+    leaf.l1_radius =
+        static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, l1_radius))) * leaf.position_unit;  // exact: below 2^17
     leaf.rounding = rounding_of(leaf);
     return fits;
 }

@@ -46,7 +46,7 @@ void Refit::refit_leaves() {
             if (structure_.contents_changed_) structure_.write_leaf_radii(leaves[i]);
             const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
             // Far from its origin a leaf loses digits.
-            if (double{leaf.reach} > 8.0 * (size.x + size.y + size.z)) {
+            if (double{leaf.l1_radius} > 8.0 * (size.x + size.y + size.z)) {
                 structure_.rewrite_leaf(leaves[i]);
                 bounds = bounds_of(leaf);
             }
@@ -77,7 +77,7 @@ void Refit::refit_node(NodeId n) {
     const Node& node = nodes_[n];
     Aabb bounds = bounds_of(node, structure_.axes_of(node));
     const glm::dvec3 size = bounds.is_empty() ? glm::dvec3(0.0) : bounds.max - bounds.min;
-    if (double{node.reach} > 8.0 * (size.x + size.y + size.z)) {
+    if (double{node.l1_radius} > 8.0 * (size.x + size.y + size.z)) {
         structure_.refresh_node(n);
         bounds = bounds_of(node, structure_.axes_of(node));
     }

@@ -31,11 +31,11 @@ Size size_of_node(std::uint32_t items) {
 BuildItem build_item(ItemId id, const Obb& box, const glm::dvec3& middle) {
     BuildItem item{};
     for (int j = 0; j < 3; ++j) {
-        float reach = 0.0f;
-        for (int k = 0; k < 3; ++k) reach += std::fabs(box.axes[k][j]) * box.half_extents[k];
+        float projected_radius = 0.0f;
+        for (int k = 0; k < 3; ++k) projected_radius += std::fabs(box.axes[k][j]) * box.half_extents[k];
         const auto center = static_cast<float>(box.center[j] - middle[j]);
-        item.extreme[j] = reach - center;
-        item.extreme[4 + j] = center + reach;
+        item.extreme[j] = projected_radius - center;
+        item.extreme[4 + j] = center + projected_radius;
     }
     item.set_id(id);
     return item;

@@ -20,10 +20,10 @@ struct Turned {
     void include(const double* center, const double (&edges)[3][3]) {
         for (unsigned k = 0; k < 3; ++k) {
             const double middle = along(axes, k, center);
-            double reach = 0.0;
-            for (const auto& edge : edges) reach += std::fabs(along(axes, k, edge));
-            low[k] = std::min(low[k], middle - reach);
-            high[k] = std::max(high[k], middle + reach);
+            double projected_radius = 0.0;
+            for (const auto& edge : edges) projected_radius += std::fabs(along(axes, k, edge));
+            low[k] = std::min(low[k], middle - projected_radius);
+            high[k] = std::max(high[k], middle + projected_radius);
         }
     }
     void include(const double (&middle)[3], const double (&half)[3], const Axes& its_axes) {
@@ -99,20 +99,20 @@ Aabb bounds_along(const Axes& axes, const Leaf& leaf) {
     turned_leaf_extent(leaf, axes, extent);
     double size = 0.0;
     for (unsigned k = 0; k < 3; ++k) size += std::fabs(double{extent.low[k]}) + std::fabs(double{extent.high[k]});
-    const double slack = 0.88 * (double{leaf.position_unit} + 3.0 * double{leaf.edge_unit}) + 0x1p-18 * size;
+    const double error_bound = 0.88 * (double{leaf.position_unit} + 3.0 * double{leaf.edge_unit}) + 0x1p-18 * size;
     double low[3], high[3];
     for (unsigned k = 0; k < 3; ++k) {
-        low[k] = double{extent.low[k]} - slack;
-        high[k] = double{extent.high[k]} + slack;
+        low[k] = double{extent.low[k]} - error_bound;
+        high[k] = double{extent.high[k]} + error_bound;
     }
     return around(axes, leaf.origin, low, high, kTurnRounding);
 }
 
 Aabb bounds_along(const Axes& axes, const Aabb& box, const Axes& its_axes) {
     if (box.is_empty()) return {};
-    const glm::dvec3 middle = box.center(), reach = 0.5 * (box.max - box.min);
+    const glm::dvec3 middle = box.center(), half_size = 0.5 * (box.max - box.min);
     const double center[3] = {middle.x, middle.y, middle.z};
-    const double half[3] = {reach.x, reach.y, reach.z};
+    const double half[3] = {half_size.x, half_size.y, half_size.z};
     double origin[3] = {};
     for (unsigned k = 0; k < 3; ++k)
         for (unsigned j = 0; j < 3; ++j) origin[j] += center[k] * its_axes.rows[k][j];

@@ -34,14 +34,14 @@ std::uint32_t items_without_gaps(LeafRange range, std::span<const std::uint8_t> 
 bool holds(const Node& node, const Axes& axes, unsigned lane, const Aabb& child) {
     if (child.is_empty()) return true;
     const Aabb bounds = bounds_of_lane(node, lane, axes);
-    double reach = 0.0;
+    double l1_radius = 0.0;
     for (unsigned axis = 0; axis < 3; ++axis) {
         const int j = static_cast<int>(axis), far = std::abs(middle_of(node, lane, axis)) + half_of(node, lane, axis);
         if (!(bounds.min[j] <= child.min[j] && bounds.max[j] >= child.max[j])) return false;
         if (far > 32767) return false;
-        reach += double{node.unit} * far;
+        l1_radius += double{node.unit} * far;
     }
-    return reach <= double{node.reach};
+    return l1_radius <= double{node.l1_radius};
 }
 
 // In a cycle, or deeper than the tree is high?
@@ -132,7 +132,7 @@ Result<void> validate_item(const Structure& structure, std::uint32_t slot, Trust
     Leaf expected = leaf;
     expected.layers[lane] = layers;
     if (!is_frame(leaf) || !write_lane(expected, lane, box) || !lanes_agree(leaf, expected, lane) ||
-        expected.reach > leaf.reach || (leaf.layers_every & ~layers) != 0)
+        expected.l1_radius > leaf.l1_radius || (leaf.layers_every & ~layers) != 0)
         return broken(item, "an item's lane does not match its box");
     if (!includes(structure.leaf_radii()[slot / kWidth], radius_range_of(box)))
         return broken(item, "the leaf's range of radii does not contain the item's");

@@ -13,14 +13,14 @@
 //     face l of a:   |N_l·T| − h_l |N_l·a_l| − Σ_j g_j |N_l·b_j|,   h and g the half extents of a and b; b likewise
 //     edges i, j:    |(T × a_i)·b_j| − h_{i+1} |N_{i+2}·b_j| − h_{i+2} |N_{i+1}·b_j| − g_{j+1} |M_{j+2}·a_i|
 //                                    − g_{j+2} |M_{j+1}·a_i|
-// for a_{i+1}·(a_i × b_j) = −N_{i+2}·b_j and so on: eighteen products of normals and edges serve all reaches.
+// for a_{i+1}·(a_i × b_j) = −N_{i+2}·b_j and so on: eighteen products of normals and edges serve all radii.
 //
 // The error, with u = 2^-53, S = |T|₁ + Σh + Σg, and axes no longer than 1 + 10^-4. Products of two floats are exact in
 // double, so a normal has one rounding a component: |error of N·v| ≤ 4u |N| |v|, of h |N·v| ≤ 5.01 u h; adding the four
-// terms of a reach and their differences makes 8.1 u Σ. T has one rounding, so N·T is off by at most 5.01 u |T|₁. T ×
-// a: 3u of its six products, which times b sum to at most |T|₁ |a| |b|; with the product and two sums 6.01 u |T|₁. The
-// last subtraction adds u. Every gap is off by less than 10 u S; 16 u S covers the roundings of S itself. Underflow:
-// 1e-300.
+// terms of a projected radius and their differences makes 8.1 u Σ. T has one rounding, so N·T is off by at most 5.01 u
+// |T|₁. T × a: 3u of its six products, which times b sum to at most |T|₁ |a| |b|; with the product and two sums 6.01 u
+// |T|₁. The last subtraction adds u. Every gap is off by less than 10 u S; 16 u S covers the roundings of S itself.
+// Underflow: 1e-300.
 //
 // No operation is fused, so the verdicts are the same on every machine. Boxes that are not finite never overlap along
 // all axes: where T or an extent is not finite, neither is S; where a_1 is not, N_0·T is NaN or infinite, and gap 0 NaN

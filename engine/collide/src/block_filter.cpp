@@ -80,11 +80,11 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
 
     V face_a = hn::Set(d, -1e38f), face_b = face_a, edges = face_a;
     for (int i = 0; i < 3; ++i) {
-        const V reach_b = hn::Add(ha[i], dot3(hb[0], hb[1], hb[2], m[i][0], m[i][1], m[i][2]));
-        face_a = hn::Max(face_a, hn::Sub(hn::Abs(t[i]), reach_b));
-        const V reach_a = hn::Add(hb[i], dot3(ha[0], ha[1], ha[2], m[0][i], m[1][i], m[2][i]));
+        const V radius_b = hn::Add(ha[i], dot3(hb[0], hb[1], hb[2], m[i][0], m[i][1], m[i][2]));
+        face_a = hn::Max(face_a, hn::Sub(hn::Abs(t[i]), radius_b));
+        const V radius_a = hn::Add(hb[i], dot3(ha[0], ha[1], ha[2], m[0][i], m[1][i], m[2][i]));
         const V along = hn::Abs(dot3(t[0], t[1], t[2], r[0][i], r[1][i], r[2][i]));
-        face_b = hn::Max(face_b, hn::Sub(along, reach_a));
+        face_b = hn::Max(face_b, hn::Sub(along, radius_a));
     }
     const hn::Mask<D> by_a = hn::Gt(face_a, error), by_b = hn::Gt(face_b, error);
     put_bits(d, by_a, l, verdict.face_a);
@@ -99,10 +99,10 @@ HWY_INLINE void filter_lanes(D d, const BoxBlock& a, const BoxBlock& b, std::siz
         for (int j = 0; j < 3; ++j) {
             const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
             const V along = hn::Abs(hn::NegMulAdd(t[i1], r[i2][j], hn::Mul(t[i2], r[i1][j])));
-            const V reach =
+            const V projected_radius =
                 hn::MulAdd(ha[i1], m[i2][j],
                            hn::MulAdd(ha[i2], m[i1][j], hn::MulAdd(hb[j1], m[i][j2], hn::Mul(hb[j2], m[i][j1]))));
-            const V gap = hn::Sub(along, reach);
+            const V gap = hn::Sub(along, projected_radius);
             edges = hn::Max(edges, gap);
             const V parallel = hn::MulAdd(hn::Add(m[i1][j], m[i2][j]), per_sine, least);
             worst = hn::Max(worst, hn::Min(gap, parallel));

@@ -23,7 +23,7 @@ HWY_INLINE std::uint32_t bits_of(D d, M mask, std::size_t l) {
     return simd::mask_bits(d, mask) << l;
 }
 
-// The reach has five roundings of 2^-24, the centre two and the difference one of their sum.
+// A projected radius has five roundings of 2^-24, the centre two and the difference one of their sum.
 std::uint32_t BoundBoxes(const BoxBlock& boxes, BoundBlock& bounds) {
     const D d;
     std::uint32_t suspect = 0;
@@ -37,14 +37,14 @@ std::uint32_t BoundBoxes(const BoxBlock& boxes, BoundBlock& bounds) {
         for (int i = 0; i < 3; ++i) {
             const V c = hn::Load(d, boxes.center[i] + l);
             good = hn::And(good, hn::Lt(hn::Abs(c), hn::Set(d, 0.9e30f)));
-            V reach = hn::Mul(h[0], hn::Abs(hn::Load(d, boxes.axes[0][i] + l)));
-            reach = hn::MulAdd(h[1], hn::Abs(hn::Load(d, boxes.axes[1][i] + l)), reach);
-            reach = hn::MulAdd(h[2], hn::Abs(hn::Load(d, boxes.axes[2][i] + l)), reach);
+            V projected_radius = hn::Mul(h[0], hn::Abs(hn::Load(d, boxes.axes[0][i] + l)));
+            projected_radius = hn::MulAdd(h[1], hn::Abs(hn::Load(d, boxes.axes[1][i] + l)), projected_radius);
+            projected_radius = hn::MulAdd(h[2], hn::Abs(hn::Load(d, boxes.axes[2][i] + l)), projected_radius);
             const V share = hn::MulAdd(hn::Abs(c), hn::Set(d, 0x2.2p-24f), hn::Set(d, 1e-37f));
-            reach = hn::Add(hn::MulAdd(reach, hn::Set(d, 0x7p-24f), share), reach);
-            hn::Store(hn::Sub(c, reach), d, bounds.low[i] + l);
-            hn::Store(hn::Add(c, reach), d, bounds.high[i] + l);
-            sum = hn::Add(sum, reach);
+            projected_radius = hn::Add(hn::MulAdd(projected_radius, hn::Set(d, 0x7p-24f), share), projected_radius);
+            hn::Store(hn::Sub(c, projected_radius), d, bounds.low[i] + l);
+            hn::Store(hn::Add(c, projected_radius), d, bounds.high[i] + l);
+            sum = hn::Add(sum, projected_radius);
         }
         suspect |= bits_of(d, hn::Not(good), l);
     }

@@ -53,9 +53,9 @@ struct FloatPair {
         const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
         const Lanes4 half[3] = {b.half, next(b.half), after_next(b.half)};  // by k: those of edges i + k
         const Lanes4 first = next(r[k2]), second = after_next(r[k1]);
-        const Lanes4 reach = (next(a.half) * magnitude(second) + after_next(a.half) * magnitude(first)) +
-                             (half[k1] * m[k2] + half[k2] * m[k1]);
-        return magnitude(first * after_next(along_a) - second * next(along_a)) - reach;
+        const Lanes4 projected_radius = (next(a.half) * magnitude(second) + after_next(a.half) * magnitude(first)) +
+                                        (half[k1] * m[k2] + half[k2] * m[k1]);
+        return magnitude(first * after_next(along_a) - second * next(along_a)) - projected_radius;
     }
 
     FloatBox a, b;

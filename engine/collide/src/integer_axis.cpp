@@ -137,10 +137,12 @@ bool Integers::separates(int p, int q) const {
     const Int128 n[3] = {minor(1, 2), minor(2, 0), minor(0, 1)};
     // Extents count edges, which are integers in units of 2^-48; the offset is brought to that unit.
     const Int256 distance = scaled(absolute(dot(n, offset)), std::uint64_t{1} << kAxisBits);
-    Int256 reach;
+    Int256 projected_radius;
     for (int k = 0; k < 6; ++k)
-        if (first[k] != first[p] && first[k] != first[q]) reach = reach + scaled(absolute(dot(n, edge[k])), half[k]);
-    return reach.high < distance.high || (distance.high == reach.high && reach.low < distance.low);
+        if (first[k] != first[p] && first[k] != first[q])
+            projected_radius = projected_radius + scaled(absolute(dot(n, edge[k])), half[k]);
+    return projected_radius.high < distance.high ||
+           (distance.high == projected_radius.high && projected_radius.low < distance.low);
 }
 
 }  // namespace

@@ -56,16 +56,16 @@ bool separated_exactly(const BoxPair& pair, const GeneratorPair axis) {
     };
     auto distance = offset_along(0) + offset_along(1) + offset_along(2);
     if (distance.sign() < 0) distance = -distance;
-    Expansion<24> reach[4];
+    Expansion<24> radius_part[4];
     std::size_t count = 0;
     for (int k = 0; k < 6; ++k) {
         if (k == axis.p || k == axis.q) continue;
         const glm::dvec3& g = pair.edge[k];
-        reach[count] = (n[0] * g.x + n[1] * g.y + n[2] * g.z) * (pair.half[k] * kScale);
-        if (reach[count].sign() < 0) reach[count] = -reach[count];
+        radius_part[count] = (n[0] * g.x + n[1] * g.y + n[2] * g.z) * (pair.half[k] * kScale);
+        if (radius_part[count].sign() < 0) radius_part[count] = -radius_part[count];
         ++count;
     }
-    return (distance - ((reach[0] + reach[1]) + (reach[2] + reach[3]))).sign() > 0;
+    return (distance - ((radius_part[0] + radius_part[1]) + (radius_part[2] + radius_part[3]))).sign() > 0;
 }
 
 bool all_finite(const PairColumns& pair) {
@@ -102,8 +102,9 @@ constexpr float kMostError = kRounding + 2.0f * kPerDeviation * static_cast<floa
 // kWhich: the first of the groups of axes that have one that surely separates, and its first such axis; else any axis.
 //
 // Boxes that are not finite never meet here. Where an offset or extent is not finite, neither is the error. Where axis
-// p of a is not, lanes i ≠ p of the last group of edges are NaN, as both the distance and the reach along the product
-// of edges i and i + 2 are infinite or NaN; where axis q of b is not, lane q + 1 is. `larger` keeps the last one's NaN.
+// p of a is not, lanes i ≠ p of the last group of edges are NaN, as both the distance and the projected radius along
+// the product of edges i and i + 2 are infinite or NaN; where axis q of b is not, lane q + 1 is. `larger` keeps the
+// last one's NaN.
 template <bool kWhich>
 int axis_of(const Obb& a, const Obb& b) {
     const FloatPair pair(a, b);

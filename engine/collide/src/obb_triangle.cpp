@@ -45,20 +45,20 @@ Expansion<N> magnitude(const Expansion<N>& e) {
     return e.sign() < 0 ? -e : e;
 }
 
-// Whether all of the triangle lies strictly beyond the box's reach along n, on one side.
+// Whether all of the triangle lies strictly beyond the box along n, on one side.
 template <std::size_t N>
 bool separates_exactly(const Exact3<N>& n, const BoxEdges& box, const glm::dvec3& center, const Triangle& t) {
-    const auto reach_of = [&](int k) {
+    const auto projected_half = [&](int k) {
         const glm::dvec3& g = box.edge[k];
         return magnitude((n[0] * g.x + n[1] * g.y + n[2] * g.z) * box.half[k]);
     };
-    const auto reach = (reach_of(0) + reach_of(1)) + reach_of(2);
+    const auto projected_radius = (projected_half(0) + projected_half(1)) + projected_half(2);
     bool above = true, below = true;
     for (const glm::dvec3& p : t) {
         const Exact3<2> w = exact_offset(center, p);
         const auto along = n[0] * w[0] + n[1] * w[1] + n[2] * w[2];
-        above = above && (along - reach).sign() > 0;
-        below = below && (along + reach).sign() < 0;
+        above = above && (along - projected_radius).sign() > 0;
+        below = below && (along + projected_radius).sign() < 0;
     }
     return above || below;
 }
@@ -66,17 +66,18 @@ bool separates_exactly(const Exact3<N>& n, const BoxEdges& box, const glm::dvec3
 enum class Answer : std::uint8_t { separated, overlapping, unknown };
 
 // u × v with each factor rounded at most once: components are off by at most 4 · 2^-53 of `magnitude`; the projections
-// add six roundings, the reach seven. 2^-48 of magnitude · (|offsets| + reach) covers them three times over.
+// add six roundings, the projected radius seven. 2^-48 of magnitude · (|offsets| + radius) covers them three times
+// over.
 Answer filter(const glm::dvec3& u, const glm::dvec3& v, const BoxEdges& box, const glm::dvec3 (&offset)[3],
               const glm::dvec3& size) {
     const glm::dvec3 n = glm::cross(u, v);
     const glm::dvec3 a = glm::abs(u), b = glm::abs(v);
     const glm::dvec3 terms(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x);
-    double reach = 0.0;
-    for (int k = 0; k < 3; ++k) reach += box.half[k] * std::abs(glm::dot(box.edge[k], n));
+    double projected_radius = 0.0;
+    for (int k = 0; k < 3; ++k) projected_radius += box.half[k] * std::abs(glm::dot(box.edge[k], n));
     const double error = 0x1p-48 * glm::dot(terms, size) + 1e-290;
     const double p = glm::dot(offset[0], n), q = glm::dot(offset[1], n), r = glm::dot(offset[2], n);
-    const double gap = std::max(std::min({p, q, r}) - reach, -reach - std::max({p, q, r}));
+    const double gap = std::max(std::min({p, q, r}) - projected_radius, -projected_radius - std::max({p, q, r}));
     if (gap > error) return Answer::separated;
     return gap < -error ? Answer::overlapping : Answer::unknown;
 }
@@ -128,23 +129,24 @@ bool intersects(const Obb& obb, const Triangle& t) {
 bool intersects(const Obb& box, const Plane& half_space) {
     const BoxEdges edges(box);
     const glm::dvec3& n = half_space.normal;
-    double reach = 0.0, size = std::abs(half_space.offset) + glm::dot(glm::abs(n), glm::abs(box.center));
+    double projected_radius = 0.0, size = std::abs(half_space.offset) + glm::dot(glm::abs(n), glm::abs(box.center));
     for (int k = 0; k < 3; ++k) {
-        reach += edges.half[k] * std::abs(glm::dot(edges.edge[k], n));
+        projected_radius += edges.half[k] * std::abs(glm::dot(edges.edge[k], n));
         size += edges.half[k] * glm::dot(glm::abs(edges.edge[k]), glm::abs(n));
     }
     if (!(size < std::numeric_limits<double>::infinity())) return false;
     // At most twelve roundings of 2^-53, each of a part of `size`.
-    const double value = glm::dot(n, box.center) + half_space.offset + reach, error = 0x1p-48 * size + 1e-290;
+    const double value = glm::dot(n, box.center) + half_space.offset + projected_radius,
+                 error = 0x1p-48 * size + 1e-290;
     if (value > error) return true;
     if (value < -error) return false;
-    const auto reach_of = [&](int k) {
+    const auto projected_half = [&](int k) {
         const glm::dvec3& g = edges.edge[k];
         return magnitude((exact_product(n.x, g.x) + exact_product(n.y, g.y) + exact_product(n.z, g.z)) * edges.half[k]);
     };
     const auto center = exact_product(n.x, box.center.x) + exact_product(n.y, box.center.y) +
                         exact_product(n.z, box.center.z) + exact(half_space.offset);
-    return (center + (reach_of(0) + reach_of(1) + reach_of(2))).sign() >= 0;
+    return (center + (projected_half(0) + projected_half(1) + projected_half(2))).sign() >= 0;
 }
 
 }  // namespace crofton::collide

@@ -27,14 +27,14 @@ Verdict ball_meets(const Obb& box, const Sphere& ball) {
         q += glm::clamp(glm::dot(axis, p), -half, half) * axis;
         size += half;
     }
-    const double slack = 1e-14 * size, above = glm::length(p - q);
-    if (above < ball.radius - slack) return Verdict::meets;
-    if (!(above > ball.radius + slack)) return Verdict::open;
+    const double error_bound = 1e-14 * size, above = glm::length(p - q);
+    if (above < ball.radius - error_bound) return Verdict::meets;
+    if (!(above > ball.radius + error_bound)) return Verdict::open;
     const glm::dvec3 n = (p - q) / above;
     double below = glm::dot(n, p);
     for (int k = 0; k < 3; ++k)
         below -= static_cast<double>(box.half_extents[k]) * std::abs(glm::dot(n, glm::dvec3(box.axes[k])));
-    return below > ball.radius + slack ? Verdict::apart : Verdict::open;
+    return below > ball.radius + error_bound ? Verdict::apart : Verdict::open;
 }
 
 }  // namespace

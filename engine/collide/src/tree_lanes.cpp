@@ -59,33 +59,33 @@ HWY_INLINE Bounds bounds_of(D d, const boxtree::Leaf& leaf, std::size_t l) {
              hn::Add(hn::Mul(sum_z, edge_unit), off)}};
 }
 
-// Roundings, each of at most 2^-24 of a number no greater than |origin|₁ + reach + half: of the ray's origin and
+// Roundings, each of at most 2^-24 of a number no greater than |origin|₁ + l1_radius + half: of the ray's origin and
 // direction, of the difference, the half extents, both sums and the product with the inverse (two). Together they move
 // a slab, seen at any point of the bounds, by less than 2^-20 of that number.
 constexpr float kRounding = 0x1p-20f;
 
-HWY_INLINE float size_of(const LaneRay& ray, float reach) {
+HWY_INLINE float size_of(const LaneRay& ray, float l1_radius) {
     const auto magnitude = [](float x) { return x < 0.0f ? -x : x; };
-    return magnitude(ray.origin[0]) + magnitude(ray.origin[1]) + magnitude(ray.origin[2]) + reach;
+    return magnitude(ray.origin[0]) + magnitude(ray.origin[1]) + magnitude(ray.origin[2]) + l1_radius;
 }
 
 template <class Block>
 HWY_INLINE std::uint32_t along(const Block& block, const LaneRay& ray, float* entry) {
     const D d;
-    const float size = size_of(ray, block.reach);
+    const float size = size_of(ray, block.l1_radius);
     const std::uint32_t used = (1u << block.count) - 1u;
     if (!(size < 1e30f)) {  // beyond what the filter can tell
         for (unsigned lane = 0; lane < boxtree::kWidth; ++lane) entry[lane] = 0.0f;
         return used;
     }
-    const V slop = hn::Set(d, kRounding * size), grow = hn::Set(d, 1.0f + kRounding);
+    const V error_bound = hn::Set(d, kRounding * size), grow = hn::Set(d, 1.0f + kRounding);
     std::uint32_t lanes = 0;
     for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(d)) {
         const Bounds bounds = bounds_of(d, block, l);
         V first = hn::Zero(d), last = hn::Set(d, ray.limit);
         for (int k = 0; k < 3; ++k) {
             const V offset = hn::Sub(bounds.middle[k], hn::Set(d, ray.origin[k]));
-            const V half = hn::Add(hn::Mul(bounds.half[k], grow), slop), inverse = hn::Set(d, ray.inverse[k]);
+            const V half = hn::Add(hn::Mul(bounds.half[k], grow), error_bound), inverse = hn::Set(d, ray.inverse[k]);
             const V t0 = hn::Mul(hn::Sub(offset, half), inverse), t1 = hn::Mul(hn::Add(offset, half), inverse);
             first = hn::Max(first, hn::Min(t0, t1));
             last = hn::Min(last, hn::Max(t0, t1));
@@ -100,13 +100,13 @@ HWY_INLINE std::uint32_t along(const Block& block, const LaneRay& ray, float* en
 template <class Block>
 HWY_INLINE std::uint32_t within(const Block& block, const LaneBox& box) {
     const D d;
-    const V slop = hn::Set(d, kRounding * block.reach), grow = hn::Set(d, 1.0f + kRounding);
+    const V error_bound = hn::Set(d, kRounding * block.l1_radius), grow = hn::Set(d, 1.0f + kRounding);
     std::uint32_t lanes = 0;
     for (std::size_t l = 0; l < boxtree::kWidth; l += hn::Lanes(d)) {
         const Bounds bounds = bounds_of(d, block, l);
         auto apart = hn::Lt(hn::Zero(d), hn::Zero(d));
         for (int k = 0; k < 3; ++k) {
-            const V half = hn::Add(hn::Mul(bounds.half[k], grow), slop);
+            const V half = hn::Add(hn::Mul(bounds.half[k], grow), error_bound);
             apart = hn::Or(apart, hn::Gt(hn::Sub(bounds.middle[k], half), hn::Set(d, box.high[k])));
             apart = hn::Or(apart, hn::Lt(hn::Add(bounds.middle[k], half), hn::Set(d, box.low[k])));
         }

@@ -126,13 +126,13 @@ Aabb grown(const Aabb& bounds, double distance) {
 }
 
 // Around points in double that carry a few roundings.
-Aabb around(const glm::dvec3& center, const glm::dvec3& reach) {
-    const glm::dvec3 slack = 1e-14 * (glm::abs(center) + reach);
-    return {center - reach - slack, center + reach + slack};
+Aabb around(const glm::dvec3& center, const glm::dvec3& half_size) {
+    const glm::dvec3 error_bound = 1e-14 * (glm::abs(center) + half_size);
+    return {center - half_size - error_bound, center + half_size + error_bound};
 }
 
 // A ray, seen from nodes and leaves. Where it runs nearly within a slab, it counts as hardly moving across. What it
-// moves across before it leaves the filter's range is below the filter's `slop`.
+// moves across before it leaves the filter's range is below the filter's error bound.
 class Traveller {
   public:
     explicit Traveller(const Ray& ray)
@@ -143,7 +143,8 @@ class Traveller {
     [[nodiscard]] float distance(double t) const {
         return static_cast<float>(std::min(t * length_ * (1.0 + 1e-6), static_cast<double>(kFar)));
     }
-    // Along a node's axes where they are not the world's: what turning rounds is below the filter's slop as well.
+    // Along a node's axes where they are not the world's: what turning rounds is below the filter's error bound as
+    // well.
     [[nodiscard]] LaneRay seen_from(const boxtree::Node& node, const boxtree::Axes& axes, float limit) const {
         if (axes.rounding == 0.0) return seen_from(node, limit);
         double offset[3];
@@ -214,9 +215,10 @@ void visit_near(const Aabb& bounds, double distance, const boxtree::BoxTree& tre
 void overlapping(const boxtree::BoxTree& tree, const Obb& body, Vector<boxtree::ItemId>& items, std::uint32_t layers) {
     items.clear();
     if (!validate(body)) return;
-    glm::dvec3 reach(0.0);
-    for (int k = 0; k < 3; ++k) reach += static_cast<double>(body.half_extents[k]) * glm::abs(glm::dvec3(body.axes[k]));
-    collect(tree, body, around(body.center, reach), layers, items);
+    glm::dvec3 half_size(0.0);
+    for (int k = 0; k < 3; ++k)
+        half_size += static_cast<double>(body.half_extents[k]) * glm::abs(glm::dvec3(body.axes[k]));
+    collect(tree, body, around(body.center, half_size), layers, items);
 }
 
 void overlapping(const boxtree::BoxTree& tree, const Sphere& body, Vector<boxtree::ItemId>& items,

@@ -34,7 +34,7 @@ BoxPair::BoxPair(const Pair& pair)
     : pair_(pair),
       half_a_(pair.a.half_extents()),
       half_b_(pair.b.half_extents()),
-      slack_(kSameDepth * pair.size),
+      depth_margin_(kSameDepth * pair.size),
       error_(4.0 * pair.error) {
     const glm::dmat3& r = pair.pose_a.rotation;
     const glm::dvec3 x = glm::cross(r[1], r[2]), y = glm::cross(r[2], r[0]), z = glm::cross(r[0], r[1]);
@@ -51,10 +51,10 @@ bool BoxPair::try_faces(double far, BoxAxis& least) {
         const double share = 1.0 / std::sqrt(glm::dot(row, row));
         const double radius =
             half_b_.x * std::abs(edge_[0][k]) + half_b_.y * std::abs(edge_[1][k]) + half_b_.z * std::abs(edge_[2][k]);
-        reach_[0][k] = (half_a_[k] + radius) * share;
+        radius_sum_[0][k] = (half_a_[k] + radius) * share;
         along_[0][k] = at_[k] * share;
-        const double extent = reach_[0][k] - std::abs(along_[0][k]);
-        if (k == 0 || extent < far || extent < least.extent - slack_) least = {k, extent};
+        const double extent = radius_sum_[0][k] - std::abs(along_[0][k]);
+        if (k == 0 || extent < far || extent < least.extent - depth_margin_) least = {k, extent};
         if (extent < far) return false;
     }
     for (int j = 0; j < 3; ++j) across_[j] = glm::cross(edge_[kNext[j]], edge_[kLast[j]]);
@@ -63,10 +63,10 @@ bool BoxPair::try_faces(double far, BoxAxis& least) {
     for (int j = 0; j < 3; ++j) {
         const glm::dvec3 &n = across_[j], world = n.x * to_a_[0] + n.y * to_a_[1] + n.z * to_a_[2];
         const double share = 1.0 / std::sqrt(glm::dot(world, world));
-        reach_[1][j] = (std::abs(determinant) * half_b_[j] + radius_along(half_a_, n)) * share;
+        radius_sum_[1][j] = (std::abs(determinant) * half_b_[j] + radius_along(half_a_, n)) * share;
         along_[1][j] = glm::dot(n, at_) * share;
-        const double extent = reach_[1][j] - std::abs(along_[1][j]);
-        if (extent < far || extent < least.extent - slack_) least = {3 + j, extent};
+        const double extent = radius_sum_[1][j] - std::abs(along_[1][j]);
+        if (extent < far || extent < least.extent - depth_margin_) least = {3 + j, extent};
         if (extent < far) return false;
     }
     return true;
@@ -86,7 +86,7 @@ void BoxPair::try_edges(BoxAxis& least) {
             const double radius_b =
                 half_b_[kNext[j]] * std::abs(across_[kLast[j]][i]) + half_b_[kLast[j]] * std::abs(across_[kNext[j]][i]);
             const double extent = (radius_a + radius_b) - std::abs(mu * at_[u] + mv * at_[v]);
-            const double best = least.extent - slack_;
+            const double best = least.extent - depth_margin_;
             if (!(squared > kParallel)) {
                 slivers_ |= 1 << (3 * i + j);
                 sliver_width_ =
@@ -107,7 +107,7 @@ void BoxPair::try_slivers(BoxAxis& least) const {
         const double length = glm::length(m);
         if (!(length > 0.0)) continue;
         const double extent = std::min(pair_.extent(m), pair_.extent(-m)) / length;
-        if (extent < least.extent - slack_) least = {6 + n, extent};
+        if (extent < least.extent - depth_margin_) least = {6 + n, extent};
     }
 }
 
@@ -121,7 +121,7 @@ double BoxPair::face_extent(bool of_a, int face) const {
     const int side = of_a ? 0 : 1, k = face / 2;
     // b's face looks back at a where a's looks on at b.
     const double sign = ((face & 1) != 0) == of_a ? 1.0 : -1.0;
-    return reach_[side][k] - sign * along_[side][k];
+    return radius_sum_[side][k] - sign * along_[side][k];
 }
 
 glm::dvec3 BoxPair::normal(int axis) const {

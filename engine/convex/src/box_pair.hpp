@@ -52,14 +52,14 @@ class BoxPair {
 
     const Pair& pair_;
     const glm::dvec3 &half_a_, &half_b_;
-    double slack_, error_, sliver_width_ = 0.0;
-    int slivers_ = 0;                   // bit 3i + j
-    glm::dvec3 to_a_[3];                // rows of the inverse of a's rotation
-    glm::dvec3 edge_[3];                // of b in a's frame
-    glm::dvec3 across_[3];              // products of the other two edges
-    double share_ = 1.0;                // 1 / determinant of the edges
-    glm::dvec3 at_;                     // b's center
-    double reach_[2][3], along_[2][3];  // of a's and b's faces: sum of the boxes' radii, and where b's center is
+    double depth_margin_, error_, sliver_width_ = 0.0;
+    int slivers_ = 0;                        // bit 3i + j
+    glm::dvec3 to_a_[3];                     // rows of the inverse of a's rotation
+    glm::dvec3 edge_[3];                     // of b in a's frame
+    glm::dvec3 across_[3];                   // products of the other two edges
+    double share_ = 1.0;                     // 1 / determinant of the edges
+    glm::dvec3 at_;                          // b's center
+    double radius_sum_[2][3], along_[2][3];  // of a's and b's faces: sum of the boxes' radii, and where b's center is
 };
 
 // A face of one box, the other box's face that looks against it, and what they have in common along a direction.

@@ -19,12 +19,12 @@ struct BoxTouch::Axis {
 struct BoxTouch::Local {
     glm::dvec3 corner[3], edge[3], normal;  // the normal of any length
     double longest;                         // edge, squared
-    double reach;                           // of the difference body: at most twice its square
+    double squared_reach;                   // of the difference body; at most twice too large
 };
 
 namespace {
 
-// (1e-5)² of the reach of the difference body, squared, with (a + b)² ≤ 2 a² + 2 b².
+// (1e-5)² of the difference body's reach, squared, with (a + b)² ≤ 2 a² + 2 b².
 constexpr double kUncertain = 2e-10;
 
 double length_of(const glm::dmat3& metric, const glm::dvec3& m) {
@@ -48,12 +48,12 @@ void BoxTouch::try_faces(const Local& t, Axis& least) const {
     const double along = glm::dot(n, t.corner[0]), radius = glm::dot(half_, glm::abs(n)),
                  length = length_of(metric_, n);
     least = {along <= 0.0 ? n : -n, (radius - std::abs(along)) / length, length, 0};
-    const double slack = kSameDepth * size_;
+    const double depth_margin = kSameDepth * size_;
     for (int k = 0; k < 3; ++k) {
         const double p = t.corner[0][k], q = t.corner[1][k], r = t.corner[2][k];
         const double above = std::max(p, std::max(q, r)) + half_[k], below = half_[k] - std::min(p, std::min(q, r));
         const double extent = std::min(above, below) / unit_[k];
-        if (!(extent < least.extent - slack)) continue;
+        if (!(extent < least.extent - depth_margin)) continue;
         least = {glm::dvec3(0.0), extent, unit_[k], 1 + k};
         least.m[k] = above <= below ? 1.0 : -1.0;
     }
@@ -61,7 +61,8 @@ void BoxTouch::try_faces(const Local& t, Axis& least) const {
 
 // False where an axis is not certain enough.
 bool BoxTouch::try_edges(const Local& t, Axis& least) const {
-    const double uncertain = kUncertain * t.reach, parallel = 1e-20 * size_ * size_, slack = kSameDepth * size_;
+    const double uncertain = kUncertain * t.squared_reach, parallel = 1e-20 * size_ * size_,
+                 depth_margin = kSameDepth * size_;
     bool certain = true;
     for (int k = 0; k < 3; ++k) {
         const int u = k == 2 ? 0 : k + 1, v = k == 0 ? 2 : k - 1;
@@ -73,7 +74,7 @@ bool BoxTouch::try_edges(const Local& t, Axis& least) const {
             const double radius = half_[u] * std::abs(mu) + half_[v] * std::abs(mv);
             const double above = std::max(p, q) + radius, below = radius - std::min(p, q);
             const double extent = std::min(above, below), squared = (uu * mu * mu + vv * mv * mv) + uv * mu * mv;
-            const double best = least.extent - slack;
+            const double best = least.extent - depth_margin;
             // Most axes are deeper, which needs no root to be seen.
             if (best >= 0.0 && extent >= 0.0 && extent * extent > best * best * squared && squared >= uncertain)
                 continue;
@@ -107,12 +108,12 @@ Warm BoxTouch::ask(const PlacedTriangle& triangle, Touch& touch) const {
     }
     for (int v = 0; v < 3; ++v) t.edge[v] = t.corner[v == 2 ? 0 : v + 1] - t.corner[v];
     t.normal = glm::cross(t.edge[0], t.edge[1]);
-    t.longest = t.reach = 0.0;
+    t.longest = t.squared_reach = 0.0;
     for (const glm::dvec3& e : t.edge) t.longest = std::max(t.longest, glm::dot(e, e));
-    for (const glm::dvec3& p : t.corner) t.reach = std::max(t.reach, glm::dot(p, p));
-    t.reach += glm::dot(half_, half_);
+    for (const glm::dvec3& p : t.corner) t.squared_reach = std::max(t.squared_reach, glm::dot(p, p));
+    t.squared_reach += glm::dot(half_, half_);
     // The direction of a sliver's face is as uncertain as that of nearly parallel edges.
-    if (!(glm::dot(t.normal, t.normal) > kUncertain * t.reach * t.longest)) return Warm::unknown;
+    if (!(glm::dot(t.normal, t.normal) > kUncertain * t.squared_reach * t.longest)) return Warm::unknown;
     Axis least;
     try_faces(t, least);
     if (least.extent < limit) return Warm::apart;

@@ -236,8 +236,8 @@ int deepest_corner(const RawPoint* points, int count) {
         return glm::dot(way, way);
     };
     const double depth = points[greatest(count, [&](int i) { return points[i].depth; })].depth;
-    const double reach = std::sqrt(squared(greatest(count, squared)));
-    return greatest(count, [&](int i) { return points[i].depth >= depth - 1e-9 * reach ? squared(i) : -1.0; });
+    const double radius = std::sqrt(squared(greatest(count, squared)));
+    return greatest(count, [&](int i) { return points[i].depth >= depth - 1e-9 * radius ? squared(i) : -1.0; });
 }
 
 }  // namespace

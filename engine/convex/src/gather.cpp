@@ -32,9 +32,9 @@ void Gatherer::add(const Clipped& clipped, bool reference_is_a) {
     }
 }
 
-bool Gatherer::lacks_deepest(double slack) const {
+bool Gatherer::lacks_deepest(double tolerance) const {
     for (int i = 0; i < points.count; ++i)
-        if (points.point[i].depth >= touch_.depth - slack) return false;
+        if (points.point[i].depth >= touch_.depth - tolerance) return false;
     return true;
 }
 

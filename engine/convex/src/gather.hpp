@@ -23,8 +23,8 @@ class Gatherer {
     // Points of the cores, around a's origin.
     void add(const glm::dvec3& core_a, const glm::dvec3& core_b, const Feature& on_a, const Feature& on_b);
     void add(const Clipped& clipped, bool reference_is_a);
-    // Whether the patches have left out the deepest place by more than `slack`.
-    [[nodiscard]] bool lacks_deepest(double slack) const;
+    // Whether the patches have left out the deepest place by more than `tolerance`.
+    [[nodiscard]] bool lacks_deepest(double tolerance) const;
     void add_deepest();  // the touch's features are known
 
     GatheredPoints& points;

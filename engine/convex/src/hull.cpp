@@ -58,14 +58,14 @@ Result<CornerHull> hull_of_corners(const Points& points, std::size_t max_vertice
 // then a little farther.
 Result<CornerHull> grown(const CornerHull& small, const Points& points, double& excess) {
     Points chosen;
-    double reach = 0.0;
+    double outer_radius = 0.0;
     Vector<char> used(small.corners.size(), 0);
     for (const auto& t : small.hull.triangles)
         for (const std::uint32_t v : t) used[v] = 1;
     for (std::size_t i = 0; i < used.size(); ++i) {
         if (used[i] == 0) continue;
         chosen.push_back(small.corners[i]);
-        reach = std::max(reach, glm::length(small.corners[i] - small.hull.center));
+        outer_radius = std::max(outer_radius, glm::length(small.corners[i] - small.hull.center));
     }
     for (double more = small.hull.missing + 1e-7; more < 64.0; more = 1.25 * more + 1e-6) {
         Points moved;
@@ -74,7 +74,7 @@ Result<CornerHull> grown(const CornerHull& small, const Points& points, double& 
         Result<CornerHull> result = hull_of_corners(moved, static_cast<std::size_t>(kMaxHullVertices));
         if (!result) return result;
         if (!contains_all(result->hull, result->corners, points)) continue;
-        excess = more * reach * (1.0 + 1e-6);
+        excess = more * outer_radius * (1.0 + 1e-6);
         return result;
     }
     return fail(ErrorCode::degenerate, kNoItem,
@@ -92,15 +92,15 @@ Vector<double> side_by_side(const List& points) {
 }
 
 // The least distance of the planes from the center, less what rounding may add.
-double inner_radius_of(const CornerHull& body, const glm::dvec3& center, double reach) {
-    double least = reach;
+double inner_radius_of(const CornerHull& body, const glm::dvec3& center, double outer_radius) {
+    double least = outer_radius;
     for (const auto& t : body.hull.triangles) {
         const glm::dvec3 a = body.corners[t[0]];
         const glm::dvec3 n = glm::cross(body.corners[t[1]] - a, body.corners[t[2]] - a);
         const double length = glm::length(n);
         least = std::min(least, length > 0.0 ? glm::dot(n, a - center) / length : 0.0);
     }
-    return std::max(0.0, 0.999 * least - 1e-9 * reach);
+    return std::max(0.0, 0.999 * least - 1e-9 * outer_radius);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ void Hull::find_faces(double tolerance) {
     find_neighbors(surface);
     glm::dvec3 low = surface.at(0), high = low;
     for (const glm::vec3& v : vertices_) low = glm::min(low, glm::dvec3(v)), high = glm::max(high, glm::dvec3(v));
-    const double slack = tolerance * glm::length(high - low);
+    const double most = tolerance * glm::length(high - low);
     // Largest triangle first: its plane is the best known.
     const int count = surface.count();
     Vector<int> order(static_cast<std::size_t>(count)), group(static_cast<std::size_t>(count), -1);
@@ -103,7 +103,7 @@ void Hull::find_faces(double tolerance) {
                 if (group[static_cast<std::size_t>(t)] >= 0) continue;
                 bool fits = glm::dot(surface.area(t), normal) >= 0.99 * size[static_cast<std::size_t>(t)];
                 for (int k = 0; k < 3; ++k)
-                    fits = fits && std::abs(glm::dot(normal, surface.at(surface.corner(t, k)) - origin)) <= slack;
+                    fits = fits && std::abs(glm::dot(normal, surface.at(surface.corner(t, k)) - origin)) <= most;
                 if (!fits) continue;
                 group[static_cast<std::size_t>(t)] = mine;
                 members.push_back(t);

@@ -167,7 +167,7 @@ class PartCaster {
     const Motion &motion_a_, &motion_b_;
     const CastOptions& options_;
     Impact best_;
-    double around_ = 0.0;  // b's reach from its pivot
+    double around_ = 0.0;  // radius of b around its pivot
     glm::dvec3 apart_{0.0};
     bool b_turns_ = false;
 };

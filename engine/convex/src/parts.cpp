@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kWider = 1.0001;  // of a distance: frames are rigid to 1e-6 alone
 
-// A float box that holds the box, but for `slop`.
+// A float box that holds the box, but for `error_bound`.
 struct FloatBox {
     mesh::MeshBox box{};
-    float slop = 0.0f;
+    float error_bound = 0.0f;
 };
 FloatBox to_floats(const QueryBox& box) {
     FloatBox result;
@@ -28,7 +28,7 @@ FloatBox to_floats(const QueryBox& box) {
         for (int i = 0; i < 3; ++i) result.box.axes[k][i] = static_cast<float>(box.axes[k][i]);
         size += std::abs(box.center[k]) + 50.0 * box.half[k];  // axes are orthonormal to 4e-6 alone
     }
-    result.slop = static_cast<float>(0x1p-22 * size) + std::numeric_limits<float>::min();
+    result.error_bound = static_cast<float>(0x1p-22 * size) + std::numeric_limits<float>::min();
     return result;
 }
 
@@ -50,10 +50,10 @@ QueryBox seen_from(const QueryBox& box, const RigidTransform& pose) {
 }
 
 Aabb bounds_of(const QueryBox& box) {
-    glm::dvec3 reach(0.0);
-    for (int k = 0; k < 3; ++k) reach += box.half[k] * glm::abs(box.axes[k]);
-    reach = reach * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center);
-    return {box.center - reach, box.center + reach};
+    glm::dvec3 half_size(0.0);
+    for (int k = 0; k < 3; ++k) half_size += box.half[k] * glm::abs(box.axes[k]);
+    half_size = half_size * (1.0 + 1e-12) + 1e-12 * glm::abs(box.center);
+    return {box.center - half_size, box.center + half_size};
 }
 
 double distance_between(const Aabb& a, const Aabb& b) {
@@ -83,12 +83,12 @@ bool search_mesh(const mesh::MeshTree& mesh, const QueryBox& box, const PartSear
         return ended;
     };
     if (search.nearest_first) {
-        mesh::visit_nearest_triangles(parts.nodes.data(), parts.leaves.data(), q.box, q.slop, squared, offer);
+        mesh::visit_nearest_triangles(parts.nodes.data(), parts.leaves.data(), q.box, q.error_bound, squared, offer);
         return ended;
     }
     const double margin = (std::min)(search.limit * kWider, 1e18);
-    mesh::visit_triangles_near(parts.nodes.data(), parts.leaves.data(), q.box, q.slop + static_cast<float>(margin),
-                               offer);
+    mesh::visit_triangles_near(parts.nodes.data(), parts.leaves.data(), q.box,
+                               q.error_bound + static_cast<float>(margin), offer);
     return ended;
 }
 

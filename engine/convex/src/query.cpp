@@ -153,21 +153,21 @@ Penetration penetration(const Placed& a, const Placed& b, PairCache* cache) {
     const Nearest core = core_distance(pair, cache, 0.0, rounding);
     remember(core, cache);
     CorePoints points;
-    const double slack = 0x1p-52 * rounding;
+    const double error_bound = 0x1p-52 * rounding;
     if (core.meeting == Meeting::apart) {
         points = core_points(core.simplex);
         const double between = glm::length(points.on_a - points.on_b);
         if (rounding == 0.0 || core.lower > rounding || between > rounding) return p;
         p.depth = rounding - between;
-        p.lower = std::max(0.0, rounding - core.upper - slack);
-        p.upper = rounding - core.lower + slack;
+        p.lower = std::max(0.0, rounding - core.upper - error_bound);
+        p.upper = rounding - core.lower + error_bound;
         p.normal = core.normal;
     } else {
         const Depth depth = core_depth(pair, core.simplex);
         points = core_points(depth.face);
         p.depth = std::max(0.0, depth.upper - pair.error) + rounding;
-        p.lower = depth.lower + rounding - slack;
-        p.upper = std::max(p.depth, depth.upper + rounding + slack);  // of round bodies `meeting` may be rounding
+        p.lower = depth.lower + rounding - error_bound;
+        p.upper = std::max(p.depth, depth.upper + rounding + error_bound);  // of round bodies `meeting` may be rounding
         p.normal = depth.normal;
         if (cache != nullptr) cache->axis = p.normal;
     }

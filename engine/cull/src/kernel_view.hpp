@@ -45,34 +45,34 @@ struct KernelView {
 // A block of boxes as the view sees it: its origin relative to the view's.
 struct LocalOrigin {
     double d[3];
-    double size;   // Σ|d|
-    double reach;  // ≥ |x| + extent, summed over the axes, of all that lies in the block
+    double size;       // Σ|d|
+    double l1_radius;  // ≥ |x| + extent, summed over the axes, of all that lies in the block
 };
 
-inline LocalOrigin local_origin(const KernelView& view, const double* origin, float reach) {
+inline LocalOrigin local_origin(const KernelView& view, const double* origin, float l1_radius) {
     LocalOrigin result;
     for (int j = 0; j < 3; ++j) result.d[j] = origin[j] - view.origin[j];
     result.size = std::fabs(result.d[0]) + std::fabs(result.d[1]) + std::fabs(result.d[2]);
-    result.reach = static_cast<double>(reach);
+    result.l1_radius = static_cast<double>(l1_radius);
     return result;
 }
 
-// A plane as seen from the block's origin: value(x) = normal_f · x + offset, for x relative to it. `slack` bounds how
-// far that, with a box's reach added or taken away, is from the exact value. With u = 2^-24, the roundings of the
-// normal, of the offset, of the products and of at most seven additions cost u each, of reach + |offset|. That is 10u
-// in all, doubled here. The offset itself is computed in double: seven roundings of 2^-53 of size + |plane offset|
-// each, |normal| ≤ 1.001 per component; 2^-49.
+// A plane as seen from the block's origin: value(x) = normal_f · x + offset, for x relative to it. `error_bound` bounds
+// how far that, with a box's projected radius added or taken away, is from the exact value. With u = 2^-24, the
+// roundings of the normal, of the offset, of the products and of at most seven additions cost u each, of l1_radius +
+// |offset|. That is 10u in all, doubled here. The offset itself is computed in double: seven roundings of 2^-53 of size
+// + |plane offset| each, |normal| ≤ 1.001 per component; 2^-49.
 struct LocalPlane {
     float offset;
-    float slack;
+    float error_bound;
 };
 
 inline LocalPlane local_plane(const KernelPlane& plane, const LocalOrigin& at) {
     const double offset =
         plane.normal[0] * at.d[0] + plane.normal[1] * at.d[1] + plane.normal[2] * at.d[2] + plane.offset;
-    const double slack =
-        0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.4p-20 * (at.reach + std::fabs(offset)) + 1e-37;
-    return {static_cast<float>(offset), static_cast<float>(slack)};
+    const double error_bound =
+        0x1p-49 * (at.size + std::fabs(plane.offset)) + 0x1.4p-20 * (at.l1_radius + std::fabs(offset)) + 1e-37;
+    return {static_cast<float>(offset), static_cast<float>(error_bound)};
 }
 
 }  // namespace crofton::cull

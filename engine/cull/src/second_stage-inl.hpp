@@ -31,10 +31,10 @@ HWY_INLINE VF plane_value(const KernelPlane& plane, VF x, VF y, VF z, float offs
 }
 
 // Planes in the boxes' own coordinates: plane i is f_i(t) = base_i + unit · Σ slope_ik t_k ≥ 0 on the cube |t| ≤ 1, and
-// slack_i bounds the error of f_i anywhere there.
+// error_bound_i bounds the error of f_i anywhere there.
 struct BoxRows {
     struct Row {
-        VF base, slack, reach, slope[3];
+        VF base, error_bound, projected_radius, slope[3];
     };
     Row rows[KernelView::kMaxPlanes];
     std::uint32_t
@@ -51,11 +51,11 @@ struct BoxRows {
             const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
             Row& row = rows[count];
             row.base = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
-            row.slack = boxes.slack(local[i]);
-            row.reach = hn::Zero(DF());
+            row.error_bound = boxes.error_bound(local[i]);
+            row.projected_radius = hn::Zero(DF());
             for (unsigned k = 0; k < 3; ++k) {
                 row.slope[k] = boxes.slope(view.planes[i], k);
-                row.reach = hn::Add(row.reach, hn::Abs(row.slope[k]));
+                row.projected_radius = hn::Add(row.projected_radius, hn::Abs(row.slope[k]));
             }
             keep_next(boxes.present);
         }
@@ -75,10 +75,10 @@ struct BoxRows {
   private:
     HWY_INLINE void set_bits(unsigned i, MF wanted) {
         const Row& row = rows[i];
-        const VF size = hn::MulAdd(row.reach, unit, hn::Abs(row.base));
-        const VF bottom = hn::Sub(row.base, hn::Mul(row.reach, unit));
-        cut[i] = bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(DF(), 0x1p-19f), row.slack))));
-        out[i] = cut[i] & bits_of(hn::Lt(row.base, row.slack));
+        const VF size = hn::MulAdd(row.projected_radius, unit, hn::Abs(row.base));
+        const VF bottom = hn::Sub(row.base, hn::Mul(row.projected_radius, unit));
+        cut[i] = bits_of(hn::And(wanted, hn::Lt(bottom, hn::MulAdd(size, hn::Set(DF(), 0x1p-19f), row.error_bound))));
+        out[i] = cut[i] & bits_of(hn::Lt(row.base, row.error_bound));
     }
 };
 
@@ -98,17 +98,17 @@ HWY_INLINE MF has_witness(const BoxRows& box, MF wanted) {
         count += (box.cut[i] & wanted_bits) != 0;
     }
     for (int round = 0;; ++round) {
-        VF worst = hn::Set(d, 3e38f), reach = zero, slope[3] = {zero, zero, zero};
+        VF worst = hn::Set(d, 3e38f), projected_radius = zero, slope[3] = {zero, zero, zero};
         MF inside = wanted;
         for (unsigned n = 0; n < count; ++n) {
             const auto& row = box.rows[cutting[n]];
             const VF along =
                 hn::MulAdd(row.slope[0], t[0], hn::MulAdd(row.slope[1], t[1], hn::Mul(row.slope[2], t[2])));
             const VF value = hn::MulAdd(along, box.unit, row.base);
-            inside = hn::And(inside, hn::Ge(value, row.slack));
+            inside = hn::And(inside, hn::Ge(value, row.error_bound));
             const MF worse = hn::Lt(value, worst);
             worst = hn::IfThenElse(worse, value, worst);
-            reach = hn::IfThenElse(worse, row.reach, reach);
+            projected_radius = hn::IfThenElse(worse, row.projected_radius, projected_radius);
             for (unsigned k = 0; k < 3; ++k) slope[k] = hn::IfThenElse(worse, row.slope[k], slope[k]);
         }
         found = hn::Or(found, inside);
@@ -120,7 +120,7 @@ HWY_INLINE MF has_witness(const BoxRows& box, MF wanted) {
             slope[k] = hn::IfThenZeroElse(blocked, slope[k]);
             square = hn::MulAdd(slope[k], slope[k], square);
         }
-        const VF beyond = hn::MulAdd(hn::Mul(reach, box.unit), hn::Set(d, 0.05f), hn::Neg(worst));
+        const VF beyond = hn::MulAdd(hn::Mul(projected_radius, box.unit), hn::Set(d, 0.05f), hn::Neg(worst));
         const VF step = hn::Div(beyond, hn::Mul(square, box.unit));
         for (unsigned k = 0; k < 3; ++k) t[k] = hn::Max(hn::Neg(one), hn::Min(one, hn::MulAdd(step, slope[k], t[k])));
     }
@@ -136,18 +136,18 @@ struct PairTest {
 // A sum with weights ≥ 0 of two f_i that is negative on the whole cube is a proof that the box is outside. Its largest
 // value on the cube is convex and piecewise linear in the weights. So the least of all is that of one plane alone, or
 // is found where one slope vanishes: a separating axis across an edge of the frustum and one of the box. If it is ≥ 0,
-// the box meets both half-spaces at once (minimax). For any weights the sum's largest value is within Σ weight · slack
-// of what the floats of f_i, f_j give. Evaluating it here, at weights that are rounded too, is off by at most ten times
-// 2^-24 of Σ weight · (|base| + reach), which is below 2^-19. What underflow eats is far below 1e-30. The difference of
-// a convex function and that linear bound is convex, with the same corners.
+// the box meets both half-spaces at once (minimax). For any weights the sum's largest value is within Σ weight ·
+// error_bound of what the floats of f_i, f_j give. Evaluating it here, at weights that are rounded too, is off by at
+// most ten times 2^-24 of Σ weight · (|base| + radius), which is below 2^-19. What underflow eats is far below 1e-30.
+// The difference of a convex function and that linear bound is convex, with the same corners.
 HWY_INLINE PairTest test_pairs(const BoxRows& box, MF wanted) {
     const DF d;
     const VF zero = hn::Zero(d), tiny = hn::Set(d, 1e-30f);
     VF top[KernelView::kMaxPlanes], low[KernelView::kMaxPlanes];  // base with all that it may be off by
     for (unsigned i = 0; i < box.count; ++i) {
         const auto& row = box.rows[i];
-        const VF size = hn::MulAdd(row.reach, box.unit, hn::Abs(row.base));
-        const VF error = hn::MulAdd(size, hn::Set(d, 0x1p-19f), row.slack);
+        const VF size = hn::MulAdd(row.projected_radius, box.unit, hn::Abs(row.base));
+        const VF error = hn::MulAdd(size, hn::Set(d, 0x1p-19f), row.error_bound);
         top[i] = hn::Add(row.base, error);
         low[i] = hn::Sub(row.base, error);
     }
@@ -164,9 +164,9 @@ HWY_INLINE PairTest test_pairs(const BoxRows& box, MF wanted) {
                 const VF weight_a = hn::Abs(b[k]), weight_b = hn::Abs(a[k]);
                 const VF along_p = hn::MulAdd(weight_a, a[p], hn::Mul(weight_b, b[p])),
                          along_q = hn::MulAdd(weight_a, a[q], hn::Mul(weight_b, b[q]));
-                const VF reach = hn::Mul(hn::Add(hn::Abs(along_p), hn::Abs(along_q)), box.unit);
-                const VF most = hn::MulAdd(weight_a, top[i], hn::MulAdd(weight_b, top[j], reach));
-                const VF least = hn::MulAdd(weight_a, low[i], hn::MulAdd(weight_b, low[j], reach));
+                const VF projected_radius = hn::Mul(hn::Add(hn::Abs(along_p), hn::Abs(along_q)), box.unit);
+                const VF most = hn::MulAdd(weight_a, top[i], hn::MulAdd(weight_b, top[j], projected_radius));
+                const VF least = hn::MulAdd(weight_a, low[i], hn::MulAdd(weight_b, low[j], projected_radius));
                 const MF opposed = hn::Xor(hn::Lt(a[k], zero), hn::Lt(b[k], zero));
                 result.separated = hn::Or(result.separated, hn::And(opposed, hn::Lt(most, hn::Neg(tiny))));
                 result.met = hn::AndNot(hn::AndNot(hn::Gt(least, tiny), opposed), result.met);

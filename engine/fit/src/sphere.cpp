@@ -13,7 +13,7 @@
 namespace crofton::fit {
 namespace {
 
-constexpr double kSlack = 1.0 + 1e-12;
+constexpr double kGrown = 1.0 + 1e-12;
 
 // The least sphere with all of up to four points on its surface: its centre c = p₀ + Σ t_k e_k solves
 // 2 e_j · (c − p₀) = e_j², e_k = p_k − p₀, in the space that these span. Radius −1 where they are dependent.
@@ -63,7 +63,7 @@ Sphere least(std::span<const glm::dvec3> points, Support& support) {
         const Sphere sphere = through(chosen.view());
         if (sphere.radius < 0.0 || sphere.radius >= best.radius) continue;
         const bool holds = std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) {
-            return glm::distance(p, sphere.center) <= sphere.radius * kSlack;
+            return glm::distance(p, sphere.center) <= sphere.radius * kGrown;
         });
         if (holds) best = sphere, support = chosen;
     }
@@ -98,7 +98,7 @@ Result<Sphere> minimal_sphere(std::span<const glm::dvec3> points) {
             double distance = -1.0;
             for (std::size_t i = 0; i < points.size(); ++i)
                 if (const double d = glm::distance(local(i), found.center); d > distance) distance = d, farthest = i;
-            if (distance <= found.radius * kSlack) break;
+            if (distance <= found.radius * kGrown) break;
             std::array<glm::dvec3, 5> candidates{};
             std::copy(support.points.begin(), support.points.begin() + static_cast<std::ptrdiff_t>(support.count),
                       candidates.begin());

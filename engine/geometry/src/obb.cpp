@@ -71,13 +71,13 @@ bool contains_along(const Obb& box, const glm::dvec3& point, int k) {
     // half_extents[k].
     const Cross normal = exact_cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
     const glm::dvec3 axis(box.axes[k]);
-    auto reach = (normal[0] * axis.x + normal[1] * axis.y + normal[2] * axis.z) * half_extent(box, k);
+    auto projected_radius = (normal[0] * axis.x + normal[1] * axis.y + normal[2] * axis.z) * half_extent(box, k);
     auto distance = exact_difference(point.x, box.center.x) * normal[0] +
                     exact_difference(point.y, box.center.y) * normal[1] +
                     exact_difference(point.z, box.center.z) * normal[2];
-    if (reach.sign() < 0) reach = -reach;
+    if (projected_radius.sign() < 0) projected_radius = -projected_radius;
     if (distance.sign() < 0) distance = -distance;
-    return (distance - reach).sign() <= 0;
+    return (distance - projected_radius).sign() <= 0;
 }
 
 bool contains(const Obb& box, const glm::dvec3& point) {
@@ -96,13 +96,13 @@ glm::dvec3 support_point(const Obb& box, const glm::dvec3& direction) {
 Aabb aabb_of(const Obb& box) {
     Aabb result;
     for (int i = 0; i < 3; ++i) {
-        double reach = 0.0;
-        for (int k = 0; k < 3; ++k) reach += std::abs(half_edge(box, k)[i]);
+        double projected_radius = 0.0;
+        for (int k = 0; k < 3; ++k) projected_radius += std::abs(half_edge(box, k)[i]);
         // Two rounded additions lie within 2^-52 relative of the exact sum; one more step outward covers the last
         // addition.
-        reach += reach * 0x1p-51;
-        result.min[i] = std::nextafter(box.center[i] - reach, -kInfinity);
-        result.max[i] = std::nextafter(box.center[i] + reach, kInfinity);
+        projected_radius += projected_radius * 0x1p-51;
+        result.min[i] = std::nextafter(box.center[i] - projected_radius, -kInfinity);
+        result.max[i] = std::nextafter(box.center[i] + projected_radius, kInfinity);
     }
     return result;
 }
@@ -111,8 +111,8 @@ Obb obb_of(const Aabb& box) {
     Obb result;
     result.center = box.center();
     for (int i = 0; i < 3; ++i) {
-        const double reach = std::max(box.max[i] - result.center[i], result.center[i] - box.min[i]);
-        result.half_extents[i] = float_at_least(std::nextafter(reach, kInfinity));
+        const double half_width = std::max(box.max[i] - result.center[i], result.center[i] - box.min[i]);
+        result.half_extents[i] = float_at_least(std::nextafter(half_width, kInfinity));
         if (box.min[i] == box.max[i]) result.half_extents[i] = 0.0f;
     }
     return result;

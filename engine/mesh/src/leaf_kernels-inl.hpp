@@ -96,17 +96,17 @@ HWY_INLINE std::uint32_t candidates(const LeafLanes& in_a, const LeafLanes& in_b
 }
 
 // An upper bound of |w|₁ for the difference w of any two points of the leaves; the factor covers its own rounding.
-HWY_INLINE double reach_of(const LeafLanes& in_a, const LeafLanes& in_b) {
-    double reach = 0.0;
+HWY_INLINE double l1_extent_of(const LeafLanes& in_a, const LeafLanes& in_b) {
+    double l1_extent = 0.0;
     for (int i = 0; i < 3; ++i)
-        reach += HWY_MAX(in_a.all_high[i], in_b.all_high[i]) - HWY_MIN(in_a.all_low[i], in_b.all_low[i]);
-    return reach * 1.0000001;
+        l1_extent += HWY_MAX(in_a.all_high[i], in_b.all_high[i]) - HWY_MIN(in_a.all_low[i], in_b.all_low[i]);
+    return l1_extent * 1.0000001;
 }
 
 // Triangles of b whose bounds meet those of triangle `one` of a, and which are not surely on one side of its plane.
-HWY_INLINE std::uint32_t partners(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b, double reach) {
+HWY_INLINE std::uint32_t partners(const LeafLanes& in_a, std::uint32_t one, const LeafLanes& in_b, double l1_extent) {
     const DD d;
-    const VD error = hn::Set(d, kDeterminantError * reach * in_a.normal_size[one] + kUnderflow);
+    const VD error = hn::Set(d, kDeterminantError * l1_extent * in_a.normal_size[one] + kUnderflow);
     std::uint32_t lanes = 0;
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
         MD near = hn::Eq(hn::Zero(d), hn::Zero(d));
@@ -169,14 +169,14 @@ HWY_INLINE double magnitude_of(const LeafLanes& in_a, const LeafLanes& in_b) {
     return sum;
 }
 
-// Bit l is set unless begin[l] lies at least sqrt(limit) beyond `end`, by more than `doubt`. The factor covers a
+// Bit l is set unless begin[l] lies at least sqrt(limit) beyond `end`, by more than `error_bound`. The factor covers a
 // direction that is not quite of unit length.
-HWY_INLINE std::uint32_t lanes_before(const double* begin, double end, double doubt, double limit) {
+HWY_INLINE std::uint32_t lanes_before(const double* begin, double end, double error_bound, double limit) {
     const DD d;
     std::uint32_t beyond = 0;
     for (std::size_t l = 0; l < mesh::kMeshLeafWidth; l += hn::Lanes(d)) {
         const VD from = hn::Load(d, begin + l), to = hn::Set(d, end);
-        const VD gap = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(from, to), hn::Set(d, doubt)));
+        const VD gap = hn::Max(hn::Zero(d), hn::Sub(hn::Sub(from, to), hn::Set(d, error_bound)));
         beyond |= bits_of(d, hn::Gt(hn::Mul(hn::Mul(gap, gap), hn::Set(d, 0.999998)), hn::Set(d, limit)), l);
     }
     return ~beyond;

@@ -92,7 +92,7 @@ struct Lanes {
     V error;
 };
 
-HWY_INLINE Lanes prepare(D d, const mesh::MeshNode& node, std::size_t l, const QueryBox& q, float slop) {
+HWY_INLINE Lanes prepare(D d, const mesh::MeshNode& node, std::size_t l, const QueryBox& q, float margin) {
     Lanes s;
     V offset[3], axis[3][3];
     for (int i = 0; i < 3; ++i) {
@@ -109,33 +109,33 @@ HWY_INLINE Lanes prepare(D d, const mesh::MeshNode& node, std::size_t l, const Q
         }
     }
     const V sum = hn::Add(s.half[0], hn::Add(s.half[1], s.half[2]));
-    s.error = hn::MulAdd(sum, hn::Set(d, kBoxError), hn::Set(d, kBoxError * half_sum(q) + slop));
+    s.error = hn::MulAdd(sum, hn::Set(d, kBoxError), hn::Set(d, kBoxError * half_sum(q) + margin));
     return s;
 }
 
 // The gap along face normal i of q, and along face normal j of the lanes; negative: overlap.
 HWY_INLINE V gap_of_query_face(D d, const Lanes& s, const QueryBox& q, int i) {
-    const V reach = hn::MulAdd(
+    const V projected_radius = hn::MulAdd(
         s.half[0], s.magnitude[i][0],
         hn::MulAdd(s.half[1], s.magnitude[i][1], hn::MulAdd(s.half[2], s.magnitude[i][2], hn::Set(d, q.half[i]))));
-    return hn::Sub(hn::Abs(s.t[i]), hn::Add(reach, s.error));
+    return hn::Sub(hn::Abs(s.t[i]), hn::Add(projected_radius, s.error));
 }
 HWY_INLINE V gap_of_lane_face(D d, const Lanes& s, const QueryBox& q, int j) {
     const V along = hn::MulAdd(s.t[0], s.r[0][j], hn::MulAdd(s.t[1], s.r[1][j], hn::Mul(s.t[2], s.r[2][j])));
-    const V reach =
+    const V projected_radius =
         hn::MulAdd(hn::Set(d, q.half[0]), s.magnitude[0][j],
                    hn::MulAdd(hn::Set(d, q.half[1]), s.magnitude[1][j],
                               hn::MulAdd(hn::Set(d, q.half[2]), s.magnitude[2][j], hn::Add(s.half[j], s.error))));
-    return hn::Sub(hn::Abs(along), reach);
+    return hn::Sub(hn::Abs(along), projected_radius);
 }
 
-// Bit l is set unless lane l's box is surely farther than slop from q. Edge axes are not of unit length: there `slop`,
-// like the error, counts in full, which is on the safe side.
-HWY_INLINE std::uint32_t overlap_mask(const mesh::MeshNode& node, const QueryBox& q, float slop) {
+// Bit l is set unless lane l's box is surely farther than `margin` from q. Edge axes are not of unit length: there
+// `margin`, like the error, counts in full, which is on the safe side.
+HWY_INLINE std::uint32_t overlap_mask(const mesh::MeshNode& node, const QueryBox& q, float margin) {
     const D d;
     std::uint32_t apart = 0;
     for (std::size_t l = 0; l < mesh::kMeshNodeWidth; l += hn::Lanes(d)) {
-        const Lanes s = prepare(d, node, l, q, slop);
+        const Lanes s = prepare(d, node, l, q, margin);
         V gap = gap_of_query_face(d, s, q, 0);
         gap = hn::Max(gap, hn::Max(gap_of_query_face(d, s, q, 1), gap_of_query_face(d, s, q, 2)));
         gap = hn::Max(gap, gap_of_lane_face(d, s, q, 0));
@@ -148,12 +148,12 @@ HWY_INLINE std::uint32_t overlap_mask(const mesh::MeshNode& node, const QueryBox
                 for (int j = 0; j < 3; ++j) {
                     const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
                     const V along = hn::Abs(hn::NegMulAdd(s.t[i1], s.r[i2][j], hn::Mul(s.t[i2], s.r[i1][j])));
-                    const V reach =
+                    const V projected_radius =
                         hn::MulAdd(h1, s.magnitude[i2][j],
                                    hn::MulAdd(h2, s.magnitude[i1][j],
                                               hn::MulAdd(s.half[j1], s.magnitude[i][j2],
                                                          hn::MulAdd(s.half[j2], s.magnitude[i][j1], s.error))));
-                    gap = hn::Max(gap, hn::Sub(along, reach));
+                    gap = hn::Max(gap, hn::Sub(along, projected_radius));
                 }
             }
         }
@@ -183,8 +183,8 @@ HWY_INLINE void direction_between(const float* from, const float* to, float* way
 HWY_INLINE void measure(const QueryBox& q, Direction& direction) {
     direction.high = 0.0f;
     for (int k = 0; k < 3; ++k) {
-        const float reach = q.half[k] * along(q.axes[k], direction.way);
-        direction.high += reach < 0.0f ? -reach : reach;
+        const float projected_radius = q.half[k] * along(q.axes[k], direction.way);
+        direction.high += projected_radius < 0.0f ? -projected_radius : projected_radius;
     }
     direction.low = -direction.high;
 }
@@ -202,7 +202,7 @@ HWY_INLINE void measure(const QueryBox& q, const float (&corner)[3][4], Directio
 // anything far from them remains. Rounding of the projection scales with the offset, which may be long: 2^-20 of it.
 HWY_INLINE V gap_along(D d, const mesh::MeshNode& node, std::size_t l, const Lanes& s, const QueryBox& q,
                        const Direction& direction) {
-    V shift = hn::Zero(d), length = hn::Zero(d), reach = s.error;
+    V shift = hn::Zero(d), length = hn::Zero(d), projected_radius = s.error;
     for (int i = 0; i < 3; ++i) {
         const V offset = hn::Sub(hn::Load(d, node.center[i] + l), hn::Set(d, q.center[i]));
         shift = hn::MulAdd(offset, hn::Set(d, direction.way[i]), shift);
@@ -212,20 +212,20 @@ HWY_INLINE V gap_along(D d, const mesh::MeshNode& node, std::size_t l, const Lan
         V axis_along = hn::Zero(d);
         for (int i = 0; i < 3; ++i)
             axis_along = hn::MulAdd(hn::Load(d, node.axes[k][i] + l), hn::Set(d, direction.way[i]), axis_along);
-        reach = hn::MulAdd(s.half[k], hn::Abs(axis_along), reach);
+        projected_radius = hn::MulAdd(s.half[k], hn::Abs(axis_along), projected_radius);
     }
     const V ahead = hn::Sub(shift, hn::Set(d, direction.high)), behind = hn::Sub(hn::Set(d, direction.low), shift);
-    return hn::Sub(hn::Max(ahead, behind), hn::MulAdd(length, hn::Set(d, 0x1p-20f), reach));
+    return hn::Sub(hn::Max(ahead, behind), hn::MulAdd(length, hn::Set(d, 0x1p-20f), projected_radius));
 }
 
 // A lower bound of the squared distance of q to each lane's box. In either frame the gaps along the three perpendicular
 // face normals add up by Pythagoras. The last factor covers the rounding of the squares.
-HWY_INLINE void distance_bounds(const mesh::MeshNode& node, const QueryBox& q, float slop, const Direction& first,
+HWY_INLINE void distance_bounds(const mesh::MeshNode& node, const QueryBox& q, float margin, const Direction& first,
                                 const Direction& second, float* bounds) {
     const D d;
     const V zero = hn::Zero(d);
     for (std::size_t l = 0; l < mesh::kMeshNodeWidth; l += hn::Lanes(d)) {
-        const Lanes s = prepare(d, node, l, q, slop);
+        const Lanes s = prepare(d, node, l, q, margin);
         V in_query = zero, in_lane = zero;
         for (int k = 0; k < 3; ++k) {
             const V a = hn::Max(zero, gap_of_query_face(d, s, q, k)), b = hn::Max(zero, gap_of_lane_face(d, s, q, k));

@@ -22,7 +22,7 @@ namespace {
 // A point carried to the other frame in float. Entries of the matrix, three products, three sums and the translation
 // are each rounded by 2^-24. In all that is below 7.2e-7 of the mesh's extent and 2.4e-7 of the translation. The way
 // back takes the transpose for the inverse, which is off by the rotation's own deviation.
-float slop_of(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose) {
+float error_bound_of(const mesh::MeshTree& a, const mesh::MeshTree& b, const RigidTransform& pose) {
     double deviation = 0.0, shift = 0.0;
     for (int i = 0; i < 3; ++i) {
         shift = std::max(shift, std::abs(pose.translation[i]));
@@ -56,7 +56,7 @@ MeshPair make_pair(const mesh::MeshTree& a, const mesh::MeshTree& b, const Rigid
         pair.to_a.offset[i] = static_cast<float>(pose.translation[i]);
         pair.to_b.offset[i] = static_cast<float>(back[i]);
     }
-    pair.slop = slop_of(a, b, pose);
+    pair.error_bound = error_bound_of(a, b, pose);
     pair.tolerance = static_cast<float>(tolerance * (1.0 + 1e-6));
     return pair;
 }

@@ -19,7 +19,7 @@ struct MeshPair {
     Motion to_a, to_b;
     double exact_rotation[3][3], exact_translation[3];
     // Bound of the float rounding of any point or box that is carried from one mesh's frame to the other's.
-    float slop;
+    float error_bound;
     float tolerance;  // pairs farther apart than this are left out
 };
 

@@ -92,10 +92,10 @@ HWY_INLINE bool visit_leaves(const MeshPair& pair, std::uint32_t a, std::uint32_
     load_pair(pair, a, b, leaves);
     const mesh::MeshLeaf &leaf_a = pair.leaves[0][a], &leaf_b = pair.leaves[1][b];
     counts.triangle_tests += std::uint64_t{leaf_a.count} * leaf_b.count;
-    const double reach = reach_of(leaves.a, leaves.b);
+    const double l1_extent = l1_extent_of(leaves.a, leaves.b);
     for (std::uint32_t mask = candidates(leaves.a, leaves.b) & all_lanes(leaf_a); mask != 0; mask &= mask - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
-        std::uint32_t near = partners(leaves.a, lane, leaves.b, reach) & all_lanes(leaf_b);
+        std::uint32_t near = partners(leaves.a, lane, leaves.b, l1_extent) & all_lanes(leaf_b);
         for (; near != 0; near &= near - 1) {
             gather(leaves.a, lane, leaves.b, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(near)),
                    gathered);
@@ -127,7 +127,7 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
     Step stack[kMeshStackSize];
     std::uint32_t height = 0;
     stack[height++] = {root_of(pair, 0), root_of(pair, 1), 0.0f};
-    const float slop = pair.slop + pair.tolerance;
+    const float margin = pair.error_bound + pair.tolerance;
     LeafPair leaves;
     TrianglePairs gathered;
     LeafQueue queue;
@@ -153,7 +153,7 @@ void VisitOverlaps(const MeshPair& pair, bool at_once, PairVisitor visit, Traver
         const mesh::MeshNode& node = pair.nodes[into_a ? 0 : 1][index];
         const QueryBox box = query_box(pair, step.a, step.b, into_a);
         counts.box_tests += node.count;
-        for (std::uint32_t mask = overlap_mask(node, box, slop); mask != 0; mask &= mask - 1) {
+        for (std::uint32_t mask = overlap_mask(node, box, margin); mask != 0; mask &= mask - 1) {
             const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
             stack[height++] = below(step, into_a, node, index, lane, 0.0f);
             if (node.child[lane] & mesh::kMeshLeaf)
@@ -185,10 +185,10 @@ bool visit_near_leaves(const MeshPair& pair, const Step& step, LeafPair& leaves,
     counts.triangle_tests += std::uint64_t{hwy::PopCount(of_a)} * hwy::PopCount(of_b);
     alignas(64) double end_of_a[mesh::kMeshLeafWidth], begin_of_b[mesh::kMeshLeafWidth];
     extents_along(leaves.a, leaves.b, nearest.direction, end_of_a, begin_of_b);
-    const double doubt = 0x1p-48 * magnitude_of(leaves.a, leaves.b);
+    const double error_bound = 0x1p-48 * magnitude_of(leaves.a, leaves.b);
     for (std::uint32_t mask = of_a; mask != 0; mask &= mask - 1) {
         const auto lane = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(mask));
-        std::uint32_t near = lanes_before(begin_of_b, end_of_a[lane], doubt, nearest.squared) & of_b;
+        std::uint32_t near = lanes_before(begin_of_b, end_of_a[lane], error_bound, nearest.squared) & of_b;
         if (near == 0) continue;
         near &= near_mask(leaves.a, lane, leaves.b, nearest.squared);
         for (; near != 0; near &= near - 1) {
@@ -268,7 +268,7 @@ void VisitNearest(const MeshPair& pair, const Nearest& nearest, PairVisitor visi
         HWY_ALIGN float bounds[mesh::kMeshNodeWidth];
         Direction global, own;
         choose_directions(pair, step, into_a, box, nearest, global, own);
-        distance_bounds(node, box, pair.slop, global, own, bounds);
+        distance_bounds(node, box, pair.error_bound, global, own, bounds);
         // The nearest child goes on top; insertion keeps equal ones in lane order.
         const std::uint32_t base = height;
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {

@@ -17,12 +17,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DT = hn::CappedTag<float, kMeshLeafWidth>;
 using VT = hn::Vec<DT>;
 
-// Bit l is set unless triangle l is surely farther than slop from the box along one of the box's axes. A product with
-// an axis is off by 2^-21 of the sum of magnitudes of the offset.
-HWY_INLINE std::uint32_t near_triangles(const MeshLeaf& leaf, const QueryBox& q, float slop) {
+// Bit l is set unless triangle l is surely farther than `margin` from the box along one of the box's axes. A product
+// with an axis is off by 2^-21 of the sum of magnitudes of the offset.
+HWY_INLINE std::uint32_t near_triangles(const MeshLeaf& leaf, const QueryBox& q, float margin) {
     const DT d;
     std::uint32_t apart = 0;
-    const float reach = (half_sum(q) * kBoxError) + slop;
+    const float query_margin = (half_sum(q) * kBoxError) + margin;
     for (std::size_t l = 0; l < kMeshLeafWidth; l += hn::Lanes(d)) {
         VT offset[3][3], size = hn::Zero(d);
         for (int v = 0; v < 3; ++v)
@@ -42,13 +42,13 @@ HWY_INLINE std::uint32_t near_triangles(const MeshLeaf& leaf, const QueryBox& q,
             }
             gap = hn::Max(gap, hn::Sub(hn::Max(low, hn::Neg(high)), hn::Set(d, q.half[k])));
         }
-        const VT error = hn::MulAdd(size, hn::Set(d, 0x1p-20f), hn::Set(d, reach));
+        const VT error = hn::MulAdd(size, hn::Set(d, 0x1p-20f), hn::Set(d, query_margin));
         apart |= simd::mask_bits(d, hn::Gt(gap, error)) << l;
     }
     return ~apart & ((1u << leaf.count) - 1u);
 }
 
-void VisitNear(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float slop, TriangleVisitor visit) {
+void VisitNear(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float margin, TriangleVisitor visit) {
     const QueryBox q = box_of(box);
     std::uint32_t stack[kMeshStackSize], height = 0;
     stack[height++] = 0;
@@ -56,16 +56,16 @@ void VisitNear(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box
         const std::uint32_t child = stack[--height];
         if (child & kMeshLeaf) {
             const MeshLeaf& leaf = leaves[child & ~kMeshLeaf];
-            for (std::uint32_t lanes = near_triangles(leaf, q, slop); lanes != 0; lanes &= lanes - 1)
+            for (std::uint32_t lanes = near_triangles(leaf, q, margin); lanes != 0; lanes &= lanes - 1)
                 if (visit(leaf, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes)))) return;
             continue;
         }
-        for (std::uint32_t mask = overlap_mask(nodes[child], q, slop); mask != 0; mask &= mask - 1)
+        for (std::uint32_t mask = overlap_mask(nodes[child], q, margin); mask != 0; mask &= mask - 1)
             stack[height++] = nodes[child].child[hwy::Num0BitsBelowLS1Bit_Nonzero32(mask)];
     }
 }
 
-void VisitNearestTo(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float slop,
+void VisitNearestTo(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float margin,
                     const double& squared, TriangleVisitor visit) {
     struct Waiting {
         std::uint32_t child;
@@ -81,7 +81,7 @@ void VisitNearestTo(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox
         if (next.child & kMeshLeaf) {
             const MeshLeaf& leaf = leaves[next.child & ~kMeshLeaf];
             const double far = squared < 1e30 ? std::sqrt(squared) : 1e15;
-            for (std::uint32_t lanes = near_triangles(leaf, q, static_cast<float>(far * 1.000001) + slop); lanes != 0;
+            for (std::uint32_t lanes = near_triangles(leaf, q, static_cast<float>(far * 1.000001) + margin); lanes != 0;
                  lanes &= lanes - 1)
                 if (visit(leaf, static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes)))) return;
             continue;
@@ -89,7 +89,7 @@ void VisitNearestTo(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox
         const MeshNode& node = nodes[next.child];
         HWY_ALIGN float bounds[kMeshNodeWidth];
         Direction none{};
-        distance_bounds(node, q, slop, none, none, bounds);
+        distance_bounds(node, q, margin, none, none, bounds);
         // The nearest child goes on top; insertion keeps equal ones in lane order.
         const std::uint32_t base = height;
         for (std::uint32_t lane = 0; lane < node.count; ++lane) {
@@ -110,14 +110,14 @@ namespace crofton::mesh {
 HWY_EXPORT(VisitNear);
 HWY_EXPORT(VisitNearestTo);
 
-void visit_triangles_near(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float slop,
+void visit_triangles_near(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float margin,
                           TriangleVisitor visit) {
-    HWY_DYNAMIC_DISPATCH(VisitNear)(nodes, leaves, box, slop, visit);
+    HWY_DYNAMIC_DISPATCH(VisitNear)(nodes, leaves, box, margin, visit);
 }
 
-void visit_nearest_triangles(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float slop,
+void visit_nearest_triangles(const MeshNode* nodes, const MeshLeaf* leaves, const MeshBox& box, float margin,
                              const double& squared, TriangleVisitor visit) {
-    HWY_DYNAMIC_DISPATCH(VisitNearestTo)(nodes, leaves, box, slop, squared, visit);
+    HWY_DYNAMIC_DISPATCH(VisitNearestTo)(nodes, leaves, box, margin, squared, visit);
 }
 
 }  // namespace crofton::mesh

@@ -88,7 +88,7 @@ RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any) {
     const glm::dvec3 size = glm::abs(ray.direction);
     query.scale = power_of_two(std::max({size.x, size.y, size.z}));
     const double per_scale = 1.0 / query.scale;
-    float along[3], reach[3];
+    float along[3], magnitude[3];
     double far = 0.0;
     for (int i = 0; i < 3; ++i) {
         query.origin[i] = ray.origin[i];
@@ -96,13 +96,13 @@ RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any) {
         query.start[i] = static_cast<float>(ray.origin[i]);
         // A component of 0 would make 0 · infinity; this one bends the ray by less than its rounding.
         const auto exact = static_cast<float>(ray.direction[i] * per_scale);
-        reach[i] = std::max(std::abs(exact), 1e-18f);
-        query.direction_f[i] = along[i] = std::copysign(reach[i], exact);
+        magnitude[i] = std::max(std::abs(exact), 1e-18f);
+        query.direction_f[i] = along[i] = std::copysign(magnitude[i], exact);
         query.inverse[i] = 1.0f / along[i];
         far = std::max(far, std::abs(ray.origin[i]));
     }
-    const auto y_above_x = static_cast<std::uint32_t>(reach[1] > reach[0]);
-    const auto z_above_both = static_cast<std::uint32_t>(reach[2] > std::max(reach[0], reach[1]));
+    const auto y_above_x = static_cast<std::uint32_t>(magnitude[1] > magnitude[0]);
+    const auto z_above_both = static_cast<std::uint32_t>(magnitude[2] > std::max(magnitude[0], magnitude[1]));
     const std::uint32_t z = z_above_both * 2u + (1u - z_above_both) * y_above_x;
     constexpr std::uint32_t kAfter[] = {0, 1, 2, 0, 1};
     query.axis[2] = z;
@@ -113,7 +113,7 @@ RayQuery query_of(const Ray& ray, const MeshTree& mesh, bool any) {
     query.max_t = ray.max_t;
     // Rounding of origin, direction, axes and projections, each at most 2^-24 relative, at any point the mesh can
     // reach.
-    query.slop = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
+    query.error_bound = static_cast<float>(4e-6 * (static_cast<double>(mesh.extent()) + far));
     const MeshParts& parts = mesh.parts();
     query.nodes = parts.ray_nodes.data();
     query.mesh_nodes = parts.nodes.data();
@@ -131,13 +131,14 @@ std::optional<double> entry_of(const Ray& ray, const Obb& box) {
     double first = 0.0, last = ray.max_t;
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 n = glm::cross(glm::dvec3(box.axes[(k + 1) % 3]), glm::dvec3(box.axes[(k + 2) % 3]));
-        const double reach = static_cast<double>(box.half_extents[k]) * std::abs(glm::dot(n, glm::dvec3(box.axes[k])));
+        const double projected_radius =
+            static_cast<double>(box.half_extents[k]) * std::abs(glm::dot(n, glm::dvec3(box.axes[k])));
         const double at = glm::dot(n, offset), speed = glm::dot(n, ray.direction);
         if (speed == 0.0) {
-            if (std::abs(at) > reach) return std::nullopt;
+            if (std::abs(at) > projected_radius) return std::nullopt;
             continue;
         }
-        const double t0 = (-reach - at) / speed, t1 = (reach - at) / speed;
+        const double t0 = (-projected_radius - at) / speed, t1 = (projected_radius - at) / speed;
         first = std::max(first, std::min(t0, t1));
         last = std::min(last, std::max(t0, t1));
     }

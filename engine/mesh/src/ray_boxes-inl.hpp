@@ -15,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::mesh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The hierarchy of aligned boxes, grown by `slop`. Of each axis: where the ray meets the nearer face and the farther
-// one, seen from its start. The parameter is a fused or plain product less one made beforehand. The latter's rounding
-// moves a face by 2^-24 of the start, for which `slop` has room.
+// The hierarchy of aligned boxes, grown by `error_bound`. Of each axis: where the ray meets the nearer face and the
+// farther one, seen from its start. The parameter is a fused or plain product less one made beforehand. The latter's
+// rounding moves a face by 2^-24 of the start, for which `error_bound` has room.
 class AlignedBoxes {
   public:
     using Node = BoxNode;
@@ -27,9 +27,9 @@ class AlignedBoxes {
         const D d;
         for (int i = 0; i < 3; ++i) {
             const bool backward = q.direction_f[i] < 0.0f;
-            const float slop = backward ? -q.slop : q.slop;
-            near_start_[i] = hn::Set(d, (q.start[i] + slop) * q.inverse[i]);
-            far_start_[i] = hn::Set(d, (q.start[i] - slop) * q.inverse[i]);
+            const float error_bound = backward ? -q.error_bound : q.error_bound;
+            near_start_[i] = hn::Set(d, (q.start[i] + error_bound) * q.inverse[i]);
+            far_start_[i] = hn::Set(d, (q.start[i] - error_bound) * q.inverse[i]);
             inverse_[i] = hn::Set(d, q.inverse[i]);
             near_[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
             far_[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);

@@ -24,10 +24,10 @@ HWY_INLINE float limit_of(const RayQuery& q, double t) {
 
 // Triangles that the ray may meet before `limit`, in float. In the plane coordinates the ray is the origin, and it
 // passes outside of a triangle if two of the edges have it on different sides (Woop, Benthin, Wald 2013). Positions are
-// taken from a point of the ray beside the leaf; all roundings up to there, and of the shear, are within 2 slop. With m
-// the largest plane coordinate, an edge's value is off by at most 8 m slop + 8 slop² + 2^-21 m². No triangle is hit
-// before its nearest vertex along the ray, whose parameter is off by less than the slop: 1 / direction_f[z] is at
-// most 1.
+// taken from a point of the ray beside the leaf. Let e be the query's error bound: all roundings up to there, and of
+// the shear, are within 2 e. With m the largest plane coordinate, an edge's value is off by at most 8 m e + 8 e² +
+// 2^-21 m². No triangle is hit before its nearest vertex along the ray, whose parameter is off by less than e: 1 /
+// direction_f[z] is at most 1.
 HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& q, float limit) {
     const hn::CappedTag<float, mesh::kMeshLeafWidth> d;
     using VF = hn::Vec<decltype(d)>;
@@ -47,8 +47,9 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
             nearest = hn::Min(nearest, hn::Mul(pz, hn::Set(d, q.inverse[z])));
             m = hn::Max(m, hn::Max(hn::Abs(px[v]), hn::Abs(py[v])));
         }
-        const VF slop = hn::Set(d, 8.0f * q.slop);
-        const VF error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), slop), m, hn::Mul(slop, hn::Set(d, q.slop)));
+        const VF error_bound = hn::Set(d, 8.0f * q.error_bound);
+        const VF error = hn::MulAdd(hn::MulAdd(m, hn::Set(d, 0x1p-21f), error_bound), m,
+                                    hn::Mul(error_bound, hn::Set(d, q.error_bound)));
         VF low = hn::Set(d, 3e38f), high = hn::Set(d, -3e38f);
         for (int v = 0; v < 3; ++v) {
             const int w = (v + 1) % 3;
@@ -57,7 +58,7 @@ HWY_INLINE std::uint32_t candidates(const mesh::MeshLeaf& leaf, const RayQuery& 
             high = hn::Max(high, side);
         }
         const auto apart = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
-        const auto beyond = hn::Gt(nearest, hn::Set(d, limit - along + q.slop));
+        const auto beyond = hn::Gt(nearest, hn::Set(d, limit - along + q.error_bound));
         lanes |= simd::mask_bits(d, hn::Or(apart, beyond)) << l;
     }
     return ~lanes & ((1u << mesh::kMeshLeafWidth) - 1u);  // unused lanes repeat the last triangle

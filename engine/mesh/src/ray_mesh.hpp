@@ -22,7 +22,7 @@ struct RayQuery {
     // direction_f[axis[k]] / direction_f[axis[2]].
     std::uint32_t axis[3];
     float shear[2];
-    float slop;            // bound of the rounding at any point of the mesh
+    float error_bound;     // bound of the rounding at any point of the mesh
     const BoxNode* nodes;  // null: the ray goes through mesh_nodes
     const mesh::MeshNode* mesh_nodes;
     const mesh::MeshLeaf* leaves;

@@ -22,8 +22,8 @@ class PacketBoxes {
   public:
     HWY_INLINE explicit PacketBoxes(std::span<const RayQuery> queries) {
         const RayQuery& first = queries[0];
-        float slop = 0.0f;
-        for (const RayQuery& q : queries) slop = std::max(slop, q.slop);
+        float error_bound = 0.0f;
+        for (const RayQuery& q : queries) error_bound = std::max(error_bound, q.error_bound);
         for (int i = 0; i < 3; ++i) {
             float least_start = first.start[i], most_start = least_start;
             for (const RayQuery& q : queries) {
@@ -31,7 +31,7 @@ class PacketBoxes {
                 most_start = std::max(most_start, q.start[i]);
             }
             const bool backward = first.direction_f[i] < 0.0f;
-            const float outwards = backward ? -slop : slop;
+            const float outwards = backward ? -error_bound : error_bound;
             for (std::size_t r = 0; r < kRayPacketWidth; ++r) {
                 const RayQuery& q = queries[r < queries.size() ? r : 0];
                 const float inverse = q.inverse[i] * static_cast<float>(first.scale / q.scale);
@@ -43,8 +43,8 @@ class PacketBoxes {
             most_[i] = *std::max_element(inverse_[i], inverse_[i] + kRayPacketWidth);
             near_[i] = static_cast<std::size_t>(i) + (backward ? 3 : 0);
             far_[i] = static_cast<std::size_t>(i) + (backward ? 0 : 3);
-            near_shift_[i] = backward ? least_start - slop : most_start + slop;
-            far_shift_[i] = backward ? most_start + slop : least_start - slop;
+            near_shift_[i] = backward ? least_start - error_bound : most_start + error_bound;
+            far_shift_[i] = backward ? most_start + error_bound : least_start - error_bound;
         }
     }
 

@@ -36,7 +36,7 @@ class OrientedBoxes {
                     along = hn::MulAdd(axis, offset[i], along);
                     speed = hn::MulAdd(axis, hn::Set(d, query_.direction_f[i]), speed);
                 }
-                const V half = hn::Add(hn::Load(d, node.half[k] + l), hn::Set(d, query_.slop));
+                const V half = hn::Add(hn::Load(d, node.half[k] + l), hn::Set(d, query_.error_bound));
                 // Parallel to the slab: a tiny speed keeps the bounds finite and on the right sides.
                 const V least = hn::Set(d, 1e-18f);
                 speed = hn::IfThenElse(hn::Lt(hn::Abs(speed), least), least, speed);

@@ -27,16 +27,16 @@ struct TrianglePairs {
 };
 
 // An upper bound of |w|₁ for the difference w of any two of the six points; the factor covers the rounding of the sums.
-HWY_INLINE VD reach_of(DD d, const VD (&a)[3][3], const VD (&b)[3][3]) {
-    VD reach = hn::Zero(d);
+HWY_INLINE VD l1_extent_of(DD d, const VD (&a)[3][3], const VD (&b)[3][3]) {
+    VD l1_extent = hn::Zero(d);
     for (int i = 0; i < 3; ++i) {
         const VD low =
             hn::Min(hn::Min(a[0][i], hn::Min(a[1][i], a[2][i])), hn::Min(b[0][i], hn::Min(b[1][i], b[2][i])));
         const VD high =
             hn::Max(hn::Max(a[0][i], hn::Max(a[1][i], a[2][i])), hn::Max(b[0][i], hn::Max(b[1][i], b[2][i])));
-        reach = hn::Add(reach, hn::Sub(high, low));
+        l1_extent = hn::Add(l1_extent, hn::Sub(high, low));
     }
-    return hn::Mul(reach, hn::Set(d, 1.0000001));
+    return hn::Mul(l1_extent, hn::Set(d, 1.0000001));
 }
 
 // Determinants whose signs say on which side of a plane three points lie.
@@ -46,7 +46,7 @@ struct Sides {
 };
 
 // Of p's points, of the plane of q.
-HWY_INLINE Sides sides_of(DD d, const VD (&q)[3][3], const VD (&p)[3][3], VD reach) {
+HWY_INLINE Sides sides_of(DD d, const VD (&q)[3][3], const VD (&p)[3][3], VD l1_extent) {
     VD u[3], v[3], normal[3];
     for (int i = 0; i < 3; ++i) {
         u[i] = hn::Sub(q[1][i], q[0][i]);
@@ -54,7 +54,7 @@ HWY_INLINE Sides sides_of(DD d, const VD (&q)[3][3], const VD (&p)[3][3], VD rea
     }
     cross(u, v, normal);
     Sides sides;
-    sides.error = hn::MulAdd(hn::Mul(reach, hn::Set(d, kDeterminantError)), hn::Mul(sum_abs(u), sum_abs(v)),
+    sides.error = hn::MulAdd(hn::Mul(l1_extent, hn::Set(d, kDeterminantError)), hn::Mul(sum_abs(u), sum_abs(v)),
                              hn::Set(d, kUnderflow));
     for (int k = 0; k < 3; ++k) {
         VD w[3];
@@ -70,7 +70,7 @@ HWY_INLINE MD all_on_one_side(const Sides& s) {
     return hn::Or(hn::Gt(low, s.error), hn::Lt(high, hn::Neg(s.error)));
 }
 
-// How far the nearest of the three values is beyond doubt; the signs are certain iff this is positive.
+// How far the nearest of the three values is beyond its error bound; the signs are certain iff this is positive.
 HWY_INLINE VD certainty(const VD* value, const VD* error) {
     const auto margin = [&](int k) HWY_ATTR { return hn::Sub(hn::Abs(value[k]), error[k]); };
     return hn::Min(margin(0), hn::Min(margin(1), margin(2)));
@@ -91,12 +91,12 @@ HWY_INLINE void judge_lanes(DD d, const TrianglePairs& pairs, std::size_t l, Lan
             a[v][i] = hn::Load(d, pairs.a[v][i] + l);
             b[v][i] = hn::Load(d, pairs.b[v][i] + l);
         }
-    const VD reach = reach_of(d, a, b);
-    const Sides of_a = sides_of(d, b, a, reach), of_b = sides_of(d, a, b, reach);
+    const VD l1_extent = l1_extent_of(d, a, b);
+    const Sides of_a = sides_of(d, b, a, l1_extent), of_b = sides_of(d, a, b, l1_extent);
     const MD apart = hn::Or(all_on_one_side(of_a), all_on_one_side(of_b));
     if (hn::AllTrue(d, apart)) return;
     VD along_b[3][3], size_b[3];
-    const VD scale = hn::Mul(reach, hn::Set(d, kDeterminantError));
+    const VD scale = hn::Mul(l1_extent, hn::Set(d, kDeterminantError));
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) along_b[j][i] = hn::Sub(b[(j + 1) % 3][i], b[j][i]);
         size_b[j] = hn::Mul(sum_abs(along_b[j]), scale);

@@ -41,10 +41,10 @@ double least_w_of(const OcclusionView& view) {
     return 0.5 * least;
 }
 
-double near_reach_of(const OcclusionView& view) {
-    double reach = 0.0;
-    for (unsigned i = 0; i < 4; ++i) reach = std::max(reach, glm::length(near_corner(view, i)));
-    return reach * (1.0 + 1e-9);
+double near_radius_of(const OcclusionView& view) {
+    double radius = 0.0;
+    for (unsigned i = 0; i < 4; ++i) radius = std::max(radius, glm::length(near_corner(view, i)));
+    return radius * (1.0 + 1e-9);
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ Result<OcclusionView> occlusion_view_of(const Camera& camera) {
         view.rows[3] = row_of(-forward, 0.0);
         view.least_w = 0.5;
     }
-    view.near_reach = near_reach_of(view);
+    view.near_radius = near_radius_of(view);
     return view;
 }
 
@@ -113,7 +113,7 @@ Result<OcclusionView> occlusion_view_of(const glm::dmat4& to_clip, DepthRange de
     view.least_w = least_w_of(view);
     if (!(view.least_w > 0.0) || !std::isfinite(view.least_w))
         return fail(ErrorCode::unsupported, kNoItem, "occlusion view: the near plane reaches the eye");
-    view.near_reach = near_reach_of(view);
+    view.near_radius = near_radius_of(view);
     // The eye comes from quotients of products of three entries; 2^-36 leaves room for a matrix of poor condition.
     const glm::dvec3 relative = view.origin - origin;
     view.eye_error = view.perspective ? 0x1p-36 * glm::length(relative) + 0x1p-50 * glm::length(origin) : 0.0;

@@ -38,7 +38,7 @@ class Outline {
                 edges_[n++] = {level ? std::min(xp, xq) : xp, yp, yq, level ? 0.0f : across / up, level ? size : 0.0f};
             }
         // A row's end on an edge: a difference, a quotient, a product and a sum round, of the edge's width and of x.
-        slack_ = margin_ + 0x1p-21f * wide + 0x1p-22f * (boxes.high_x[box] + wide);
+        column_margin_ = margin_ + 0x1p-21f * wide + 0x1p-22f * (boxes.high_x[box] + wide);
     }
 
     // The columns [begin, end) that the outline touches in eight rows from `row` on, margins included.
@@ -47,7 +47,7 @@ class Outline {
         const DI di;
         for (std::size_t r = 0; r < kLanes; r += hn::Lanes(d)) {
             const VF bottom = hn::Iota(d, static_cast<float>(row + static_cast<std::int32_t>(r)));
-            const VF margin = hn::Set(d, margin_ + kRowSlack), slack = hn::Set(d, slack_);
+            const VF margin = hn::Set(d, margin_ + kRowMargin), column_margin = hn::Set(d, column_margin_);
             const VF from = hn::Sub(bottom, margin), to = hn::Add(hn::Add(bottom, hn::Set(d, 1.0f)), margin);
             VF left = hn::Set(d, 3e8f), right = hn::Set(d, -3e8f);
             for (const OutlineEdge& edge : edges_) {
@@ -61,8 +61,8 @@ class Outline {
                 right = hn::IfThenElse(meets, hn::Max(right, most), right);
             }
             const VF w = hn::Set(d, static_cast<float>(width)), zero = hn::Zero(d);
-            left = hn::Min(hn::Max(hn::Sub(left, slack), zero), w);
-            right = hn::Min(hn::Max(hn::Add(hn::Add(right, slack), hn::Set(d, 1.0f)), zero), w);
+            left = hn::Min(hn::Max(hn::Sub(left, column_margin), zero), w);
+            right = hn::Min(hn::Max(hn::Add(hn::Add(right, column_margin), hn::Set(d, 1.0f)), zero), w);
             hn::Store(hn::ConvertTo(di, left), di, begin + r);
             hn::Store(hn::ConvertTo(di, right), di, end + r);
         }
@@ -95,10 +95,10 @@ class Outline {
         }
     }
 
-    static constexpr float kLevel = 0x1p-10f;     // rows
-    static constexpr float kRowSlack = 0x1p-11f;  // a row's ends are below 4096 and rounded
+    static constexpr float kLevel = 0x1p-10f;      // rows
+    static constexpr float kRowMargin = 0x1p-11f;  // a row's ends are below 4096 and rounded
 
-    float margin_, slack_;
+    float margin_, column_margin_;
     OutlineEdge edges_[12];
 };
 

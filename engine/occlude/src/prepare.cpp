@@ -47,11 +47,11 @@ class Preparation {
                 crosses_[c] = crosses_[c] || !(p.cut[c] > error);
             }
             const double x = p.form[0], y = p.form[1], w = p.form[2];
-            const double reach_x = w * map_.half_width, reach_y = w * map_.half_height;
-            outside[0] = outside[0] && x < -reach_x;
-            outside[1] = outside[1] && x > reach_x;
-            outside[2] = outside[2] && y < -reach_y;
-            outside[3] = outside[3] && y > reach_y;
+            const double half_width = w * map_.half_width, half_height = w * map_.half_height;
+            outside[0] = outside[0] && x < -half_width;
+            outside[1] = outside[1] && x > half_width;
+            outside[2] = outside[2] && y < -half_height;
+            outside[3] = outside[3] && y > half_height;
             if (w < map_.least_w) continue;  // then it crosses, too
             const double inverse = 1.0 / w;
             low_ = std::min(low_, y * inverse);

@@ -85,7 +85,7 @@ PlacedPoints map_points(const PixelMap& map, const Shape& shape, const scene::Tr
     PlacedPoints result{};
     points.resize(shape.points.size());
     const glm::dvec3 d = transform.translation - glm::dvec3(map.origin[0], map.origin[1], map.origin[2]);
-    const auto reach = static_cast<double>(shape.reach);
+    const auto max_abs = static_cast<double>(shape.max_abs);
     const auto map_all = [&](const double(&form)[4], const auto& number_of) {
         double row[4] = {0.0, 0.0, 0.0, form[3]}, size = std::fabs(form[3]);
         for (int j = 0; j < 3; ++j) {
@@ -93,7 +93,7 @@ PlacedPoints map_points(const PixelMap& map, const Shape& shape, const scene::Tr
             size += std::fabs(form[j] * d[j]);
             for (int k = 0; k < 3; ++k) {
                 row[k] += form[j] * transform.linear[k][j];
-                size += std::fabs(form[j] * transform.linear[k][j]) * reach;
+                size += std::fabs(form[j] * transform.linear[k][j]) * max_abs;
             }
         }
         for (std::size_t i = 0; i < points.size(); ++i) {

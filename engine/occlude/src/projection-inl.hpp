@@ -89,14 +89,15 @@ struct Projection {
 
     // Fills lanes [at, at + Lanes) and says what is known of them already.
     HWY_INLINE LaneBits project(const QueryView& view, const Depths& depths, const VF (&center)[3],
-                                const VF (&edge)[3][3], VF reach, std::size_t at) {
+                                const VF (&edge)[3][3], VF l1_radius, std::size_t at) {
         const DF d;
         VF form[3][4];  // at the centre, and along the half edges
         VF error[3];
         for (std::size_t r = 0; r < 3; ++r) {
             form[r][0] = hn::Add(along(view.form[r], center), hn::Set(d, view.form[r][3]));
             for (std::size_t k = 0; k < 3; ++k) form[r][k + 1] = along(view.form[r], edge[k]);
-            const VF size = hn::Add(hn::Mul(hn::Set(d, view.reach[r]), reach), hn::Set(d, hwy_abs(view.form[r][3])));
+            const VF size =
+                hn::Add(hn::Mul(hn::Set(d, view.max_abs[r]), l1_radius), hn::Set(d, hwy_abs(view.form[r][3])));
             error[r] = hn::Mul(size, hn::Set(d, kFormError));
             for (std::size_t k = 0; k < 4; ++k) hn::Store(form[r][k], d, forms[r][k] + at);
             hn::Store(error[r], d, errors[r] + at);

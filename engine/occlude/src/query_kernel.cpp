@@ -51,7 +51,7 @@ struct BoxBatch {
 
 // Half edges and centre of as many boxes as there are lanes.
 struct BoxLanes {
-    VF center[3], edge[3][3], reach;
+    VF center[3], edge[3][3], l1_radius;
 
     HWY_INLINE BoxLanes(const BoxBatch& batch, std::size_t at) {
         const DF d;
@@ -60,11 +60,11 @@ struct BoxLanes {
         hn::LoadInterleaved4(d, batch.quads[1][at], axis[0], axis[1], axis[2], axis[3]);
         hn::LoadInterleaved4(d, batch.quads[2][at], axis[4], axis[5], axis[6], axis[7]);
         hn::LoadInterleaved4(d, batch.quads[3][at], axis[8], half[0], half[1], half[2]);
-        reach = hn::Add(hn::Add(hn::Abs(center[0]), hn::Abs(center[1])), hn::Abs(center[2]));
+        l1_radius = hn::Add(hn::Add(hn::Abs(center[0]), hn::Abs(center[1])), hn::Abs(center[2]));
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t j = 0; j < 3; ++j) {
                 edge[k][j] = hn::Mul(axis[3 * k + j], half[k]);
-                reach = hn::Add(reach, hn::Abs(edge[k][j]));
+                l1_radius = hn::Add(l1_radius, hn::Abs(edge[k][j]));
             }
     }
 };
@@ -157,7 +157,7 @@ QueryBits query_boxes(const QueryView& view, const unsigned char* boxes, const s
         LaneBits bits{0, 0, 0};
         for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
             const BoxLanes lanes(batch, l);
-            bits.add(asked.projection(group).project(view, depths, lanes.center, lanes.edge, lanes.reach, l), l);
+            bits.add(asked.projection(group).project(view, depths, lanes.center, lanes.edge, lanes.l1_radius, l), l);
         }
         asked.add(group, bits, 0xffu >> (kLanes - size));
     }
@@ -186,16 +186,16 @@ ChildBits query_children(const QueryView& view, const boxtree::Node& node, const
         }
         LaneBits bits{0, 0, 0};
         for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
-            VF c[3], e[3][3], reach = hn::Zero(d);
+            VF c[3], e[3][3], l1_radius = hn::Zero(d);
             for (std::size_t j = 0; j < 3; ++j) {
                 c[j] = hn::Load(d, center[j] + l);
-                reach = hn::Add(reach, hn::Abs(c[j]));
+                l1_radius = hn::Add(l1_radius, hn::Abs(c[j]));
                 for (std::size_t k = 0; k < 3; ++k) {
                     e[k][j] = hn::Load(d, edge[k][j] + l);
-                    reach = hn::Add(reach, hn::Abs(e[k][j]));
+                    l1_radius = hn::Add(l1_radius, hn::Abs(e[k][j]));
                 }
             }
-            bits.add(asked.projection(first / kLanes).project(view, depths, c, e, reach, l), l);
+            bits.add(asked.projection(first / kLanes).project(view, depths, c, e, l1_radius, l), l);
         }
         asked.add(first / kLanes, bits, 0xffu >> (kLanes - std::min<std::size_t>(kLanes, node.count - first)));
     }

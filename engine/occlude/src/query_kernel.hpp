@@ -14,7 +14,7 @@ struct BodyShadow;
 struct QueryView {
     double origin[4];  // the last is 0
     float form[3][4];
-    float reach[3];  // ≥ |form_k| for each k < 3
+    float max_abs[3];  // ≥ |form_k| for each k < 3
     float least_w;
     float half_width, half_height;
     std::uint32_t width, height;

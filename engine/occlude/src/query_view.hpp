@@ -15,10 +15,10 @@ namespace crofton::occlude {
     std::copy_n(map.origin, 3, view.origin);
     for (std::size_t r = 0; r < 3; ++r) {
         const double(&form)[4] = map.form[r == 2 && !map.perspective ? 3 : r];
-        double reach = 0.0;
+        double max_abs = 0.0;
         for (std::size_t k = 0; k < 4; ++k) view.form[r][k] = static_cast<float>(form[k]);
-        for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, std::fabs(form[k]));
-        view.reach[r] = static_cast<float>(reach * (1.0 + 0x1p-20));
+        for (std::size_t k = 0; k < 3; ++k) max_abs = std::max(max_abs, std::fabs(form[k]));
+        view.max_abs[r] = static_cast<float>(max_abs * (1.0 + 0x1p-20));
     }
     view.least_w = static_cast<float>(map.least_w);
     view.half_width = static_cast<float>(map.half_width);

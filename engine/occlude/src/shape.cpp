@@ -43,7 +43,7 @@ void weld(std::span<const glm::vec3> points, std::span<const std::uint32_t> indi
         source.push_back(static_cast<std::uint32_t>(t));
     }
     for (const glm::vec3& p : shape.points)
-        shape.reach = std::max({shape.reach, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+        shape.max_abs = std::max({shape.max_abs, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
 }
 
 [[nodiscard]] Vector<HalfEdge> half_edges_of(const Shape& shape) {
@@ -162,7 +162,7 @@ void connect(Shape& shape) {
     Shape shape;
     shape.sides = sides;
     weld(mesh.positions, mesh.indices, shape, source);
-    if (static_cast<double>(shape.reach) > kMaxCoordinate)
+    if (static_cast<double>(shape.max_abs) > kMaxCoordinate)
         return fail(ErrorCode::out_of_range, kNoItem, "occluder: a coordinate exceeds 1e30");
     if (!(area_of(shape) > 0.0))
         return fail(ErrorCode::degenerate, kNoItem, "occluder: no triangle has an area, so it hides nothing");

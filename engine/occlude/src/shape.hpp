@@ -31,7 +31,7 @@ struct Shape {
     Vector<ShapePiece> pieces;
     Sides sides = Sides::front;
     bool convex = false;
-    float reach = 0.0f;  // ≥ |x|, |y|, |z| of every point
+    float max_abs = 0.0f;  // ≥ |x|, |y|, |z| of every point
 
     [[nodiscard]] std::size_t triangle_count() const { return triangles.size() / 3; }
 };

@@ -91,7 +91,7 @@ class Prover {
     [[nodiscard]] Answer ask(const Aabb& eyes, const Corners& object) {
         const Corners from = corners_of(eyes);
         const auto blocks_eyes = [&](const Blocker& body) {
-            return may_prove_for(body, eyes, q_.options.near_reach, q_.margin) &&
+            return may_prove_for(body, eyes, q_.options.near_radius, q_.margin) &&
                    blocks_all(body, from, object, q_.margin);
         };
         if (last_ < q_.bodies.size() && blocks_eyes(q_.bodies[last_])) return Answer::blocked;

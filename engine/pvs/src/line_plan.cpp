@@ -29,11 +29,11 @@ struct Stratum {
     [[nodiscard]] double length(std::size_t k) const { return high[k] - low[k]; }
 };
 
-// Halves the dimension that spreads lines most. `sides`: of the face; `reach`: how far along a line its neighbours
+// Halves the dimension that spreads lines most. `sides`: of the face; `length`: how far along a line its neighbours
 // should be near.
 class Division {
   public:
-    Division(const std::array<double, 2>& sides, double reach) : sides_(sides), reach_(reach) {}
+    Division(const std::array<double, 2>& sides, double length) : sides_(sides), length_(length) {}
 
     // Number i of n equal parts, and on to number i of n of that, and so on.
     void take(std::uint64_t i, std::uint64_t n, Stratum& part) const {
@@ -53,8 +53,8 @@ class Division {
     [[nodiscard]] std::size_t widest(const Stratum& part) const {
         const double r = std::sqrt(part.high[2]);
         const double widths[4] = {sides_[0] * part.length(0), sides_[1] * part.length(1),
-                                  reach_ * (r - std::sqrt(part.low[2])),
-                                  reach_ * r * 2.0 * std::numbers::pi * part.length(3)};
+                                  length_ * (r - std::sqrt(part.low[2])),
+                                  length_ * r * 2.0 * std::numbers::pi * part.length(3)};
         std::size_t k = 0;
         for (std::size_t i = 1; i < 4; ++i)
             if (widths[i] > widths[k]) k = i;
@@ -62,7 +62,7 @@ class Division {
     }
 
     std::array<double, 2> sides_;
-    double reach_;
+    double length_;
 };
 
 void plan_rounds(LinePlan& plan, const Aabb& box, double lines) {

@@ -29,8 +29,8 @@ bool is_empty(CellKind kind) {
 
 Result<Pvs> Pvs::finish(const Bake& bake, std::span<const PlacedOccluder> occluders, const ProofOptions& options,
                         Executor& executor) {
-    if (!(options.near_reach >= 0.0) || !std::isfinite(options.near_reach))
-        return fail(ErrorCode::invalid_argument, kNoItem, "pvs: near_reach is a length of at least 0");
+    if (!(options.near_radius >= 0.0) || !std::isfinite(options.near_radius))
+        return fail(ErrorCode::invalid_argument, kNoItem, "pvs: near_radius is a length of at least 0");
     if (options.halvings > kMaxHalvings) return fail(ErrorCode::invalid_argument, kNoItem, "pvs: at most 16 halvings");
     return crofton::detail::recover([&]() -> Result<Pvs> {
         const Bake::State& state = bake.data();

@@ -132,8 +132,8 @@ bool blocks(const Blocker& body, const glm::dvec3& p, const glm::dvec3& q, doubl
     return true;
 }
 
-bool may_prove_for(const Blocker& body, const Aabb& eyes, double near_reach, double margin) {
-    const glm::dvec3 room(near_reach + margin);
+bool may_prove_for(const Blocker& body, const Aabb& eyes, double near_radius, double margin) {
+    const glm::dvec3 room(near_radius + margin);
     if (!body.left_out_within.is_empty() && intersects(body.left_out_within, Aabb{eyes.min - room, eyes.max + room}))
         return false;
     for (const Plane& plane : body.eyes) {

@@ -37,7 +37,7 @@ using Corners = std::array<glm::dvec3, 8>;
 // Whether the body meets the segment from p to q, as deep as that.
 [[nodiscard]] bool blocks(const Blocker& body, const glm::dvec3& p, const glm::dvec3& q, double margin);
 
-// Whether the body may prove anything for these eyes; `near_reach` as in ProofOptions.
-[[nodiscard]] bool may_prove_for(const Blocker& body, const Aabb& eyes, double near_reach, double margin);
+// Whether the body may prove anything for these eyes; `near_radius` as in ProofOptions.
+[[nodiscard]] bool may_prove_for(const Blocker& body, const Aabb& eyes, double near_radius, double margin);
 
 }  // namespace crofton::pvs

@@ -53,10 +53,10 @@ HWY_INLINE bool bound_beam(const TracerView& tree, float scale, Beam& beam) {
         }
         const float width = high - low + 2.0f * tree.half[a] * (slope_high - slope_low);
         share *= width / (2.0f * tree.half[k] + width);
-        // Far above the rounding here and the slack of `children`.
-        const float slack = 1e-5f * scale * (1.0f + size_of(slope_low) + size_of(slope_high));
-        beam.low[k] = low - slack;
-        beam.high[k] = high + slack;
+        // Far above the rounding here and the error bound of `children`.
+        const float error_bound = 1e-5f * scale * (1.0f + size_of(slope_low) + size_of(slope_high));
+        beam.low[k] = low - error_bound;
+        beam.high[k] = high + error_bound;
         beam.slope_low[k] = slope_low;
         beam.slope_high[k] = slope_high;
     }
@@ -128,8 +128,8 @@ HWY_INLINE std::uint64_t lines_through(const Beam& beam, const mesh::BoxNode& no
             enter = hn::Max(enter, hn::Min(a, b));
             leave = hn::Min(leave, hn::Max(a, b));
         }
-        const W slack = hn::Mul(hn::Set(d, 0x1p-21f), hn::Max(hn::Abs(enter), hn::Abs(leave)));
-        lines |= std::uint64_t{simd::mask_bits(d, hn::Le(enter, hn::Add(leave, slack)))} << i;
+        const W error_bound = hn::Mul(hn::Set(d, 0x1p-21f), hn::Max(hn::Abs(enter), hn::Abs(leave)));
+        lines |= std::uint64_t{simd::mask_bits(d, hn::Le(enter, hn::Add(leave, error_bound)))} << i;
     }
     return lines;
 }

@@ -54,9 +54,9 @@ HWY_INLINE unsigned children(D d, const mesh::BoxNode& node, const Spread& ray, 
             enter = hn::Max(enter, hn::Min(a, b));
             leave = hn::Min(leave, hn::Max(a, b));
         }
-        const V slack = hn::Mul(hn::Set(d, 0x1p-21f), hn::Max(hn::Abs(enter), hn::Abs(leave)));
+        const V error_bound = hn::Mul(hn::Set(d, 0x1p-21f), hn::Max(hn::Abs(enter), hn::Abs(leave)));
         hn::Store(enter, d, entry + i);
-        bits |= simd::mask_bits(d, hn::Le(enter, hn::Add(leave, slack))) << i;
+        bits |= simd::mask_bits(d, hn::Le(enter, hn::Add(leave, error_bound))) << i;
     }
     return bits & ((1u << node.count) - 1u);
 }

@@ -105,11 +105,11 @@ enum class ClipSide : std::uint8_t { undecided, inside, outside };
 // rounding. Above 2¹²⁰ floats may overflow, and NaN compares false: both stay undecided.
 ClipSide clip_side(const glm::mat4& m, const Aabb& box) {
     const glm::dvec3 center = box.center(), half = box.half_extents();
-    const glm::dvec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+    const glm::dvec3 max_abs = glm::max(glm::abs(box.min), glm::abs(box.max));
     const glm::dmat4 rows = glm::transpose(glm::dmat4(m));
     const auto size = [&](const glm::dvec4& row) {
         const glm::dvec4 a = glm::abs(row);
-        return 0x1p-21 * (a.x * reach.x + a.y * reach.y + a.z * reach.z + a.w) +
+        return 0x1p-21 * (a.x * max_abs.x + a.y * max_abs.y + a.z * max_abs.z + a.w) +
                0x1p-100 * (1.0 + a.x + a.y + a.z + a.w);
     };
     const glm::dvec4 sizes(size(rows[0]), size(rows[1]), size(rows[2]), size(rows[3]));

@@ -59,17 +59,17 @@ Result<Diameter<glm::dvec3>> diameter(std::span<const glm::dvec3> points) {
     const glm::dvec3 middle = box.min + 0.5 * (box.max - box.min);
     struct Corner {
         glm::dvec3 point;
-        double reach;  // from the middle
+        double distance;  // from the middle
     };
     Vector<Corner> corners;
     corners.reserve(hull->vertices.size());
     for (const std::uint32_t v : hull->vertices) corners.push_back({points[v], glm::distance(points[v], middle)});
     std::stable_sort(corners.begin(), corners.end(),
-                     [](const Corner& a, const Corner& b) { return a.reach > b.reach; });
+                     [](const Corner& a, const Corner& b) { return a.distance > b.distance; });
     Diameter<glm::dvec3> best{0.0, corners[0].point, corners[0].point};
     for (std::size_t i = 0; i < corners.size(); ++i)
         for (std::size_t j = i + 1; j < corners.size(); ++j) {
-            if (corners[i].reach + corners[j].reach < best.length) break;
+            if (corners[i].distance + corners[j].distance < best.length) break;
             consider(corners[i].point, corners[j].point, best);
         }
     return best;

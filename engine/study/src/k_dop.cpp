@@ -20,7 +20,7 @@ namespace {
 void find_corners(KDop& dop) {
     double size = 0.0;
     for (std::size_t i = 0; i < dop.low.size(); ++i) size = std::max(size, dop.high[i] - dop.low[i]);
-    const double slack = 1e-10 * size;
+    const double tolerance = 1e-10 * size;
     const std::size_t n = dop.directions.size();
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j)
@@ -36,10 +36,11 @@ void find_corners(KDop& dop) {
                     bool inside = true;
                     for (std::size_t m = 0; m < n && inside; ++m) {
                         const double at = glm::dot(dop.directions[m], p);
-                        inside = at >= dop.low[m] - slack && at <= dop.high[m] + slack;
+                        inside = at >= dop.low[m] - tolerance && at <= dop.high[m] + tolerance;
                     }
-                    const bool known = std::any_of(dop.corners.begin(), dop.corners.end(),
-                                                   [&](const glm::dvec3& q) { return glm::distance(p, q) <= slack; });
+                    const bool known = std::any_of(dop.corners.begin(), dop.corners.end(), [&](const glm::dvec3& q) {
+                        return glm::distance(p, q) <= tolerance;
+                    });
                     if (inside && !known) dop.corners.push_back(p);
                 }
             }

@@ -94,7 +94,7 @@ Result<LightField> LightField::record(const radiosity::LineTracer& scene, LightA
     if (!(shadow > 0.0)) return fail(ErrorCode::degenerate, kNoItem, "light field: the scene has no extent");
     LightField field;
     field.sky_ = options.sky;
-    field.reach_ = glm::length(extents);
+    field.diagonal_ = glm::length(extents);
     const auto count = static_cast<std::size_t>(std::ceil(kBundles * std::sqrt(static_cast<double>(options.lines))));
     const double cell_area = shadow * static_cast<double>(count) / static_cast<double>(options.lines);
     field.bundles_.resize(count);
@@ -136,9 +136,9 @@ Vector<LightField::Arrival> LightField::arrivals(const glm::dvec3& eye, double a
         const glm::dvec3 from_corner = eye - b.corner;
         // A line lies anywhere in its cell.
         const auto cells = [&](const glm::dvec3& axis, std::uint32_t count) {
-            const double at = glm::dot(from_corner, axis) / b.cell, reach = aperture / b.cell;
-            const double low = std::clamp(std::floor(at - reach), 0.0, static_cast<double>(count));
-            const double high = std::clamp(std::floor(at + reach) + 1.0, 0.0, static_cast<double>(count));
+            const double at = glm::dot(from_corner, axis) / b.cell, half_width = aperture / b.cell;
+            const double low = std::clamp(std::floor(at - half_width), 0.0, static_cast<double>(count));
+            const double high = std::clamp(std::floor(at + half_width) + 1.0, 0.0, static_cast<double>(count));
             return std::pair(static_cast<std::size_t>(low), static_cast<std::size_t>(high));
         };
         // Parallel lines see the same place of the sky: the one nearest to the eye tells whether it is seen there.
@@ -192,7 +192,7 @@ Result<LightField::Drawn> LightField::draw(const Camera& camera, std::uint32_t w
             if (!at) continue;
             samples.push_back({at->x, at->y, a.sky ? kInfinity : glm::length(a.point), a.offset, a.light});
         }
-        if (samples.size() >= wanted || aperture > reach_) break;
+        if (samples.size() >= wanted || aperture > diagonal_) break;
     }
     if (samples.empty())
         return fail(ErrorCode::empty, kNoItem, "light field: no line passes near the eye, within the picture");

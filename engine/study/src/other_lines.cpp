@@ -29,10 +29,10 @@ void append_parallelogram_bundle(const Sphere& ball, const glm::dvec2& first, co
     const glm::dmat2 turn = sampling::planar_rotation(random.uniform());
     const glm::dvec2 a = turn * first, b = turn * second, shift = random.uniform() * a + random.uniform() * b;
     // p = i·a + j·b + shift has |i| ≤ |p × b| / area and |j| ≤ |p × a| / area, and the shift is less than one cell.
-    const auto reach = [&](const glm::dvec2& side) {
+    const auto count_across = [&](const glm::dvec2& side) {
         return static_cast<std::int64_t>(std::ceil(ball.radius * glm::length(side) / std::abs(area))) + 2;
     };
-    const std::int64_t columns = reach(b), rows = reach(a);
+    const std::int64_t columns = count_across(b), rows = count_across(a);
     for (std::int64_t i = -columns; i <= columns; ++i)
         for (std::int64_t j = -rows; j <= rows; ++j) {
             const auto u = random.point<2>();

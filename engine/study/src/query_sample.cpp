@@ -126,41 +126,41 @@ bool QuerySample::surely_hits(std::uint32_t i, std::span<const glm::dvec3> point
     if (kind_ == Kind::plane) {
         bool above = false, below = false;
         for (const glm::dvec3& p : points) {
-            const double side = glm::dot(p - q.point, q.direction), slack = kSure * (sum_of(p) + sum_of(q.point));
-            above = above || side >= slack;
-            below = below || side <= -slack;
+            const double side = glm::dot(p - q.point, q.direction), error_bound = kSure * (sum_of(p) + sum_of(q.point));
+            above = above || side >= error_bound;
+            below = below || side <= -error_bound;
         }
         return above && below;
     }
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
         const std::array<glm::dvec3, 3> corner = {points[triangles[t]] - q.point, points[triangles[t + 1]] - q.point,
                                                   points[triangles[t + 2]] - q.point};
-        double reach = sum_of(q.point);
-        for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, sum_of(points[triangles[t + k]]));
+        double max_l1 = sum_of(q.point);
+        for (std::size_t k = 0; k < 3; ++k) max_l1 = std::max(max_l1, sum_of(points[triangles[t + k]]));
         int turns = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec3 &a = corner[k], &b = corner[(k + 1) % 3];
-            if (kind_ == Kind::frustum && segment_enters(q, a, b, kSure * reach)) return true;
+            if (kind_ == Kind::frustum && segment_enters(q, a, b, kSure * max_l1)) return true;
             // Seen along the line: its distance from the edge, times the edge's length.
             const double turn = glm::dot(glm::cross(a, b), q.direction);
-            const double slack = 2.0 * kSure * reach * (sum_of(a) + sum_of(b));
-            turns += turn > slack ? 1 : turn < -slack ? -1 : 0;
+            const double error_bound = 2.0 * kSure * max_l1 * (sum_of(a) + sum_of(b));
+            turns += turn > error_bound ? 1 : turn < -error_bound ? -1 : 0;
         }
         if (kind_ == Kind::line && std::abs(turns) == 3) return true;
     }
     return false;
 }
 
-// Points relative to the query's own. Some point of the segment is inside every plane by `slack`. Where it lies along
-// the segment is rounded, which moves the sides by less than half the slack.
-bool QuerySample::segment_enters(const Query& q, const glm::dvec3& from, const glm::dvec3& to, double slack) const {
+// Points relative to the query's own. Some point of the segment is inside every plane by `margin`. Where it lies along
+// the segment is rounded, which moves the sides by less than half the margin.
+bool QuerySample::segment_enters(const Query& q, const glm::dvec3& from, const glm::dvec3& to, double margin) const {
     const glm::dmat3 back = glm::transpose(q.rotation);
     const glm::dvec3 a = back * from, b = back * to;
     double begin = 0.0, end = 1.0;
-    // The part where side(0) + t (side(1) − side(0)) >= slack.
-    for (const glm::dvec3& corner : corners_) slack = std::max(slack, kSure * sum_of(corner));
+    // The part where side(0) + t (side(1) − side(0)) >= margin.
+    for (const glm::dvec3& corner : corners_) margin = std::max(margin, kSure * sum_of(corner));
     const auto clip = [&](double at_a, double at_b) {
-        at_a -= slack, at_b -= slack;
+        at_a -= margin, at_b -= margin;
         if (at_a < 0.0 && at_b < 0.0) return false;
         if (at_a < 0.0) begin = std::max(begin, at_a / (at_a - at_b));
         if (at_b < 0.0) end = std::min(end, at_a / (at_a - at_b));

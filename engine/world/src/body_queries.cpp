@@ -13,11 +13,11 @@ namespace {
 // Around a body, and some more.
 Aabb bounds_of(const convex::Body& body, const RigidTransform& pose) {
     const glm::dvec3 half = body.bounds().half_extents();
-    glm::dvec3 reach(0.0);
-    for (int k = 0; k < 3; ++k) reach += half[k] * glm::abs(pose.rotation[k]);
+    glm::dvec3 half_size(0.0);
+    for (int k = 0; k < 3; ++k) half_size += half[k] * glm::abs(pose.rotation[k]);
     const glm::dvec3 center = pose.rotation * body.bounds().center() + pose.translation;
-    reach = reach * (1.0 + 1e-9) + 1e-12 * glm::abs(center);
-    return {center - reach, center + reach};
+    half_size = half_size * (1.0 + 1e-9) + 1e-12 * glm::abs(center);
+    return {center - half_size, center + half_size};
 }
 
 // All that the body passes in the time: a ball around its pivot, or the box at both ends.
@@ -26,14 +26,14 @@ Aabb swept_bounds(const convex::Body& body, const RigidTransform& pose, const co
     Aabb bounds = bounds_of(body, pose);
     if (motion.spin != glm::dvec3(0.0)) {
         const glm::dvec3 pivot = pose.rotation * motion.pivot + pose.translation;
-        const double reach =
+        const double half_size =
             glm::length(body.bounds().half_extents()) + glm::length(body.bounds().center() - motion.pivot);
-        bounds = {pivot - reach * (1.0 + 1e-5), pivot + reach * (1.0 + 1e-5)};
+        bounds = {pivot - half_size * (1.0 + 1e-5), pivot + half_size * (1.0 + 1e-5)};
     }
     const glm::dvec3 way = time * motion.velocity;
     bounds.include(Aabb{bounds.min + way, bounds.max + way});
-    const glm::dvec3 slack = tolerance + 1e-9 * (glm::abs(bounds.min) + glm::abs(bounds.max));
-    return {bounds.min - slack, bounds.max + slack};
+    const glm::dvec3 margin = tolerance + 1e-9 * (glm::abs(bounds.min) + glm::abs(bounds.max));
+    return {bounds.min - margin, bounds.max + margin};
 }
 
 Result<void> check(const convex::Body& shape, const RigidTransform& pose) {

@@ -56,8 +56,9 @@ void World::State::update_occluders() {
     if (index.tree().item_count() > 0)
         for (unsigned lane = 0; lane < tree.nodes()[0].count; ++lane) object_bounds.include(tree.child_bounds(0, lane));
     for (const Obb& box : index.moving().boxes()) {
-        const glm::dvec3 reach(double{box.half_extents.x} + double{box.half_extents.y} + double{box.half_extents.z});
-        object_bounds.include({box.center - reach, box.center + reach});
+        const glm::dvec3 l1_radius(double{box.half_extents.x} + double{box.half_extents.y} +
+                                   double{box.half_extents.z});
+        object_bounds.include({box.center - l1_radius, box.center + l1_radius});
     }
 }
 

@@ -53,8 +53,8 @@ bool meets_ball(const collide::Capsule& shape, const Sphere& ball) {
 
 // No further than rounding tells: boxes apart by less are near.
 double gap_between(const Aabb& a, const Obb& box) {
-    const glm::dvec3 reach(glm::length(glm::dvec3(box.half_extents)) * (1.0 + 1e-4));
-    const glm::dvec3 gap = glm::max(glm::max(box.center - reach - a.max, a.min - box.center - reach), 0.0);
+    const glm::dvec3 radius(glm::length(glm::dvec3(box.half_extents)) * (1.0 + 1e-4));
+    const glm::dvec3 gap = glm::max(glm::max(box.center - radius - a.max, a.min - box.center - radius), 0.0);
     return std::max({gap.x, gap.y, gap.z});
 }
 

@@ -113,18 +113,18 @@ scene::MeshId make_crane_tower(Library& library, double height) {
     return library.add(b, "crane tower");
 }
 
-scene::MeshId make_crane_jib(Library& library, double reach) {
+scene::MeshId make_crane_jib(Library& library, double length) {
     MeshBuilder b;
     const glm::vec3 yellow = srgb(226, 170, 36), steel = srgb(70, 72, 76);
     b.tube({0, 0, 0}, {0, 0.6, 0}, 1.1, 1.1, 12, steel);
     b.box({-0.7, 0.6, 0.9}, {0.9, 2.5, 2.2}, srgb(236, 232, 220));
-    const int bays = static_cast<int>(reach / 1.8);
-    add_lattice(b, {-9.0, 1.2, 0}, {(reach + 9.0) / (bays + 5), 0, 0}, {0, 0.5, 0}, {0, 0, 0.55}, bays + 5, yellow);
+    const int bays = static_cast<int>(length / 1.8);
+    add_lattice(b, {-9.0, 1.2, 0}, {(length + 9.0) / (bays + 5), 0, 0}, {0, 0.5, 0}, {0, 0, 0.55}, bays + 5, yellow);
     add_lattice(b, {0, 1.2, 0}, {0, 1.4, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 4, yellow);
-    b.bar({0, 6.6, 0}, {reach * 0.75, 1.7, 0}, 0.07, steel);
+    b.bar({0, 6.6, 0}, {length * 0.75, 1.7, 0}, 0.07, steel);
     b.bar({0, 6.6, 0}, {-8.5, 1.7, 0}, 0.07, steel);
     b.box({-9.2, -0.6, -0.9}, {-7.0, 1.0, 0.9}, srgb(150, 150, 146));
-    const double hook = reach * 0.62;
+    const double hook = length * 0.62;
     b.bar({hook, 0.7, 0}, {hook, -10.0, 0}, 0.05, steel);
     b.box({hook - 0.3, -10.6, -0.3}, {hook + 0.3, -10.0, 0.3}, srgb(196, 60, 40));
     b.box({hook - 2.4, -12.4, -0.5}, {hook + 2.4, -12.0, 0.5}, srgb(130, 118, 104));

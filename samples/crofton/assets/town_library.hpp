@@ -73,7 +73,7 @@ void add_joinery(MeshBuilder& builder, Library& library, const std::vector<Openi
 [[nodiscard]] scene::MeshId make_fountain(Library& library);
 [[nodiscard]] scene::MeshId make_shed(Library& library);
 [[nodiscard]] scene::MeshId make_crane_tower(Library& library, double height);
-[[nodiscard]] scene::MeshId make_crane_jib(Library& library, double reach);  // at the tower's top, turns about y
+[[nodiscard]] scene::MeshId make_crane_jib(Library& library, double length);  // at the tower's top, turns about y
 
 // Drive toward +x.
 struct Vehicle {

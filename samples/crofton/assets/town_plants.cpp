@@ -21,8 +21,8 @@ scene::MeshId make_broadleaf(Library& library) {
     const int limbs = 2 + library.pick(2);
     for (int k = 0; k < limbs; ++k) {
         const double angle = 2.0 * std::numbers::pi * (k + random.uniform(0.0, 0.5)) / limbs;
-        const double reach = size * random.uniform(0.55, 0.95), rise = random.uniform(0.8, 2.0);
-        const glm::dvec3 tip(reach * std::cos(angle), trunk + rise, reach * std::sin(angle));
+        const double spread = size * random.uniform(0.55, 0.95), rise = random.uniform(0.8, 2.0);
+        const glm::dvec3 tip(spread * std::cos(angle), trunk + rise, spread * std::sin(angle));
         b.tube({0.08, trunk - 0.25, 0.04}, tip, 0.09, 0.05, 5, bark, true);
         const double r = size * random.uniform(0.68, 0.92);
         b.blob(tip, {r, 0.82 * r, r}, scaled(leaf, random.uniform(0.88, 1.1)), 0.10);

@@ -44,11 +44,11 @@ struct MeshBounds {
 std::vector<Frustum> views_around(const Sphere& sphere, double region) {
     std::vector<Frustum> views;
     const sampling::UnitPoints points(3);
-    const double reach = 2.0 * region * sphere.radius;
+    const double half_width = 2.0 * region * sphere.radius;
     Camera prototype;
     prototype.near_distance = 0.01 * sphere.radius;
-    prototype.far_distance = 2.0 * reach;
-    const Aabb room{sphere.center - reach, sphere.center + reach};
+    prototype.far_distance = 2.0 * half_width;
+    const Aabb room{sphere.center - half_width, sphere.center + half_width};
     for (std::uint64_t i = 0; i < kViews; ++i)
         if (const auto frustum = frustum_of(sampling::random_camera(prototype, room, points.at<6>(i))))
             views.push_back(*frustum);

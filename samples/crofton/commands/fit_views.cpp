@@ -76,9 +76,9 @@ cull::Verdict by_planes(const Frustum& frustum, std::span<const glm::dvec3> corn
         for (const glm::dvec3& p : corners) {
             const glm::dvec3 d = p - frustum.origin;
             const double value = glm::dot(plane.normal, d) + plane.offset;
-            const double slack = 1e-9 * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) + std::abs(plane.offset));
-            all_out = all_out && value < -slack;
-            inside = inside && value > slack;
+            const double margin = 1e-9 * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) + std::abs(plane.offset));
+            all_out = all_out && value < -margin;
+            inside = inside && value > margin;
         }
         if (all_out) return cull::Verdict::outside;
     }
@@ -92,16 +92,16 @@ struct Counted {
 // Where the bound says less than the mesh's hull would.
 Counted count(const std::vector<glm::dvec3>& hull, const study::DirectedFit& directed, const Obb& plain,
               const Faces& faces) {
-    double reach = 0.0;
+    double radius = 0.0;
     for (const Obb* box : {&directed.box, &plain})
-        for (const glm::dvec3& c : corners(*box)) reach = std::max(reach, glm::distance(c, directed.box.center));
+        for (const glm::dvec3& c : corners(*box)) radius = std::max(radius, glm::distance(c, directed.box.center));
     const sampling::UnitPoints points(29);
     Counted counted;
     std::vector<glm::dvec3> moved(hull.size());
     for (std::uint64_t i = 0; i < kPlaces; ++i) {
         const auto u = points.at<6>(i);
         const Faces::Place place = faces.at(u[0], u[1], u[2]);
-        const glm::dvec3 shift = place.point + reach * sampling::ball_point({u[3], u[4], u[5]}) - directed.box.center;
+        const glm::dvec3 shift = place.point + radius * sampling::ball_point({u[3], u[4], u[5]}) - directed.box.center;
         for (std::size_t k = 0; k < hull.size(); ++k) moved[k] = hull[k] + shift;
         const cull::Verdict truth = by_planes(*place.frustum, moved);
         const auto misled = [&](Obb box) {

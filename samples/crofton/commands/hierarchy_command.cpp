@@ -97,13 +97,13 @@ double support_of(const ChainLevel& level, const glm::dvec2& n) {
 // first.
 std::vector<VerifyRow> trials(const Chain& chain, const std::string& name, const HierarchyOptions& options) {
     const Disc& first = *chain.levels[0].disc;
-    const double reach = 1.25 * first.radius;
+    const double radius = 1.25 * first.radius;
     const sampling::UnitPoints points(options.seed);
     std::vector<std::uint64_t> hits(chain.levels.size(), 0);
     for (std::uint64_t i = 0; i < options.lines; ++i) {
         const auto u = points.at<2>(i);
         const glm::dvec2 n(std::cos(pi * u[0]), std::sin(pi * u[0]));
-        const double at = glm::dot(first.center, n) + reach * (2.0 * u[1] - 1.0);
+        const double at = glm::dot(first.center, n) + radius * (2.0 * u[1] - 1.0);
         for (std::size_t k = 0; k < chain.levels.size(); ++k) {
             if (!(-support_of(chain.levels[k], -n) <= at && at <= support_of(chain.levels[k], n))) break;
             ++hits[k];
@@ -111,7 +111,7 @@ std::vector<VerifyRow> trials(const Chain& chain, const std::string& name, const
     }
     std::vector<VerifyRow> rows;
     std::vector<Disc> discs;
-    const double all = 2.0 * pi * reach;
+    const double all = 2.0 * pi * radius;
     for (std::size_t k = 0; k < chain.levels.size(); ++k) {
         const ChainLevel& level = chain.levels[k];
         if (level.disc) discs.push_back(*level.disc);

@@ -25,7 +25,7 @@ constexpr double kSaveEvery = 20.0;  // seconds
 struct PvsRequest {
     ReadOptions read;
     std::string scene, map, cells = "64x2x64", eyes, sides = "both", shard, state, out, svg, eye, json;
-    double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_reach = 0.5;
+    double height = 10.0, epsilon = 1e-4, confidence = 0.999, seconds = 0.0, near_radius = 0.5;
     std::uint64_t seed = 1;
     std::uint32_t instances = 0, halvings = 4;
     unsigned threads = 1;
@@ -222,7 +222,7 @@ Result<int> run_pvs(const PvsRequest& options) {
     const auto start = Clock::now();
     const auto sets =
         pvs::Pvs::finish(*bake, options.shard.empty() ? job->scene.occluders : std::vector<pvs::PlacedOccluder>{},
-                         {.near_reach = options.near_reach, .halvings = options.halvings}, pool);
+                         {.near_radius = options.near_radius, .halvings = options.halvings}, pool);
     if (!sets) return tl::unexpected(sets.error());
     job->proof_seconds = seconds_since(start);
     std::size_t file_bytes = 0;
@@ -267,7 +267,7 @@ void add_pvs_command(CommandLine& line) {
         .show_default();
     const Option shard = command.option("--shard", options->shard, "i/n: trace part i of n only; needs --state");
     command.option("--state", options->state, "Save to this file, and go on from it where it exists").writable_file();
-    command.option("--near", options->near_reach, "How far a point of a camera's near plane may be from the eye")
+    command.option("--near", options->near_radius, "How far a point of a camera's near plane may be from the eye")
         .not_negative()
         .show_default();
     command.option("--halvings", options->halvings, "Of pairs that no single body hides: more prove more")

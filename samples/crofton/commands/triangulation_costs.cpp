@@ -116,8 +116,8 @@ Comparison triangles_passed(std::span<const TriangulatedPolygon> polygons, std::
     const auto b = *measure::intrinsic_volumes_of_frustum(camera);
     // Every camera whose frustum may reach the polygon stands in this box.
     const double half = camera.far_distance * std::tan(camera.fov_y / 2);
-    const double reach = std::sqrt(1.0 + half * half * (1.0 + camera.aspect * camera.aspect));
-    const glm::dvec3 low(-reach), size(1.0 + 2.0 * reach, 1.0 + 2.0 * reach, 2.0 * reach);
+    const double radius = std::sqrt(1.0 + half * half * (1.0 + camera.aspect * camera.aspect));
+    const glm::dvec3 low(-radius), size(1.0 + 2.0 * radius, 1.0 + 2.0 * radius, 2.0 * radius);
     const double cell = size.x * size.y * size.z;
     const sampling::UnitPoints points(6);
     const std::size_t methods = polygons[0].results.size();

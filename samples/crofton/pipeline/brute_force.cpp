@@ -117,11 +117,12 @@ Truth boxes_meet(const Obb& a, const Obb& b) {
                 skipped = true;
                 continue;
             }
-            double reach = 0.0;
+            double projected_radius = 0.0;
             for (int k = 0; k < 3; ++k)
-                reach += double(a.half_extents[k]) * std::abs(glm::dot(edges[static_cast<std::size_t>(k)], axis)) +
-                         double(b.half_extents[k]) * std::abs(glm::dot(edges[static_cast<std::size_t>(k + 3)], axis));
-            const double gap = (std::abs(glm::dot(d, axis)) - reach) / length;
+                projected_radius +=
+                    double(a.half_extents[k]) * std::abs(glm::dot(edges[static_cast<std::size_t>(k)], axis)) +
+                    double(b.half_extents[k]) * std::abs(glm::dot(edges[static_cast<std::size_t>(k + 3)], axis));
+            const double gap = (std::abs(glm::dot(d, axis)) - projected_radius) / length;
             if (gap > rounding / length) return Truth::no;
             unclear = unclear || gap > -rounding / length;
             widest = std::max(widest, gap);

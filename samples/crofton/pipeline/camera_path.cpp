@@ -34,9 +34,9 @@ Frame frame_of(const Aabb& bounds) {
 Camera base_camera(const PathOptions& options, const Frame& frame) {
     Camera camera;
     camera.aspect = options.aspect;
-    const double reach = std::max({frame.radius, frame.height, 1e-6});
-    camera.near_distance = 2e-4 * reach;
-    camera.far_distance = 8.0 * reach;
+    const double half_size = std::max({frame.radius, frame.height, 1e-6});
+    camera.near_distance = 2e-4 * half_size;
+    camera.far_distance = 8.0 * half_size;
     return camera;
 }
 
@@ -120,9 +120,10 @@ Aabb focus_of(const scene::Scene& scene) {
         const scene::Transform& world = scene.world(scene.node_of(i));
         const glm::dvec3 center = world.linear * mesh_extents[mesh].center() + world.translation;
         const glm::dvec3 half = mesh_extents[mesh].half_extents();
-        const glm::dvec3 reach = glm::abs(world.linear[0]) * half.x + glm::abs(world.linear[1]) * half.y +
-                                 glm::abs(world.linear[2]) * half.z;
-        extents.push_back({{center - reach, center + reach}, static_cast<double>(scene.mesh(mesh).triangle_count())});
+        const glm::dvec3 half_size = glm::abs(world.linear[0]) * half.x + glm::abs(world.linear[1]) * half.y +
+                                     glm::abs(world.linear[2]) * half.z;
+        extents.push_back(
+            {{center - half_size, center + half_size}, static_cast<double>(scene.mesh(mesh).triangle_count())});
         total += extents.back().weight;
     }
     Aabb focus;

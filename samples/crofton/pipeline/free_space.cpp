@@ -15,7 +15,7 @@ constexpr std::uint32_t kNotReached = ~0u;
 constexpr std::uint64_t kMostTriangles = 8u << 20;  // of larger scenes nothing is found: lines would take gigabytes
 constexpr double kStep = 0.7, kRoom = 1.3, kHalfWidth = 0.25, kKnee = 0.5;
 // A straight way that leaves out places stays this near to them in height.
-constexpr double kHeightSlack = 0.25;
+constexpr double kHeightTolerance = 0.25;
 constexpr std::size_t kLongestStraight = 24;
 // Directions that are tried from an eye, and eyes.
 constexpr std::uint32_t kDirections = 256, kMostStands = 300;
@@ -193,7 +193,7 @@ bool FreeSpace::is_straight(std::span<const std::uint32_t> way) const {
     for (const std::uint32_t place : way) {
         const glm::dvec3& p = places_[place];
         const double share = length > 0.0 ? std::hypot(p.x - from.x, p.z - from.z) / length : 0.0;
-        if (std::abs(p.y - (from.y + share * (to.y - from.y))) > kHeightSlack * eye_height_) return false;
+        if (std::abs(p.y - (from.y + share * (to.y - from.y))) > kHeightTolerance * eye_height_) return false;
     }
     return is_free(from, to);
 }
@@ -249,14 +249,14 @@ glm::dvec3 FreeSpace::best_heading(const Sight& sight) const {
         const double angle = 2.0 * std::numbers::pi * heading / kHeadings;
         const glm::dvec3 forward(std::sin(angle), 0.0, -std::cos(angle));
         objects.clear();
-        double reach = 0.0;
+        double openness = 0.0;
         for (std::uint32_t i = 0; i < kDirections; ++i) {
             const radiosity::Hit& hit = sight.hits[i];
             if (glm::dot(direction_of(i), forward) < 0.75 || hit.triangle == radiosity::Hit::kNothing) continue;
             objects.push_back(subject_.object_of[hit.triangle]);
-            reach += std::min(static_cast<double>(hit.t) / size_, 1.0) / kDirections;
+            openness += std::min(static_cast<double>(hit.t) / size_, 1.0) / kDirections;
         }
-        const double worth = count_distinct(objects) + 20.0 * reach;
+        const double worth = count_distinct(objects) + 20.0 * openness;
         if (worth <= best) continue;
         best = worth;
         result = forward;

@@ -90,10 +90,10 @@ bool excludes(const Frustum& frustum, const Ball& ball, const BallFactors& facto
             exact[std::size_t(j)] = exact[std::size_t(j)] + Dyadic(factors.factor[n]) * Dyadic(plane.normal[j]);
     }
     if (at_center.sign() >= 0) return false;
-    Dyadic reach;
-    for (const Dyadic& component : exact) reach = reach + component * component;
-    reach = reach * (Dyadic(ball.radius) * Dyadic(ball.radius));
-    return (at_center * at_center - reach).sign() > 0;
+    Dyadic squared_radius;
+    for (const Dyadic& component : exact) squared_radius = squared_radius + component * component;
+    squared_radius = squared_radius * (Dyadic(ball.radius) * Dyadic(ball.radius));
+    return (at_center * at_center - squared_radius).sign() > 0;
 }
 
 // The nearest point of the common part of some planes to the ball's centre, and how it comes about: centre + Σ factor ·

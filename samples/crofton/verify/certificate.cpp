@@ -183,14 +183,14 @@ std::array<double, 3> walk_inside(const Rows& rows) {
             }
         if (least >= 0.0) break;
         const auto& slope = rows.rows[worst].slope;
-        double square = 0.0, reach = 0.0;
+        double square = 0.0, projected_radius = 0.0;
         for (std::size_t k = 0; k < 3; ++k) {
-            reach += std::fabs(slope[k]);
+            projected_radius += std::fabs(slope[k]);
             if (t[k] * slope[k] < std::fabs(slope[k])) square += slope[k] * slope[k];
         }
         if (!(square > 0.0)) break;
         for (std::size_t k = 0; k < 3; ++k)
-            t[k] = std::fmax(-1.0, std::fmin(1.0, t[k] + (0.02 * reach - least) / square * slope[k]));
+            t[k] = std::fmax(-1.0, std::fmin(1.0, t[k] + (0.02 * projected_radius - least) / square * slope[k]));
     }
     return t;
 }

@@ -18,7 +18,7 @@ using Engine = std::mt19937_64;
 // Boxes on a lattice, so that the separating-axis theorem can be put into integers of 128 bits: axes in steps of 2^-22,
 // extents of 2^-24, offsets of 2^-52. Reaches are then multiples of 2^-90, distances of 2^-96, both below 2^8.
 constexpr int kAxisBits = 22, kExtentBits = 24, kOffsetBits = 52;
-constexpr int kReachToDistance = kOffsetBits - kAxisBits - kExtentBits;
+constexpr int kRadiusToDistance = kOffsetBits - kAxisBits - kExtentBits;
 
 double on_lattice(double value, int bits) {
     return std::ldexp(std::nearbyint(std::ldexp(value, bits)), -bits);
@@ -40,7 +40,7 @@ bool meet_in_integers(const Obb& a, const Obb& b) {
     for (int i = 0; i < 3; ++i) offset[i] = integer(b.center[i] - a.center[i], kOffsetBits);
     for (int p = 0; p < 6; ++p)
         for (int q = p + 1; q < 6; ++q) {
-            Int128 n[3], distance = 0, reach = 0;
+            Int128 n[3], distance = 0, projected_radius = 0;
             for (int i = 0; i < 3; ++i) {
                 const int j = (i + 1) % 3, k = (i + 2) % 3;
                 n[i] = edge[p][j] * edge[q][k] - edge[p][k] * edge[q][j];
@@ -48,8 +48,8 @@ bool meet_in_integers(const Obb& a, const Obb& b) {
             }
             for (int g = 0; g < 6; ++g)
                 if (g != p && g != q)
-                    reach += half[g] * magnitude(edge[g][0] * n[0] + edge[g][1] * n[1] + edge[g][2] * n[2]);
-            if (magnitude(distance) > reach << kReachToDistance) return false;
+                    projected_radius += half[g] * magnitude(edge[g][0] * n[0] + edge[g][1] * n[1] + edge[g][2] * n[2]);
+            if (magnitude(distance) > projected_radius << kRadiusToDistance) return false;
         }
     return true;
 }

@@ -39,8 +39,8 @@ convex::Body ConvexPairs::polytope(int corners, std::unique_ptr<convex::Hull>& h
         std::vector<glm::vec3> points;
         const int count = kind == 3 ? 3 : 4 + index(corners - 3);
         for (int i = 0; i < count; ++i) {
-            const double reach = form == 1 ? number(0.3, 1.0) : 1.0;
-            points.emplace_back(scale * reach * direction());
+            const double radius = form == 1 ? number(0.3, 1.0) : 1.0;
+            points.emplace_back(scale * radius * direction());
         }
         if (kind == 3) return *convex::Body::triangle(points[0], points[1], points[2]);
         auto built = convex::Hull::build(points);

@@ -42,13 +42,13 @@ struct Ratios {
     Ratio outside, total;
 };
 
-// `reach` must hold both bounds well inside: the query's boundary is anchored in that ball.
-Ratios compare(const Body& query, const Body& first, const Body& second, const Body& object, double reach,
+// A ball of `radius` must hold both bounds well inside: the query's boundary is anchored in that ball.
+Ratios compare(const Body& query, const Body& first, const Body& second, const Body& object, double radius,
                std::uint64_t trials, std::uint64_t seed) {
     const sampling::UnitPoints points(seed);
     Ratios result;
     for (std::uint64_t i = 0; i < trials; ++i) {
-        const Anchored q = anchored(query, reach, points.at<8>(i));
+        const Anchored q = anchored(query, radius, points.at<8>(i));
         const bool hits = meet(q.body, object), inside = hits && !q.body.faces.empty() && holds(q.body, object);
         const auto outside = [&](const Body& bound) { return !hits && meet(q.body, bound) ? q.weight : 0.0; };
         const auto within = [&](const Body& bound) { return inside && !holds(q.body, bound) ? q.weight : 0.0; };
@@ -158,7 +158,7 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     b.axes = glm::mat3(sampling::rotation({0.3, 0.7, 0.2}));
     const std::vector<study::ConvexBody> bodies = {study::ConvexBody::box(a), study::ConvexBody::box(b),
                                                    study::ConvexBody::ball(glm::dvec3(-0.3, 0.0, 0.4), 0.6)};
-    const double reach = 2.5;
+    const double radius = 2.5;
     const sampling::UnitPoints points(options.seed * 1000 + 260);
     std::uint64_t planes = 0, lines = 0;
     const auto box_met = [](const Obb& box, const Line& line) {  // by slabs
@@ -175,11 +175,11 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     for (std::uint64_t i = 0; i < options.trials; ++i) {
         const auto u = points.at<4>(i);
         const glm::dvec3 n = sampling::direction({u[0], u[1]});
-        const double distance = reach * (2.0 * u[2] - 1.0);
+        const double distance = radius * (2.0 * u[2] - 1.0);
         planes += std::all_of(bodies.begin(), bodies.end(), [&](const study::ConvexBody& k) {
             return -support(k, -n) <= distance && distance <= support(k, n);
         });
-        const Line line = sampling::line_through_disc({glm::dvec3(0.0), reach}, u);
+        const Line line = sampling::line_through_disc({glm::dvec3(0.0), radius}, u);
         const glm::dvec3 d = bodies[2].points[0] - line.point;
         const bool ball = glm::length(glm::cross(d, line.direction)) <= bodies[2].radius;
         lines += ball && box_met(a, line) && box_met(b, line);
@@ -191,10 +191,10 @@ void common_rows(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
                                     std::hypot(all * share.standard_error, exact.error / kMaxZ)));
     };
     row("planes that hit two boxes and a ball", "theory.md (4)", *measure_of_planes_hitting_all(bodies),
-        4.0 * pi * reach, planes);
+        4.0 * pi * radius, planes);
     row("lines that hit two boxes and a ball", "theory.md (5)",
         *measure_of_lines_hitting_all(bodies, {.tolerance = 1e-2, .max_cells = 40000}),
-        sampling::measure_of_lines(4.0 * pi * reach * reach), lines);
+        sampling::measure_of_lines(4.0 * pi * radius * radius), lines);
 }
 
 // Formula (6) on an L of two triangulations, lighter and heavier.

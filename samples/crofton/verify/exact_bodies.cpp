@@ -80,17 +80,17 @@ bool parts_in_plane(const ExactBody& a, const ExactBody& b) {
 
 // All points rounded, around the first of a, so that most axes need no exact arithmetic. Let R
 // be above all coordinates. Each is off by at most 2^-53 R, an axis by 16 · 2^-53 R² and a product by 130 · 2^-53 R³.
-// That is far below the slack.
+// That is far below the margin.
 class RoundedPair {
   public:
     RoundedPair(const ExactBody& a, const ExactBody& b) {
         const ExactVector& origin = a.points[0];
         for (const ExactVector& p : a.points) a_.push_back(rounded(p - origin));
         for (const ExactVector& p : b.points) b_.push_back(rounded(p - origin));
-        double reach = 0.0;
+        double radius = 0.0;
         for (const auto* points : {&a_, &b_})
-            for (const glm::dvec3& p : *points) reach = std::max(reach, glm::length(p));
-        slack_ = 1e-12 * reach * reach * reach;
+            for (const glm::dvec3& p : *points) radius = std::max(radius, glm::length(p));
+        margin_ = 1e-12 * radius * radius * radius;
     }
     [[nodiscard]] glm::dvec3 edge(bool of_a, std::size_t from, std::size_t to) const {
         return of_a ? a_[to] - a_[from] : b_[to] - b_[from];
@@ -100,12 +100,12 @@ class RoundedPair {
         double most = -HUGE_VAL, least = HUGE_VAL;
         for (const glm::dvec3& p : a_) most = std::max(most, glm::dot(n, p));
         for (const glm::dvec3& p : b_) least = std::min(least, glm::dot(n, p));
-        return most - least > slack_;
+        return most - least > margin_;
     }
 
   private:
     std::vector<glm::dvec3> a_, b_;
-    double slack_;
+    double margin_;
 };
 
 // The separating-axis theorem: normals of faces, products of edges; of triangles in one plane, normals of edges.
@@ -161,12 +161,12 @@ int side_of(const std::vector<ExactVector>& w, std::size_t i, const ExactVector&
 }
 
 // Rounded points that are clearly on both sides of the plane through three of them.
-bool is_clearly_inside(const std::vector<glm::dvec3>& w, std::size_t i, const glm::dvec3& n, double slack) {
+bool is_clearly_inside(const std::vector<glm::dvec3>& w, std::size_t i, const glm::dvec3& n, double margin) {
     bool above = false, below = false;
     for (const glm::dvec3& p : w) {
         const double side = glm::dot(n, p - w[i]);
-        above = above || side > slack;
-        below = below || side < -slack;
+        above = above || side > margin;
+        below = below || side < -margin;
         if (above && below) return true;
     }
     return false;

@@ -63,12 +63,13 @@ VerifyRow counted(const NamedBody& b, const NamedBody& k, std::uint64_t trials, 
 
 VerifyRow counted(const char* claim, const Figure& b, const Figure& k, std::uint64_t trials, std::uint64_t seed) {
     const auto measures = [](const Figure& f) { return measure::planar_measures_of_convex_polygon(f); };
-    const double reach = 6.0;
+    const double half_side = 6.0;
     const sampling::UnitPoints points(seed);
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i)
-        hits += meet(moved(b, sampling::planar_motion(glm::dvec2(-reach), glm::dvec2(reach), points.at<3>(i))), k);
-    const double all = 4.0 * reach * reach;
+        hits +=
+            meet(moved(b, sampling::planar_motion(glm::dvec2(-half_side), glm::dvec2(half_side), points.at<3>(i))), k);
+    const double all = 4.0 * half_side * half_side;
     const Share share = share_of(hits, trials);
     return measured_row(claim, "theory.md (1), in the plane", measure::kinematic_measure(measures(b), measures(k)),
                         all * share.value, all * share.standard_error);

@@ -59,10 +59,10 @@ const double kErrorOfChiSquare = std::sqrt(2.0 * kMeanChiSquare);
 const Sphere kUnitSphere{glm::dvec3(0.0), 1.0};
 const Aabb kBox{glm::dvec3(-1.5, -1.0, -1.0), glm::dvec3(1.0, 2.0, 1.25)};  // around the unit ball
 
-TriangleMesh octahedron(float reach) {
+TriangleMesh octahedron(float radius) {
     TriangleMesh mesh;
-    mesh.positions = {{reach, 0.0f, 0.0f},  {-reach, 0.0f, 0.0f}, {0.0f, reach, 0.0f},
-                      {0.0f, -reach, 0.0f}, {0.0f, 0.0f, reach},  {0.0f, 0.0f, -reach}};
+    mesh.positions = {{radius, 0.0f, 0.0f},  {-radius, 0.0f, 0.0f}, {0.0f, radius, 0.0f},
+                      {0.0f, -radius, 0.0f}, {0.0f, 0.0f, radius},  {0.0f, 0.0f, -radius}};
     mesh.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     return mesh;
 }

@@ -19,21 +19,21 @@ using measure::PlanarMeasures;
 using std::numbers::pi;
 using study::PlanarSupport;
 
-// Uniform lines: a normal direction and a distance in [−reach, reach]; the measure of all of them is 2π·reach.
+// Uniform lines: a normal direction and a distance in [−R, R], R the radius; the measure of all of them is 2π R.
 VerifyRow counted_lines(std::string claim, std::string source, double predicted,
                         const std::vector<PlanarSupport>& figures, const VerifyOptions& options, std::uint64_t salt,
                         double subtract = 0.0) {
-    const double reach = 4.0;
+    const double radius = 4.0;
     const std::uint64_t trials = 4 * options.trials;
     const sampling::UnitPoints points(options.seed * 1000 + salt);
     std::uint64_t hits = 0;
     for (std::uint64_t i = 0; i < trials; ++i) {
         const auto u = points.at<2>(i);
-        const double phi = pi * u[0], distance = reach * (2.0 * u[1] - 1.0);
+        const double phi = pi * u[0], distance = radius * (2.0 * u[1] - 1.0);
         hits += std::all_of(figures.begin(), figures.end(),
                             [&](const PlanarSupport& h) { return -h(phi + pi) <= distance && distance <= h(phi); });
     }
-    const double all = 2.0 * pi * reach;
+    const double all = 2.0 * pi * radius;
     const Share share = share_of(hits, trials);
     return measured_row(std::move(claim), std::move(source), predicted, all * share.value - subtract,
                         all * share.standard_error);
@@ -101,12 +101,12 @@ struct Improper {
 };
 
 // The measures of improper tests of `bound` around `object`, for motions of `query`.
-Improper improper(const Figure& query, const Figure& bound, const Figure& object, double reach,
+Improper improper(const Figure& query, const Figure& bound, const Figure& object, double radius,
                   const VerifyOptions& options, std::uint64_t salt) {
     const sampling::UnitPoints points(options.seed * 1000 + salt);
     Improper result;
     for (std::uint64_t i = 0; i < options.trials; ++i) {
-        const AnchoredFigure q = anchored(query, reach, points.at<4>(i));
+        const AnchoredFigure q = anchored(query, radius, points.at<4>(i));
         const bool hits_bound = meet(q.figure, bound), hits_object = hits_bound && meet(q.figure, object);
         result.outside.add(hits_bound && !hits_object ? q.weight : 0.0);
         const bool inside = query.size() > 2 && hits_object && holds(q.figure, object) && !holds(q.figure, bound);

@@ -50,7 +50,7 @@ Result<Baked> bake_town(const VerifyOptions& options) {
                                   {.epsilon = epsilon, .confidence = kConfidence, .seed = options.seed});
     if (!bake) return tl::unexpected(bake.error());
     if (auto ran = bake->run(); !ran) return tl::unexpected(ran.error());
-    auto sets = pvs::Pvs::finish(*bake, scene->occluders, {.near_reach = 0.0, .halvings = 2});
+    auto sets = pvs::Pvs::finish(*bake, scene->occluders, {.near_radius = 0.0, .halvings = 2});
     if (!sets) return tl::unexpected(sets.error());
     return Baked{std::move(*scene), std::move(*cells), std::move(*bake), std::move(*sets), epsilon, lines};
 }

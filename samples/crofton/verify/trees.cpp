@@ -54,14 +54,14 @@ VerifyRow counted(const char* claim, Orientation orientation, const VerifyOption
     const std::vector<Obb> boxes = beams(options.seed);
     const auto tree = boxtree::BoxTree::build(boxes, {.orientation = orientation});
     const std::vector<Bound> bounds = bounds_of(*tree);
-    double perimeters = 0.0, reach = 0.0;
+    double perimeters = 0.0, radius = 0.0;
     for (const Bound& bound : bounds) {
         double diagonal = 0.0;
         for (const glm::dvec3& edge : bound.edges) {
             perimeters += 2.0 * glm::length(edge);
             diagonal += glm::dot(edge, edge);
         }
-        reach = std::max(reach, glm::length(bound.center) + std::sqrt(diagonal));
+        radius = std::max(radius, glm::length(bound.center) + std::sqrt(diagonal));
     }
     // A plane that meets a ball of radius R meets a box of edges a, b, c with probability (a + b + c)/(4 R).
     const sampling::UnitPoints points(options.seed * 1000 + 900);
@@ -70,7 +70,7 @@ VerifyRow counted(const char* claim, Orientation orientation, const VerifyOption
     for (std::uint64_t i = 0; i < trials; ++i) {
         const std::array<double, 3> u = points.at<3>(i);
         const glm::dvec3 normal = sampling::direction({u[0], u[1]});
-        const double offset = reach * (2.0 * u[2] - 1.0);
+        const double offset = radius * (2.0 * u[2] - 1.0);
         std::uint64_t hits = 0;
         for (const Bound& bound : bounds) {
             double half = 0.0;
@@ -82,7 +82,7 @@ VerifyRow counted(const char* claim, Orientation orientation, const VerifyOption
         squares += away * (value - mean);
     }
     const double n = static_cast<double>(trials);
-    return measured_row(claim, "theory.md section 4", perimeters / (4.0 * reach), mean,
+    return measured_row(claim, "theory.md section 4", perimeters / (4.0 * radius), mean,
                         std::sqrt(squares / (n * (n - 1.0))));
 }
 

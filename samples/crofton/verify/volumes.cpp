@@ -128,7 +128,7 @@ void densities(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
     const std::uint64_t trials = 4 * options.trials;
     const sampling::UnitPoints points(options.seed * 1000 + 380);
     const glm::dvec3 half(0.6, 0.3, 0.2), axis = glm::normalize(glm::dvec3(1.0, -2.0, 0.5));
-    const double reach = glm::length(half);
+    const double radius = glm::length(half);
     std::uint64_t hits = 0;
     Mean first, second, fourth, cosine;
     for (std::uint64_t i = 0; i < trials; ++i) {
@@ -139,13 +139,13 @@ void densities(const VerifyOptions& options, std::vector<VerifyRow>& rows) {
         second.add(along * along);
         fourth.add(along * along * along * along);
         cosine.add(glm::dot(sampling::cosine_direction(axis, {u[3], u[4]}), axis));
-        hits += std::abs(reach * (2.0 * u[2] - 1.0)) <= glm::dot(glm::abs(n), half);
+        hits += std::abs(radius * (2.0 * u[2] - 1.0)) <= glm::dot(glm::abs(n), half);
     }
     const Share share = share_of(hits, trials);
     rows.push_back(measured_row("planes that hit a box, of those that hit its ball: M",
                                 "theory.md section 1, density of planes",
                                 measure::intrinsic_volumes_of_box(1.2, 0.6, 0.4).mean_curvature,
-                                4.0 * pi * reach * share.value, 4.0 * pi * reach * share.standard_error));
+                                4.0 * pi * radius * share.value, 4.0 * pi * radius * share.standard_error));
     const char* const source = "theory.md section 6, density of directions";
     rows.push_back(row("directions: mean |cosine| with an axis", source, 0.5, first));
     rows.push_back(row("directions: mean cosine² with an axis", source, 1.0 / 3.0, second));

@@ -61,8 +61,8 @@ std::vector<std::pair<scene::InstanceId, scene::InstanceId>> near_pairs(std::spa
         for (std::size_t j = i + 1; j < balls.size() && pairs.size() < limit; ++j) {
             const Ball &p = balls[i], &q = balls[j];
             if (q.center.x - p.center.x > 2.0 * p.radius + largest) break;
-            const double reach = p.radius + q.radius + std::min(p.radius, q.radius);
-            if (glm::distance(p.center, q.center) > reach) continue;
+            const double nearby = p.radius + q.radius + std::min(p.radius, q.radius);
+            if (glm::distance(p.center, q.center) > nearby) continue;
             if (!collide::intersects(boxes[p.instance], boxes[q.instance])) pairs.emplace_back(p.instance, q.instance);
         }
     return pairs;

@@ -26,9 +26,9 @@ constexpr std::size_t kMaxContactsOfPair = 64;
 
 }  // namespace
 
-std::vector<Cascade> split_view(const Camera& camera, int count, double reach) {
+std::vector<Cascade> split_view(const Camera& camera, int count, double range) {
     std::vector<Cascade> result;
-    const double near = camera.near_distance, far = std::min(camera.far_distance, std::max(reach, 2.0 * near));
+    const double near = camera.near_distance, far = std::min(camera.far_distance, std::max(range, 2.0 * near));
     const auto depth_at = [&](int i) {
         const double share = static_cast<double>(i) / count;
         return 0.5 * (near + (far - near) * share) + 0.5 * near * std::pow(far / near, share);
@@ -63,10 +63,10 @@ void Overlay::draw(LineList& lines, const Settings& settings, const LoadedScene&
         lines.box(loaded.pipeline().bounds().boxes()[selected], kSelection);
         lines.axes(scene.world_boxes()[selected]);
     }
-    const double reach = 1.5 * glm::length(loaded.extent().half_extents());
+    const double range = 1.5 * glm::length(loaded.extent().half_extents());
     if (show_frustum && cascades.size() < 2) {
         legend_.push_back({"view that culls", kFrustum});
-        lines.frustum(frame.camera, reach, kFrustum);
+        lines.frustum(frame.camera, range, kFrustum);
     }
     if (show_frustum || settings.freeze)
         for (const Cascade& cascade : cascades)

@@ -20,8 +20,8 @@ struct Cascade {
     std::uint64_t visible = 0;
     std::uint32_t color = 0;
 };
-// The camera's range [near, far or `reach`] in `count` parts, halfway between even and geometric spacing.
-[[nodiscard]] std::vector<Cascade> split_view(const Camera& camera, int count, double reach);
+// The camera's range [near, far or `range`] in `count` parts, halfway between even and geometric spacing.
+[[nodiscard]] std::vector<Cascade> split_view(const Camera& camera, int count, double range);
 
 // What a kind of line in the picture stands for.
 struct LineMeaning {

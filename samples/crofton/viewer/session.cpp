@@ -27,8 +27,8 @@ double microseconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // Behind and above the camera that culls, far enough to see what it sees.
-Camera from_outside(const Camera& camera, double reach) {
-    const auto corners = view_corners(camera, reach);
+Camera from_outside(const Camera& camera, double range) {
+    const auto corners = view_corners(camera, range);
     Aabb bounds;
     for (const glm::dvec3& corner : corners) bounds.include(corner);
     const double radius = glm::length(bounds.half_extents());
@@ -257,8 +257,8 @@ Result<void> Session::start_drawing() {
         const auto rows = static_cast<std::uint32_t>(std::max(width / kInsetAspect, 9.0));
         if (auto sized = rasterizer_->resize(columns, rows, 1); !sized) return sized;
         // What most triangles are in; the far landscape would make it a speck.
-        const double reach = glm::length(loaded_->focus().half_extents());
-        if (auto begun = submit_view(from_outside(culling_camera_, reach), 1, true); !begun) return begun;
+        const double range = glm::length(loaded_->focus().half_extents());
+        if (auto begun = submit_view(from_outside(culling_camera_, range), 1, true); !begun) return begun;
         if (auto done = rasterizer_->finish(); !done) return tl::unexpected(std::move(done.error()));
     }
     if (other_)

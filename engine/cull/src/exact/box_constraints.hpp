@@ -26,7 +26,9 @@ struct Constraint {
     double base_size;
 
     // The largest and least value over the box, each within 12u · size() of the exact one (7u, and 4 more additions).
-    [[nodiscard]] double reach() const { return std::fabs(slope[0]) + std::fabs(slope[1]) + std::fabs(slope[2]); }
+    [[nodiscard]] double projected_radius() const {
+        return std::fabs(slope[0]) + std::fabs(slope[1]) + std::fabs(slope[2]);
+    }
     [[nodiscard]] double size() const { return slope_size[0] + slope_size[1] + slope_size[2] + base_size; }
 };
 
@@ -93,8 +95,8 @@ template <class Box>
 [[nodiscard]] int exact_corner_sign(const Plane& plane, const glm::dvec3& origin, const Box& box, bool innermost) {
     Dyadic sum = exact_entry(plane, origin, box, 3);
     for (unsigned k = 0; k < 3; ++k) {
-        const Dyadic reach = abs(exact_entry(plane, origin, box, k));
-        sum = innermost ? sum + reach : sum - reach;
+        const Dyadic projected_radius = abs(exact_entry(plane, origin, box, k));
+        sum = innermost ? sum + projected_radius : sum - projected_radius;
     }
     return sum.sign();
 }
@@ -102,7 +104,7 @@ template <class Box>
 template <class Box>
 [[nodiscard]] int innermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
                                  const Box& box) {
-    const double value = constraint.base + constraint.reach();
+    const double value = constraint.base + constraint.projected_radius();
     const double bound = 12.0 * kUnit * constraint.size() + kTiny;
     if (value > bound) return 1;
     if (value < -bound) return -1;
@@ -112,7 +114,7 @@ template <class Box>
 template <class Box>
 [[nodiscard]] int outermost_sign(const Constraint& constraint, const Plane& plane, const glm::dvec3& origin,
                                  const Box& box) {
-    const double value = constraint.base - constraint.reach();
+    const double value = constraint.base - constraint.projected_radius();
     const double bound = 12.0 * kUnit * constraint.size() + kTiny;
     if (value > bound) return 1;
     if (value < -bound) return -1;

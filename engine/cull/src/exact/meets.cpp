@@ -22,11 +22,11 @@ struct Weighted {
 template <class... Terms>
 bool separates(const Terms&... terms) {
     if (!((terms.weight >= 0.0) && ...)) return false;
-    double reach = 0.0;
-    for (unsigned k = 0; k < 3; ++k) reach += std::fabs(((terms.weight * terms.constraint.slope[k]) + ...));
+    double projected_radius = 0.0;
+    for (unsigned k = 0; k < 3; ++k) projected_radius += std::fabs(((terms.weight * terms.constraint.slope[k]) + ...));
     const double base = ((terms.weight * terms.constraint.base) + ...);
     const double size = ((terms.weight * terms.constraint.size()) + ...);
-    return base + reach < -(kCombinationRounding * size + kTiny);
+    return base + projected_radius < -(kCombinationRounding * size + kTiny);
 }
 
 // The separating axes of a frustum edge against a box edge: base + Σ|slope| of (1−y) i + y j is convex and piecewise
@@ -78,8 +78,8 @@ bool finds_witness(std::span<const Constraint> constraints, int rounds) {
                 if (std::fabs(t[k]) < 1.0 || violated->slope[k] * t[k] < 0.0)
                     free_norm += violated->slope[k] * violated->slope[k];
             if (!(free_norm > 0.0)) return false;
-            const double reach = violated->reach();
-            const double step = (-value + 1e-3 * reach) / free_norm;
+            const double projected_radius = violated->projected_radius();
+            const double step = (-value + 1e-3 * projected_radius) / free_norm;
             for (unsigned k = 0; k < 3; ++k) t[k] = std::min(1.0, std::max(-1.0, t[k] + step * violated->slope[k]));
             if (violated->base + violated->slope[0] * t[0] + violated->slope[1] * t[1] + violated->slope[2] * t[2] >
                 0.0)
@@ -197,7 +197,8 @@ bool meets(const Frustum& frustum, const Box& box, const Constraint* constraints
     crossed.origin = frustum.origin;
     Constraint open[Frustum::kMaxPlanes];
     for (std::uint32_t i = 0; i < frustum.plane_count; ++i) {
-        if (constraints[i].base - constraints[i].reach() > 12.0 * kUnit * constraints[i].size() + kTiny) continue;
+        if (constraints[i].base - constraints[i].projected_radius() > 12.0 * kUnit * constraints[i].size() + kTiny)
+            continue;
         open[crossed.plane_count] = constraints[i];
         crossed.planes[crossed.plane_count++] = frustum.planes[i];
     }

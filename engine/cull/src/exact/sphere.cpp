@@ -104,9 +104,9 @@ class BallTest {
             sum = sum + weights[a] * value_[set[a]];
             for (int j = 0; j < 3; ++j) direction[j] = direction[j] + weights[a] * normal_[set[a]][j];
         }
-        const Number reach =
+        const Number squared_radius =
             square_ * (direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
-        const Number margin = sum * sum - reach;
+        const Number margin = sum * sum - squared_radius;
         if (sum.is_negative() && margin.is_positive()) return known ? Answer::yes : Answer::unknown;
         if (kExact || sum.is_positive() || margin.is_negative()) return Answer::no;
         return Answer::unknown;

@@ -186,7 +186,7 @@ class LightWalk {
 
   private:
     // Columns or rows that the light may reach: those not beyond a boundary that it lies wholly before. A unit normal's
-    // product with the axis t is off by 2^-21; 1 − t² + 2^-19 makes a reach that is too long rather than too short.
+    // product with the axis t is off by 2^-21; 1 − t² + 2^-19 makes it too long rather than too short.
     HWY_INLINE Range reached(unsigned axis) const {
         const FroxelTag d;
         const FroxelArrays<float>& grid = grid_.floats;
@@ -204,13 +204,13 @@ class LightWalk {
                     hn::MulAdd(normal, hn::Set(d, filter_.axis[axis]), hn::Mul(forward, hn::Set(d, filter_.axis[2])));
                 const auto root = hn::Sqrt(hn::Max(zero, hn::NegMulAdd(t, t, hn::Set(d, 1.0f + 0x1p-19f))));
                 const auto cosine = hn::Set(d, filter_.cosine), side = hn::Mul(root, hn::Set(d, filter_.sine));
-                const auto reach = [&](auto along) HWY_ATTR {
+                const auto support_along = [&](auto along) HWY_ATTR {
                     const auto share = hn::Max(zero, hn::MulAdd(along, cosine, side));
                     const auto whole = hn::Ge(hn::Add(along, hn::Set(d, 0x1p-20f)), cosine);
                     return hn::IfThenElse(whole, radius, hn::Mul(radius, share));
                 };
-                up = reach(t);
-                down = reach(hn::Neg(t));
+                up = support_along(t);
+                down = support_along(hn::Neg(t));
             }
             const auto present = hn::FirstN(d, boundaries - i);
             const auto beyond = hn::Gt(hn::Sub(value, down), eta), short_of = hn::Lt(hn::Add(value, up), hn::Neg(eta));

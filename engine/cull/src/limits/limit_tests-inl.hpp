@@ -47,9 +47,9 @@ class LimitTester {
                                          node.origin[2] - limits_.eye[2]};
         for (unsigned j = 0; j < 3; ++j) {
             const VF start = hn::Set(d, static_cast<float>(boxtree::along(axes, j, eye_to_origin)));
-            const VF offset = hn::Mul(middle[j], unit), reach = hn::Mul(half[j], unit);
-            const VF size = hn::Add(hn::Add(hn::Abs(start), hn::Abs(offset)), hn::Abs(reach));
-            const VF away = hn::Abs(hn::Add(start, offset)), margin = hn::MulAdd(size, trifle, reach);
+            const VF offset = hn::Mul(middle[j], unit), half_size = hn::Mul(half[j], unit);
+            const VF size = hn::Add(hn::Add(hn::Abs(start), hn::Abs(offset)), hn::Abs(half_size));
+            const VF away = hn::Abs(hn::Add(start, offset)), margin = hn::MulAdd(size, trifle, half_size);
             const VF gap = hn::Max(zero, hn::Sub(away, margin)), most = hn::Add(away, margin);
             nearest = hn::MulAdd(gap, gap, nearest);
             farthest = hn::MulAdd(most, most, farthest);
@@ -136,10 +136,10 @@ class LimitTester {
         const DF d;
         const VF safe = hn::Mul(square, hn::Set(d, 1.0f + 0x1p-10f));
         const VF radii = hn::Set(d, limits_.radii[0]);
-        const MF in_reach = hn::Or(hn::Le(safe, hn::Mul(radius_square, radii)), hn::Eq(radii, hn::Inf(d)));
+        const MF near_enough = hn::Or(hn::Le(safe, hn::Mul(radius_square, radii)), hn::Eq(radii, hn::Inf(d)));
         const MF large =
             hn::Ge(hn::Mul(radius_square, hn::Set(d, 1.0f - 0x1p-10f)), hn::Set(d, limits_.least_radius[0]));
-        return hn::And(hn::And(hn::IsFinite(safe), in_reach), hn::And(hn::Le(safe, layer_square), large));
+        return hn::And(hn::And(hn::IsFinite(safe), near_enough), hn::And(hn::Le(safe, layer_square), large));
     }
 
     struct LastLayers {

@@ -16,17 +16,19 @@ struct SphereLanes {
     VF x, y, z, radius;
     MF present;
 
-    HWY_INLINE VF reach(const KernelPlane& plane) const { return hn::Mul(radius, hn::Set(DF(), plane.length_f)); }
+    HWY_INLINE VF projected_radius(const KernelPlane& plane) const {
+        return hn::Mul(radius, hn::Set(DF(), plane.length_f));
+    }
     // The radius, the normal's length and their product round by 2^-24 of the result each, the sums with it by as much.
-    HWY_INLINE VF slack(LocalPlane local) const {
-        return hn::MulAdd(radius, hn::Set(DF(), 0x1p-20f), hn::Set(DF(), local.slack));
+    HWY_INLINE VF error_bound(LocalPlane local) const {
+        return hn::MulAdd(radius, hn::Set(DF(), 0x1p-20f), hn::Set(DF(), local.error_bound));
     }
 };
 
-// What a plane's value at the centre may be off by is its slack; so it is at the centre + v, |v| ≤ radius.
+// What a plane's value at the centre may be off by is its error bound; so it is at the centre + v, |v| ≤ radius.
 struct BallRow {
     const KernelPlane* plane;
-    VF base, slack;
+    VF base, error_bound;
 };
 
 // Those of the wanted lanes that certainly have a point inside all planes. The search steps from the centre onto the
@@ -46,7 +48,7 @@ HWY_INLINE MF has_witness(const SphereLanes& balls, const BallRow* rows, unsigne
             const VF value =
                 hn::MulAdd(hn::Set(d, n[0]), v[0],
                            hn::MulAdd(hn::Set(d, n[1]), v[1], hn::MulAdd(hn::Set(d, n[2]), v[2], rows[i].base)));
-            inside = hn::And(inside, hn::Ge(value, rows[i].slack));
+            inside = hn::And(inside, hn::Ge(value, rows[i].error_bound));
             const MF worse = hn::Lt(value, worst);
             worst = hn::IfThenElse(worse, value, worst);
             for (unsigned k = 0; k < 3; ++k) normal[k] = hn::IfThenElse(worse, hn::Set(d, n[k]), normal[k]);
@@ -80,8 +82,8 @@ HWY_INLINE MF is_excluded(const SphereLanes& balls, const BallRow* rows, unsigne
                 hn::MulAdd(hn::Mul(weight_a, weight_a), square_a, hn::Mul(hn::Mul(weight_b, weight_b), square_b));
             square = hn::MulAdd(hn::Mul(hn::Add(weight_a, weight_a), weight_b), product, square);
             square = hn::Max(zero, hn::MulAdd(hn::Mul(sum, sum), hn::Set(d, 0x1p-20f), square));
-            const VF top_a = hn::Add(a.base, hn::MulAdd(hn::Abs(a.base), trifle, a.slack)),
-                     top_b = hn::Add(b.base, hn::MulAdd(hn::Abs(b.base), trifle, b.slack));
+            const VF top_a = hn::Add(a.base, hn::MulAdd(hn::Abs(a.base), trifle, a.error_bound)),
+                     top_b = hn::Add(b.base, hn::MulAdd(hn::Abs(b.base), trifle, b.error_bound));
             const VF bound =
                 hn::MulAdd(weight_a, top_a, hn::MulAdd(weight_b, top_b, hn::Mul(radius, hn::Sqrt(square))));
             excluded = hn::Or(excluded, hn::And(hn::Lt(bound, hn::Set(d, -1e-30f)), hn::Gt(bound, hn::Set(d, -1e37f))));
@@ -97,7 +99,7 @@ HWY_INLINE void resolve(const KernelView& view, const SphereLanes& balls, std::u
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
         rows[count++] = {&view.planes[i], plane_value(view.planes[i], balls.x, balls.y, balls.z, local[i].offset),
-                         balls.slack(local[i])};
+                         balls.error_bound(local[i])};
     }
     const MF meets = has_witness(balls, rows, count, test.needs_edge_test);
     test.straddling = hn::Or(test.straddling, meets);

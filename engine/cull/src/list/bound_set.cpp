@@ -140,7 +140,7 @@ std::size_t BoundSet<Bound>::fill_chunk(std::size_t c, std::span<const Bound> bo
         }
     } else {
         for (std::size_t i = first; i < first + count; ++i) clear_row(rows_[i / 16], i % 16);
-        chunk.reach = 0.0f;
+        chunk.l1_radius = 0.0f;
         chunk.largest_radius = 0;
         for (std::int32_t& extent : chunk.extent) extent = 0;
         chunk.strays = static_cast<std::uint32_t>(count);
@@ -209,8 +209,8 @@ void BoundSet<Bound>::write(std::size_t i, const Bound& bound) {
         const Sphere ball = ball_around(bound);
         const glm::dvec3 offset = ball.center - glm::dvec3(chunk.origin[0], chunk.origin[1], chunk.origin[2]);
         records_[i] = record_of(bound, offset);
-        const double reach = std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z);
-        chunk.reach = std::max(chunk.reach, static_cast<float>(reach * (1.0 + 0x1p-20)));
+        const double l1_radius = std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z);
+        chunk.l1_radius = std::max(chunk.l1_radius, static_cast<float>(l1_radius * (1.0 + 0x1p-20)));
         bounded = write_row(block, i % 16, offset, ball.radius, chunk);
     } else {
         records_[i] = undecidable_record<Record>();

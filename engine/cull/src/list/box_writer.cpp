@@ -62,7 +62,7 @@ struct Written {
     alignas(64) std::uint32_t xy[kSixteen];
     alignas(64) std::uint32_t zr[kSixteen];
     alignas(64) std::uint32_t radius[kSixteen];
-    alignas(64) float reach[kSixteen];
+    alignas(64) float l1_radius[kSixteen];
     alignas(64) std::uint32_t record[2][kSixteen][4];
     std::uint32_t usable = 0, bounded = 0;  // a bit a lane
 
@@ -73,7 +73,7 @@ struct Written {
     HWY_INLINE void grow(std::size_t lane, ListChunk& chunk) const {
         for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], std::abs(at[j][lane]));
         chunk.largest_radius = std::max(chunk.largest_radius, radius[lane]);
-        chunk.reach = std::max(chunk.reach, reach[lane]);
+        chunk.l1_radius = std::max(chunk.l1_radius, l1_radius[lane]);
     }
 };
 
@@ -126,11 +126,11 @@ HWY_INLINE void write(const Boxes& boxes, Written& to) {
         const VF offset[3] = {hn::Load(d, to.offset[0] + l), hn::Load(d, to.offset[1] + l),
                               hn::Load(d, to.offset[2] + l)};
         const VF sum = hn::Add(hn::Add(hn::Abs(offset[0]), hn::Abs(offset[1])), hn::Abs(offset[2]));
-        const VF reach = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f));
+        const VF l1_radius = hn::Mul(sum, hn::Set(d, 1.0f + 0x1p-20f));
         const auto usable =
             hn::And(hn::And(hn::Le(deviation(axes), hn::Set(d, 0.99e-4f)), hn::Le(square, hn::Set(d, 1e36f))),
                     hn::And(hn::Ge(hn::Min(hn::Min(half[0], half[1]), half[2]), hn::Zero(d)),
-                            hn::Le(reach, hn::Set(d, static_cast<float>(kFarthest)))));
+                            hn::Le(l1_radius, hn::Set(d, static_cast<float>(kFarthest)))));
 
         const VF per_quantum = hn::Load(d, boxes.per_quantum + l);
         const VF at[3] = {hn::Mul(offset[0], per_quantum), hn::Mul(offset[1], per_quantum),
@@ -151,7 +151,7 @@ HWY_INLINE void write(const Boxes& boxes, Written& to) {
         hn::Store(pairs_of(whole[0], whole[1]), du, to.xy + l);
         hn::Store(pairs_of(whole[2], shown), du, to.zr + l);
         hn::Store(hn::BitCast(du, shown), du, to.radius + l);
-        hn::Store(hn::IfThenElseZero(usable, reach), d, to.reach + l);
+        hn::Store(hn::IfThenElseZero(usable, l1_radius), d, to.l1_radius + l);
 
         const VU upper = hn::And(hn::Add(hn::BitCast(du, radius), hn::Set(du, 0xffffu)), hn::Set(du, 0xffff0000u));
         const VF per_unit = hn::Div(hn::Set(d, 0x1p15f), hn::BitCast(d, upper));
@@ -183,7 +183,7 @@ HWY_INLINE hn::TFromD<D> largest(D d, const hn::TFromD<D>* numbers) {
 struct Extremes {
     alignas(64) std::int32_t at[3][kSixteen] = {};
     alignas(64) std::uint32_t radius[kSixteen] = {};
-    alignas(64) float reach[kSixteen] = {};
+    alignas(64) float l1_radius[kSixteen] = {};
 
     HWY_INLINE void include(const Written& written) {
         for (std::size_t l = 0; l < kSixteen; l += hn::Lanes(DF())) {
@@ -191,13 +191,14 @@ struct Extremes {
                 hn::Store(hn::Max(hn::Load(DI(), at[j] + l), hn::Abs(hn::Load(DI(), written.at[j] + l))), DI(),
                           at[j] + l);
             hn::Store(hn::Max(hn::Load(DU(), radius + l), hn::Load(DU(), written.radius + l)), DU(), radius + l);
-            hn::Store(hn::Max(hn::Load(DF(), reach + l), hn::Load(DF(), written.reach + l)), DF(), reach + l);
+            hn::Store(hn::Max(hn::Load(DF(), l1_radius + l), hn::Load(DF(), written.l1_radius + l)), DF(),
+                      l1_radius + l);
         }
     }
     HWY_INLINE void grow(ListChunk& chunk) const {
         for (std::size_t j = 0; j < 3; ++j) chunk.extent[j] = std::max(chunk.extent[j], largest(DI(), at[j]));
         chunk.largest_radius = std::max(chunk.largest_radius, largest(DU(), radius));
-        chunk.reach = std::max(chunk.reach, largest(DF(), reach));
+        chunk.l1_radius = std::max(chunk.l1_radius, largest(DF(), l1_radius));
     }
 };
 
@@ -229,7 +230,7 @@ std::size_t write_chunk(const unsigned char* all_boxes, std::size_t count, ListC
     }
     for (std::int32_t& extent : chunk.extent) extent = 0;
     chunk.largest_radius = 0;
-    chunk.reach = 0.0f;
+    chunk.l1_radius = 0.0f;
     extremes.grow(chunk);
     chunk.strays = static_cast<std::uint32_t>(count - bounded);
     return rejected_count;

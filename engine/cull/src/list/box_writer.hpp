@@ -8,20 +8,20 @@
 
 namespace crofton::cull {
 
-// Writes `boxes` as the rows and records of a chunk whose frame is chosen, and sets the chunk's extent, reach and
+// Writes `boxes` as the rows and records of a chunk whose frame is chosen, and sets the chunk's extent, L1 radius and
 // strays from them. A box that the kernel cannot take gets an empty row, and its index is appended to `rejected`, which
 // has room for all. Every box that validate(Obb) refuses is rejected. Returns how many are.
 std::size_t write_boxes(const Obb* boxes, std::size_t count, ListChunk& chunk, RowBlock* rows, BoxRecord* records,
                         std::uint32_t* rejected);
 
-// The same for boxes[i] with i in `items`, at most kWriteBatch of them, in any chunks. Extents and reach only grow. The
-// rows and records of rejected boxes stay as they were.
+// The same for boxes[i] with i in `items`, at most kWriteBatch of them, in any chunks. Extents and L1 radii only grow.
+// The rows and records of rejected boxes stay as they were.
 inline constexpr std::size_t kWriteBatch = 256;
 std::size_t write_boxes(const Obb* boxes, const std::uint32_t* items, std::size_t count, ListChunk* chunks,
                         RowBlock* rows, BoxRecord* records, std::uint32_t* rejected);
 
 // Boxes `stride` bytes apart: the k-th is item items[k]'s, in any chunk. Stops before the first that write_boxes()
-// would reject, and returns how many it has written. Extents and reach only grow; strays are not counted.
+// would reject, and returns how many it has written. Extents and L1 radii only grow; strays are not counted.
 std::size_t write_strided_boxes(const Obb* first, std::size_t stride, const std::uint32_t* items, std::size_t count,
                                 ListChunk* chunks, RowBlock* rows, BoxRecord* records);
 

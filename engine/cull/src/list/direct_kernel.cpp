@@ -62,7 +62,7 @@ struct DirectLanes {
     HWY_INLINE VF distance() const { return size_of(center); }
     HWY_INLINE VF extent() const { return size_of(half); }
     // No corner is farther than |Σ ±h_k a_k|² ≤ Σ h_k² a_k · a_k + 2 Σ |h_i h_j a_i · a_j|, whatever the axes a are.
-    HWY_INLINE VF square_of_reach() const {
+    HWY_INLINE VF square_of_radius() const {
         const DF d;
         VF square = hn::Zero(d), skew = hn::Zero(d);
         for (unsigned k = 0; k < 3; ++k) {
@@ -75,7 +75,7 @@ struct DirectLanes {
     // A radius of the ball around the box, for any axes: 2^-18 covers twenty roundings, 1e-18 squares that underflow.
     HWY_INLINE VF radius(float scale) const {
         const DF d;
-        return hn::MulAdd(hn::Sqrt(square_of_reach()), hn::Set(d, scale * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
+        return hn::MulAdd(hn::Sqrt(square_of_radius()), hn::Set(d, scale * (1.0f + 0x1p-18f)), hn::Set(d, 1e-18f));
     }
     // Bounds |x| + |y| + |z| + Σ|edge components|: no component of an axis exceeds 2.
     HWY_INLINE VF size() const { return hn::MulAdd(extent(), hn::Set(DF(), 6.0f), distance()); }
@@ -119,7 +119,7 @@ HWY_INLINE BoxLanes lanes_of(const Picked<DirectBoxes>& picked, std::size_t coun
         const VF half = hn::Mul(in.half[k], inverse);
         for (unsigned j = 0; j < 3; ++j) boxes.edge[3 * k + j] = hn::Mul(in.axis[3 * k + j], half);
     }
-    boxes.edge_slack = hn::Mul(in.size(), hn::Set(d, kDirectError));
+    boxes.edge_error_bound = hn::Mul(in.size(), hn::Set(d, kDirectError));
     return boxes;
 }
 
@@ -149,12 +149,12 @@ HWY_INLINE MF are_valid(const DirectLanes& boxes) {
     return hn::And(hn::Le(squares, hn::Set(DF(), 4.0f)), hn::Lt(size, hn::Set(DF(), 8e29f)));
 }
 
-// By spheres around the boxes, which settle most of many. `slack` is the largest of the planes'.
+// By spheres around the boxes, which settle most of many. `error_bound` is the largest of the planes'.
 HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
-                                   float slack) {
+                                   float error_bound) {
     const DF d;
-    const VF slop = hn::MulAdd(boxes.distance(), hn::Set(d, kDirectError), hn::Set(d, slack));
-    const VF margin = hn::Add(boxes.radius(1.0005f), slop);  // normals are up to 1.0005 long
+    const VF center_error = hn::MulAdd(boxes.distance(), hn::Set(d, kDirectError), hn::Set(d, error_bound));
+    const VF margin = hn::Add(boxes.radius(1.0005f), center_error);  // normals are up to 1.0005 long
     VF least = hn::Set(d, 3e38f);
     for (std::uint32_t i = 0; i < count; ++i) least = hn::Min(least, value_at(planes[i], boxes.center));
     const std::uint32_t valid = bits_of(are_valid(boxes));
@@ -162,12 +162,13 @@ HWY_INLINE DirectBits test_spheres(const DirectLanes& boxes, const DirectPlane* 
 }
 
 // By the boxes themselves.
-HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count, float slack,
-                                  bool exact) {
+HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* planes, std::uint32_t count,
+                                  float error_bound, bool exact) {
     const DF d;
     VF edge[9];
     for (unsigned k = 0; k < 9; ++k) edge[k] = hn::Mul(boxes.axis[k], boxes.half[k / 3]);
-    const VF error = hn::MulAdd(boxes.size(), hn::Set(d, kDirectError), hn::Set(d, slack)), beyond = hn::Neg(error);
+    const VF error = hn::MulAdd(boxes.size(), hn::Set(d, kDirectError), hn::Set(d, error_bound)),
+             beyond = hn::Neg(error);
     const VF most = hn::Set(d, 3e38f);
     VF top = most, bottom = most, next_bottom = most, middle = most;  // the least of all planes, and the next
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -177,9 +178,9 @@ HWY_INLINE DirectBits test_planes(const DirectLanes& boxes, const DirectPlane* p
         VF slope[3];
         for (unsigned k = 0; k < 3; ++k)
             slope[k] = hn::Abs(hn::MulAdd(x, edge[3 * k], hn::MulAdd(y, edge[3 * k + 1], hn::Mul(z, edge[3 * k + 2]))));
-        const VF reach = hn::Add(hn::Add(slope[0], slope[1]), slope[2]);
-        const VF low = hn::Sub(value, reach);
-        top = hn::Min(top, hn::Add(value, reach));
+        const VF projected_radius = hn::Add(hn::Add(slope[0], slope[1]), slope[2]);
+        const VF low = hn::Sub(value, projected_radius);
+        top = hn::Min(top, hn::Add(value, projected_radius));
         next_bottom = hn::Min(next_bottom, hn::Max(bottom, low));
         bottom = hn::Min(bottom, low);
         middle = hn::Min(middle, value);
@@ -234,18 +235,19 @@ class DirectQuery {
     std::size_t test_all() {
         const KernelView& view = *in_.view;
         DirectPlane planes[KernelView::kMaxPlanes];
-        float slack = 0.0f;
+        float error_bound = 0.0f;
         for (std::uint32_t i = 0; i < view.plane_count; ++i) {
             // As local_plane() has it for the view's own origin.
             const double offset = view.planes[i].offset;
             std::copy_n(view.planes[i].normal_f, 3, planes[i].normal);
             planes[i].offset = static_cast<float>(offset);
-            slack = std::max(slack, static_cast<float>(0x1.41p-20 * std::fabs(offset) + 1e-37));
+            error_bound = std::max(error_bound, static_cast<float>(0x1.41p-20 * std::fabs(offset) + 1e-37));
         }
-        const auto by_planes = [&](const DirectLanes& boxes)
-                                   HWY_ATTR { return test_planes(boxes, planes, view.plane_count, slack, in_.exact); };
+        const auto by_planes = [&](const DirectLanes& boxes) HWY_ATTR {
+            return test_planes(boxes, planes, view.plane_count, error_bound, in_.exact);
+        };
         const auto by_spheres = [&](const DirectLanes& boxes)
-                                    HWY_ATTR { return test_spheres(boxes, planes, view.plane_count, slack); };
+                                    HWY_ATTR { return test_spheres(boxes, planes, view.plane_count, error_bound); };
         std::size_t straddling = 0;
         for (std::size_t w = 0; w < (in_.count + 63) / 64; ++w) {
             const std::size_t first = 64 * w, size = std::min<std::size_t>(64, in_.count - first);

@@ -50,7 +50,7 @@ HWY_INLINE BoxLanes lanes_of(const PickedRecords<BoxRecord>& picked, std::size_t
     const VF radius = hn::BitCast(DF(), hn::ShiftLeft<16>(hn::BitCast(DU(), first)));
     boxes.unit = hn::Mul(radius, hn::Set(DF(), 0x1p-15f));
     // Nine components within one unit of the truth each, Σ|normal| ≤ √3: 5.2 units; the rest covers the sums' rounding.
-    boxes.edge_slack = hn::Mul(boxes.unit, hn::Set(DF(), 6.0f));
+    boxes.edge_error_bound = hn::Mul(boxes.unit, hn::Set(DF(), 6.0f));
     boxes.edge[0] = upper_half(hn::BitCast(DU(), first));
     for (unsigned i = 0; i < 4; ++i) {
         boxes.edge[2 * i + 1] = lower_half(hn::BitCast(DU(), pairs[i]));
@@ -68,11 +68,11 @@ struct AabbLanes {
     HWY_INLINE VF slope(const KernelPlane& plane, unsigned k) const {
         return hn::Mul(hn::Set(DF(), plane.normal_f[k]), half[k]);
     }
-    HWY_INLINE VF reach(const KernelPlane& plane) const {
+    HWY_INLINE VF projected_radius(const KernelPlane& plane) const {
         const VF sum = hn::Add(hn::Add(hn::Abs(slope(plane, 0)), hn::Abs(slope(plane, 1))), hn::Abs(slope(plane, 2)));
         return hn::Mul(sum, unit);
     }
-    HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(error, hn::Set(DF(), local.slack)); }
+    HWY_INLINE VF error_bound(LocalPlane local) const { return hn::Add(error, hn::Set(DF(), local.error_bound)); }
 };
 
 HWY_INLINE AabbLanes lanes_of(const PickedRecords<AabbRecord>& picked, std::size_t count) {

@@ -84,7 +84,7 @@ class OpenRecords {
     HWY_INLINE OpenRecords(const KernelView& view, const ListChunk& chunk, Records records, std::uint32_t planes,
                            bool exact, Sink& sink)
         : view_(view), records_(records), planes_(planes), exact_(exact), sink_(sink) {
-        const LocalOrigin at = local_origin(view, chunk.origin, chunk.reach);
+        const LocalOrigin at = local_origin(view, chunk.origin, chunk.l1_radius);
         for_each_bit(planes, [&](unsigned i) { local_[i] = local_plane(view.planes[i], at); });
     }
 
@@ -92,9 +92,9 @@ class OpenRecords {
     HWY_INLINE void drop_planes_around(const ListChunk& chunk) {
         if (chunk.largest_radius == kUnboundedRadius) return;
         const double extent =
-            1.001 * (static_cast<double>(chunk.reach) + static_cast<double>(chunk.largest_radius) * chunk.quantum);
+            1.001 * (static_cast<double>(chunk.l1_radius) + static_cast<double>(chunk.largest_radius) * chunk.quantum);
         for_each_bit(planes_, [&](unsigned i) {
-            const auto least = static_cast<double>(local_[i].offset) - static_cast<double>(local_[i].slack);
+            const auto least = static_cast<double>(local_[i].offset) - static_cast<double>(local_[i].error_bound);
             planes_ &= ~(std::uint32_t{least >= extent} << i);
         });
     }

@@ -22,7 +22,7 @@ class PlaneTable {
     static bool takes(std::uint32_t planes) { return kEntries >= 8 && hwy::PopCount(planes) < kEntries; }
 
     struct Plane {
-        VF normal[3], offset, slack;
+        VF normal[3], offset, error_bound;
     };
 
     HWY_INLINE PlaneTable(const KernelView& view, std::uint32_t planes, const LocalPlane* local) {
@@ -34,8 +34,8 @@ class PlaneTable {
             ++count_;
             for (unsigned j = 0; j < 3; ++j) numbers_[j][count_] = view.planes[i].normal_f[j];
             numbers_[3][count_] = local[i].offset;
-            numbers_[4][count_] = local[i].slack;
-            largest_slack_ = std::max(largest_slack_, local[i].slack);
+            numbers_[4][count_] = local[i].error_bound;
+            largest_error_bound_ = std::max(largest_error_bound_, local[i].error_bound);
         }
     }
 
@@ -43,7 +43,7 @@ class PlaneTable {
     [[nodiscard]] HWY_INLINE VF number(unsigned which, unsigned entry) const {
         return hn::Set(DF(), numbers_[which][entry]);
     }
-    [[nodiscard]] HWY_INLINE float largest_slack() const { return largest_slack_; }
+    [[nodiscard]] HWY_INLINE float largest_error_bound() const { return largest_error_bound_; }
 
     [[nodiscard]] HWY_INLINE Plane at(VU entries) const {
         const DF d;
@@ -54,9 +54,9 @@ class PlaneTable {
     }
 
   private:
-    alignas(64) float numbers_[5][kEntries];  // normal, offset, slack
+    alignas(64) float numbers_[5][kEntries];  // normal, offset, error bound
     unsigned count_ = 0;
-    float largest_slack_ = 0.0f;
+    float largest_error_bound_ = 0.0f;
 };
 
 // Planes as bits, lane by lane: bit n + 1 is entry n of the table, and so is bit kEntries + n + 1. Lanes take them one
@@ -81,12 +81,13 @@ class PlaneBits {
     VI bits_;
 };
 
-// As test_boxes(), with the largest of the planes' slacks for each of them. `cut` are the planes that a box is not
-// certainly inside of, as PlaneBits; first those that its centre is not: pairs of others need no test.
+// As test_boxes(), with the largest of the planes' error bounds for each of them. `cut` are the planes that a box is
+// not certainly inside of, as PlaneBits; first those that its centre is not: pairs of others need no test.
 HWY_INLINE BoxTest test_all_planes(const PlaneTable& table, const BoxLanes& bounds, bool exact, VU& cut) {
     const DF d;
     const DU du;
-    const VF error = hn::Add(bounds.edge_slack, hn::Set(d, table.largest_slack())), most = hn::Set(d, 3e38f);
+    const VF error = hn::Add(bounds.edge_error_bound, hn::Set(d, table.largest_error_bound())),
+             most = hn::Set(d, 3e38f);
     VF top = most, bottom = most, middle = most;  // the least of all planes
     cut = hn::Zero(du);
     for (unsigned n = 1; n <= table.count(); ++n) {
@@ -95,9 +96,9 @@ HWY_INLINE BoxTest test_all_planes(const PlaneTable& table, const BoxLanes& boun
         VF slope[3];
         const VF normal[3] = {x, y, z};
         bounds.slopes(normal, slope);
-        const VF reach = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
-        const VF low = hn::NegMulAdd(reach, bounds.unit, base);
-        top = hn::Min(top, hn::MulAdd(reach, bounds.unit, base));
+        const VF projected_radius = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
+        const VF low = hn::NegMulAdd(projected_radius, bounds.unit, base);
+        top = hn::Min(top, hn::MulAdd(projected_radius, bounds.unit, base));
         bottom = hn::Min(bottom, low);
         middle = hn::Min(middle, base);
         const auto open = hn::RebindMask(du, hn::Lt(low, error));
@@ -129,12 +130,12 @@ HWY_INLINE BoxTest resolve_own_planes(const PlaneTable& table, const BoxLanes& b
     for (; open.any(); ++count) {
         const PlaneTable::Plane plane = table.at(open.next());
         BoxRows::Row& row = box.rows[count];
-        row.slack = hn::Add(plane.slack, bounds.edge_slack);
+        row.error_bound = hn::Add(plane.error_bound, bounds.edge_error_bound);
         row.base =
             hn::MulAdd(plane.normal[0], bounds.x,
                        hn::MulAdd(plane.normal[1], bounds.y, hn::MulAdd(plane.normal[2], bounds.z, plane.offset)));
         bounds.slopes(plane.normal, row.slope);
-        row.reach = hn::Add(hn::Add(hn::Abs(row.slope[0]), hn::Abs(row.slope[1])), hn::Abs(row.slope[2]));
+        row.projected_radius = hn::Add(hn::Add(hn::Abs(row.slope[0]), hn::Abs(row.slope[1])), hn::Abs(row.slope[2]));
     }
     BoxTest result;
     result.inside = result.straddling = result.undecided = result.improper = hn::FirstN(d, 0);

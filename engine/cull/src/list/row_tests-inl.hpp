@@ -44,11 +44,11 @@ struct RowTest {
             for (std::size_t b = 0; b < 4; ++b)
                 least[b] = hn::Min(least[b], add_products(add_products(offset, rows.xy[b], xy), rows.zr[b], z));
         }
-        const VI slack = hn::Set(di, planes.slack);
+        const VI error_bound = hn::Set(di, planes.error_bound);
         for (std::size_t b = 0; b < 4; ++b) {
-            const VI reach = hn::Add(rows.radius[b], slack);
-            outside[b] = hn::Lt(least[b], hn::Neg(reach));
-            inside[b] = hn::Gt(least[b], reach);
+            const VI grown_radius = hn::Add(rows.radius[b], error_bound);
+            outside[b] = hn::Lt(least[b], hn::Neg(grown_radius));
+            inside[b] = hn::Gt(least[b], grown_radius);
         }
     }
 };

@@ -35,7 +35,7 @@ void MovingBoxes::begin_staging() {
     for (std::size_t c = 0; c < next.chunks_.size(); ++c) {
         next.chunks_[c] = shown.chunks_[c];
         next.chunks_[c].largest_radius = 0;
-        next.chunks_[c].reach = 0.0f;
+        next.chunks_[c].l1_radius = 0.0f;
         for (std::int32_t& extent : next.chunks_[c].extent) extent = 0;
     }
     staged_.assign((size() + 63) / 64, 0);

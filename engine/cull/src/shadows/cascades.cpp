@@ -59,7 +59,7 @@ Result<void> split_depths(double near, double far, double share, std::span<doubl
 }
 
 Result<Camera> cascade_camera(const Camera& camera, double near, double far, const glm::dvec3& toward_light,
-                              double caster_reach) {
+                              double caster_distance) {
     Camera part = camera;
     part.near_distance = near;
     part.far_distance = far;
@@ -69,8 +69,8 @@ Result<Camera> cascade_camera(const Camera& camera, double near, double far, con
     if (!corners) return tl::unexpected(corners.error());
     if (!is_finite(toward_light) || !(glm::length(toward_light) > 0.0))
         return fail(ErrorCode::degenerate, kNoItem, "cascade: the direction of the light is zero or not finite");
-    if (!(caster_reach >= 0.0) || !std::isfinite(caster_reach))
-        return fail(ErrorCode::out_of_range, kNoItem, "cascade: the reach of casters must be at least 0 and finite");
+    if (!(caster_distance >= 0.0) || !std::isfinite(caster_distance))
+        return fail(ErrorCode::out_of_range, kNoItem, "cascade: the distance of casters must be at least 0 and finite");
     Camera light;
     light.projection = Projection::orthographic;
     light.forward = -glm::normalize(toward_light);
@@ -95,9 +95,9 @@ Result<Camera> cascade_camera(const Camera& camera, double near, double far, con
     light.up = top;
     light.height = size.y + 2.0 * trifle;
     light.aspect = (size.x + 2.0 * trifle) / light.height;
-    light.position = frustum->origin + middle.x * side + middle.y * top + (first - caster_reach) * light.forward;
+    light.position = frustum->origin + middle.x * side + middle.y * top + (first - caster_distance) * light.forward;
     light.near_distance = 0.0;
-    light.far_distance = last - first + caster_reach + 2.0 * trifle;
+    light.far_distance = last - first + caster_distance + 2.0 * trifle;
     light.position -= trifle * light.forward;
     return light;
 }

@@ -50,8 +50,8 @@ Interval depths(const FaceBody& body, const Rectangle2& tile, bool is_sun) {
         // Sun: t · along + most ≥ 0. Else t · most + offset ≥ 0, t ≥ 0.
         const double most = across + up + (is_sun ? plane.offset : plane.along);
         const double size = std::fabs(across) + std::fabs(up) + (is_sun ? std::fabs(plane.offset) : 1.0);
-        const double slack = most + kOutward * size;
-        const double slope = is_sun ? plane.along : slack, rest = is_sun ? slack : plane.offset;
+        const double most_and_error = most + kOutward * size;
+        const double slope = is_sun ? plane.along : most_and_error, rest = is_sun ? most_and_error : plane.offset;
         if (slope > 0.0)
             result.low = std::max(result.low, -rest / slope - kOutward * std::fabs(rest / slope));
         else if (slope < 0.0)
@@ -128,11 +128,11 @@ class ReceiverPass {
         return result;
     }
     // Is the tile lit, and as near as `depth` within the light's range?
-    [[nodiscard]] bool is_in_reach(const Rectangle2& tile, double depth) const {
+    [[nodiscard]] bool is_in_range(const Rectangle2& tile, double depth) const {
         if (set_.is_sun_) return true;
         const double square = from_axis(tile) * (1.0 - kOutward);
         if (set_.tangent_ > 0.0 && square > set_.tangent_ * set_.tangent_) return false;
-        return depth * std::sqrt(1.0 + square) * (1.0 - kOutward) <= set_.reach_;
+        return depth * std::sqrt(1.0 + square) * (1.0 - kOutward) <= set_.range_;
     }
     [[nodiscard]] Rectangle2 tile_at(std::size_t at) const {
         const auto i = static_cast<std::uint32_t>(at % set_.tiles_),
@@ -146,8 +146,8 @@ class ReceiverPass {
         for (int k = 0; k < 2; ++k) {
             const double most = set_.tiles_;
             const auto place = [&](double at) { return std::floor((at - face.low[k]) / face.size[k]); };
-            const double low = place(rectangle.side[k].low) - kTileSlack,
-                         high = place(rectangle.side[k].high) + kTileSlack;
+            const double low = place(rectangle.side[k].low) - kTileMargin,
+                         high = place(rectangle.side[k].high) + kTileMargin;
             result.first[k] = static_cast<std::uint32_t>(std::min(most, std::max(0.0, low)));
             result.last[k] = static_cast<std::uint32_t>(std::min(most, std::max(0.0, high + 1.0)));
         }
@@ -202,7 +202,7 @@ class ReceiverPass {
         return {};
     }
 
-    // Faces, origin and reach are set.
+    // Faces, origin and range are set.
     static void fill(ShadowReceivers& set, const Frustum& view, std::span<const Obb> receivers) {
         const ReceiverPass pass(set);
         set.grid_.assign(std::size_t{set.face_count_} * set.tiles_ * set.tiles_, {});
@@ -217,7 +217,7 @@ class ReceiverPass {
                     const Rectangle2 rectangle = pass.tile_at(at);
                     const Interval view_depth = depths(seen, rectangle, set.is_sun_);
                     depth = {std::max(depth.low, view_depth.low), std::min(depth.high, view_depth.high)};
-                    if (depth.is_empty() || !pass.is_in_reach(rectangle, depth.low)) return false;
+                    if (depth.is_empty() || !pass.is_in_range(rectangle, depth.low)) return false;
                     ShadowReceivers::Tile& tile = set.grid_[at];
                     tile.nearest = std::min(tile.nearest, depth.low);
                     tile.farthest = std::max(tile.farthest, depth.high);
@@ -260,21 +260,21 @@ class ReceiverPass {
     }
 
   private:
-    static constexpr double kFar = std::numeric_limits<double>::infinity(), kTileSlack = 0x1p-20;
+    static constexpr double kFar = std::numeric_limits<double>::infinity(), kTileMargin = 0x1p-20;
 
     const ShadowReceivers& set_;
 };
 
 Result<void> ShadowReceivers::set_sun(const Frustum& view, std::span<const Obb> receivers,
-                                      const glm::dvec3& toward_light, double reach, std::uint32_t tiles) {
+                                      const glm::dvec3& toward_light, double shadow_length, std::uint32_t tiles) {
     if (auto valid = ReceiverPass::start(*this, view, receivers, tiles); !valid) return valid;
     const double length = glm::length(toward_light);
-    if (!(length > 0.0 && length <= kMaxCoordinate) || !(reach >= 0.0))
+    if (!(length > 0.0 && length <= kMaxCoordinate) || !(shadow_length >= 0.0))
         return fail(ErrorCode::invalid_argument, kNoItem,
-                    "shadow receivers: a direction that is finite and not zero and a reach of at least 0 are needed");
+                    "shadow receivers: a direction that is finite and not zero and a length of at least 0 are needed");
     is_sun_ = true;
     origin_ = view.origin;
-    reach_ = reach;
+    range_ = shadow_length;
     ReceiverPass::set_axes(faces_[0], -toward_light);
     Rectangle2 picture{{{1e300, -1e300}, {1e300, -1e300}}};
     for (const Obb& receiver : receivers) {
@@ -308,7 +308,7 @@ Result<void> ShadowReceivers::set_point(const Frustum& view, std::span<const Obb
         return fail(ErrorCode::invalid_argument, kNoItem, "shadow receivers: the light is not finite or negative");
     is_sun_ = false;
     origin_ = light.center;
-    reach_ = light.radius * (1.0 + kOutward);
+    range_ = light.radius * (1.0 + kOutward);
     ReceiverPass::add_cube(*this);
     ReceiverPass::fill(*this, view, receivers);
     return {};
@@ -345,7 +345,7 @@ bool ShadowReceivers::wants(const Obb& caster) const {
         if (pass.visit_tiles(caster, f, [&](std::size_t at, const Interval& depth) {
                 const Tile& tile = grid_[at];
                 if (!(depth.low <= tile.farthest)) return false;
-                return is_sun_ ? depth.high + reach_ >= tile.nearest : pass.is_in_reach(pass.tile_at(at), depth.low);
+                return is_sun_ ? depth.high + range_ >= tile.nearest : pass.is_in_range(pass.tile_at(at), depth.low);
             }))
             return true;
     return false;

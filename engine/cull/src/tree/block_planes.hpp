@@ -9,19 +9,19 @@
 
 namespace crofton::cull {
 
-// In units of 2^-14 of the block's unit. A plane's value at integers x of the block is offset + pair_plane · x. `slack`
-// bounds the error of that, with a box's reach added or taken away (boxtree::rounding_of).
+// In units of 2^-14 of the block's unit. A plane's value at integers x of the block is offset + pair_plane · x.
+// `error_bound` bounds the error of that, with a box's projected radius added or taken away (boxtree::rounding_of).
 struct BlockPlane {
-    std::int32_t offset, slack;
+    std::int32_t offset, error_bound;
 };
 
 // For the blocks of a tree. The offset's seven roundings of 2^-53 of Σ|origin − view| + |plane offset| each, as in
 // local_plane, for any block whose origin lies in the root's bounds. It may lie farther out by less than the block's
-// reach: the share of that in `rounding` has room for it.
+// L1 radius: the share of that in `rounding` has room for it.
 inline void bring_before(const boxtree::Node& root, KernelView& view) {
-    const LocalOrigin at = local_origin(view, root.origin, root.reach);
+    const LocalOrigin at = local_origin(view, root.origin, root.l1_radius);
     for (std::uint32_t i = 0; i < view.plane_count; ++i)
-        view.far[i] = 0x1p-49 * (at.size + at.reach + std::fabs(view.planes[i].offset));
+        view.far[i] = 0x1p-49 * (at.size + at.l1_radius + std::fabs(view.planes[i].offset));
 }
 
 inline constexpr double kMostOffset = 1.2e9;
@@ -34,7 +34,7 @@ inline double value_at(const KernelView& view, std::size_t i, const double* orig
 
 // In the block's units, not yet integers.
 struct ScaledPlane {
-    double offset, slack;
+    double offset, error_bound;
 };
 template <class Block>
 ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& block) {
@@ -48,14 +48,14 @@ ScaledPlane scaled_plane(const KernelView& view, std::size_t i, const Block& blo
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Node& node) {
     const ScaledPlane plane = scaled_plane(view, i, node);
     return {static_cast<std::int32_t>(std::max(-kMostOffset, std::min(kMostOffset, plane.offset))),
-            static_cast<std::int32_t>(std::min(plane.slack, 0x7fffffff * 1.0))};
+            static_cast<std::int32_t>(std::min(plane.error_bound, 0x7fffffff * 1.0))};
 }
 
 // Where the offset would have to be cut off the plane says nothing: a box that it cuts must be so for certain.
 inline BlockPlane block_plane(const KernelView& view, std::size_t i, const boxtree::Leaf& leaf) {
     const ScaledPlane plane = scaled_plane(view, i, leaf);
-    if (!(std::fabs(plane.offset) <= kMostOffset && plane.slack <= kMostOffset)) return {0, 0x7fffffff};
-    return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.slack)};
+    if (!(std::fabs(plane.offset) <= kMostOffset && plane.error_bound <= kMostOffset)) return {0, 0x7fffffff};
+    return {static_cast<std::int32_t>(plane.offset), static_cast<std::int32_t>(plane.error_bound)};
 }
 
 // The view's normals along turned axes. A plane's value at o + Σ axis k · q[k] is its value at o plus (axis k ·

@@ -52,10 +52,10 @@ struct NodeSide {
         const DU du;
         VI middle = add_products(hn::Set(di, plane.offset), rows.middle_xy, hn::Set(du, normal.xy));
         middle = add_products(middle, rows.middle_half_z, hn::Set(du, normal.z));
-        VI reach = add_products(hn::Zero(di), rows.half_xy, hn::Set(du, normal.size_xy));
-        reach = add_products(reach, rows.middle_half_z, hn::Set(du, normal.size_z));
-        outside = hn::RebindMask(d, hn::Lt(hn::Add(middle, reach), hn::Set(di, -plane.slack)));
-        inside = hn::RebindMask(d, hn::Gt(hn::Sub(middle, reach), hn::Set(di, plane.slack)));
+        VI projected_radius = add_products(hn::Zero(di), rows.half_xy, hn::Set(du, normal.size_xy));
+        projected_radius = add_products(projected_radius, rows.middle_half_z, hn::Set(du, normal.size_z));
+        outside = hn::RebindMask(d, hn::Lt(hn::Add(middle, projected_radius), hn::Set(di, -plane.error_bound)));
+        inside = hn::RebindMask(d, hn::Gt(hn::Sub(middle, projected_radius), hn::Set(di, plane.error_bound)));
     }
 };
 
@@ -102,7 +102,7 @@ HWY_INLINE std::uint32_t seen(const KernelView& view, const boxtree::Node& node,
 // Boxes in floats: a list's records.
 struct BoxLanes {
     VF x, y, z, unit;
-    VF edge_slack;
+    VF edge_error_bound;
     VF edge[9];  // in units
     MF present;
 
@@ -121,12 +121,14 @@ struct BoxLanes {
         return hn::MulAdd(nx, edge[3 * k], hn::MulAdd(ny, edge[3 * k + 1], hn::Mul(nz, edge[3 * k + 2])));
     }
 
-    HWY_INLINE VF reach(const KernelPlane& plane) const {
+    HWY_INLINE VF projected_radius(const KernelPlane& plane) const {
         const VF sum = hn::Add(hn::Add(hn::Abs(slope(plane, 0)), hn::Abs(slope(plane, 1))), hn::Abs(slope(plane, 2)));
         return hn::Mul(sum, unit);
     }
 
-    HWY_INLINE VF slack(LocalPlane local) const { return hn::Add(edge_slack, hn::Set(DF(), local.slack)); }
+    HWY_INLINE VF error_bound(LocalPlane local) const {
+        return hn::Add(edge_error_bound, hn::Set(DF(), local.error_bound));
+    }
 };
 
 template <class Lanes>
@@ -139,13 +141,13 @@ HWY_INLINE BoxTest test_boxes(const KernelView& view, const Lanes& boxes, std::u
     for (std::uint32_t rest = planes; rest; rest &= rest - 1) {
         const auto i = hwy::Num0BitsBelowLS1Bit_Nonzero32(rest);
         const VF middle = plane_value(view.planes[i], boxes.x, boxes.y, boxes.z, local[i].offset);
-        const VF reach = boxes.reach(view.planes[i]), slack = boxes.slack(local[i]);
-        const VF top = hn::Add(middle, reach), bottom = hn::Sub(middle, reach);
-        const MF open = hn::Lt(bottom, slack);
-        maybe = hn::And(maybe, hn::Ge(top, hn::Neg(slack)));
-        passes = hn::And(passes, hn::Ge(top, slack));
-        center = hn::And(center, hn::Ge(middle, slack));
-        crosses = hn::Or(crosses, hn::Lt(bottom, hn::Neg(slack)));
+        const VF projected_radius = boxes.projected_radius(view.planes[i]), error_bound = boxes.error_bound(local[i]);
+        const VF top = hn::Add(middle, projected_radius), bottom = hn::Sub(middle, projected_radius);
+        const MF open = hn::Lt(bottom, error_bound);
+        maybe = hn::And(maybe, hn::Ge(top, hn::Neg(error_bound)));
+        passes = hn::And(passes, hn::Ge(top, error_bound));
+        center = hn::And(center, hn::Ge(middle, error_bound));
+        crosses = hn::Or(crosses, hn::Lt(bottom, hn::Neg(error_bound)));
         open_twice = hn::Or(open_twice, hn::And(open_once, open));
         open_once = hn::Or(open_once, open);
     }

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace crofton::cull::HWY_NAMESPACE {
 
 // A plane before a leaf, in units of 2^-14 of a position_unit. A box's centre is offset + normal · (x, y, z) inside of
-// it. `slack` bounds the error of that, and of the value at any other point of the box.
+// it. `error_bound` bounds the error of that, and of the value at any other point of the box.
 struct LeafPlane {
     const PairPlane* normal;
     BlockPlane at;
@@ -36,7 +36,7 @@ struct LeafRows {
 // A plane's values on boxes: at the centres, along the half edges in units of 2^-14 of an edge_unit, and the sum of
 // the latter's sizes as the centre's.
 struct PlaneValues {
-    VI middle, slope[3], reach;
+    VI middle, slope[3], projected_radius;
 
     HWY_INLINE PlaneValues(const LeafRows& rows, const LeafPlane& plane) {
         const DI di;
@@ -48,30 +48,31 @@ struct PlaneValues {
         slope[1] = add_products(add_products(hn::Zero(di), rows.edge_xy[1], xy), rows.edge01_z, upper_z);
         slope[2] = add_products(add_products(hn::Zero(di), rows.edge_xy[2], xy), rows.z_edge2_z, upper_z);
         const VI sum = hn::Add(hn::Add(hn::Abs(slope[0]), hn::Abs(slope[1])), hn::Abs(slope[2]));
-        reach = hn::ShiftRightSame(sum, rows.edge_shift);
+        projected_radius = hn::ShiftRightSame(sum, rows.edge_shift);
     }
 };
 
-// One plane's word. With m the centre's value and r the reach ≥ 0, the numbers below are all in range.
+// One plane's word. With m the centre's value and r the projected radius ≥ 0, the numbers below are all in range.
 struct PlaneTest {
     MF cuts;    // certainly
     MF unsure;  // whether the plane cuts the box
     MF inside;  // the box is, as a whole, for certain
 
-    HWY_INLINE PlaneTest(const PlaneValues& values, VI slack) {
+    HWY_INLINE PlaneTest(const PlaneValues& values, VI error_bound) {
         const DI di;
         const DF d;
-        const VI across = hn::Sub(values.reach, hn::Abs(values.middle));
-        const VI bottom = hn::Sub(hn::Max(values.middle, hn::Zero(di)), values.reach);  // where that is above 0
-        cuts = hn::RebindMask(d, hn::Gt(across, slack));
-        unsure = hn::Not(hn::RebindMask(d, hn::Gt(hn::Abs(across), slack)));
-        inside = hn::RebindMask(d, hn::Gt(bottom, slack));
+        const VI across = hn::Sub(values.projected_radius, hn::Abs(values.middle));
+        const VI bottom =
+            hn::Sub(hn::Max(values.middle, hn::Zero(di)), values.projected_radius);  // where that is above 0
+        cuts = hn::RebindMask(d, hn::Gt(across, error_bound));
+        unsure = hn::Not(hn::RebindMask(d, hn::Gt(hn::Abs(across), error_bound)));
+        inside = hn::RebindMask(d, hn::Gt(bottom, error_bound));
     }
 };
 
 // Most leaves that cross a frustum cross one plane; then a box that straddles it meets the frustum for certain.
 HWY_INLINE BoxTest test_leaf(const LeafRows& rows, MF present, const LeafPlane& plane) {
-    const PlaneTest test(PlaneValues(rows, plane), hn::Set(DI(), plane.at.slack));
+    const PlaneTest test(PlaneValues(rows, plane), hn::Set(DI(), plane.at.error_bound));
     BoxTest result;
     result.straddling = hn::And(present, test.cuts);
     result.inside = hn::And(present, test.inside);
@@ -80,7 +81,7 @@ HWY_INLINE BoxTest test_leaf(const LeafRows& rows, MF present, const LeafPlane& 
     return result;
 }
 
-// The planes in the boxes' own coordinates. The conversions to floats and the sums in them: 2^-20 of |base| + reach.
+// The planes in the boxes' own coordinates. The conversions to floats and the sums in them: 2^-20 of |base| + radius.
 HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsigned count, MF wanted) {
     const DF d;
     const auto exponent = static_cast<std::uint32_t>(127 - boxes.edge_shift) << 23;  // of 2^-edge_shift
@@ -89,13 +90,14 @@ HWY_INLINE BoxRows box_rows(const LeafRows& boxes, const LeafPlane* planes, unsi
         const PlaneValues values(boxes, planes[i]);
         BoxRows::Row& row = result.rows[result.count];
         row.base = hn::ConvertTo(d, values.middle);
-        row.reach = hn::Zero(d);
+        row.projected_radius = hn::Zero(d);
         for (unsigned k = 0; k < 3; ++k) {
             row.slope[k] = hn::ConvertTo(d, values.slope[k]);
-            row.reach = hn::Add(row.reach, hn::Abs(row.slope[k]));
+            row.projected_radius = hn::Add(row.projected_radius, hn::Abs(row.slope[k]));
         }
-        const VF size = hn::MulAdd(row.reach, result.unit, hn::Abs(row.base));
-        row.slack = hn::MulAdd(size, hn::Set(d, 0x1p-20f), hn::Set(d, static_cast<float>(planes[i].at.slack)));
+        const VF size = hn::MulAdd(row.projected_radius, result.unit, hn::Abs(row.base));
+        row.error_bound =
+            hn::MulAdd(size, hn::Set(d, 0x1p-20f), hn::Set(d, static_cast<float>(planes[i].at.error_bound)));
         result.keep_next(wanted);
     }
     return result;
@@ -116,14 +118,14 @@ HWY_INLINE BoxTest test_leaf(const boxtree::Leaf& leaf, std::size_t l, MF presen
     const LeafRows rows(leaf, l);
     MF maybe = present, unsure = none, once = none, twice = none, center = present;
     for (unsigned i = 0; i < count; ++i) {
-        const VI slack = hn::Set(DI(), planes[i].at.slack);
+        const VI error_bound = hn::Set(DI(), planes[i].at.error_bound);
         const PlaneValues values(rows, planes[i]);
-        const PlaneTest test(values, slack);
+        const PlaneTest test(values, error_bound);
         maybe = hn::And(maybe, hn::Or(hn::Or(test.inside, test.cuts), test.unsure));
         unsure = hn::Or(unsure, test.unsure);
         twice = hn::Or(twice, hn::And(once, test.cuts));
         once = hn::Or(once, test.cuts);
-        center = hn::And(center, hn::RebindMask(d, hn::Gt(values.middle, slack)));
+        center = hn::And(center, hn::RebindMask(d, hn::Gt(values.middle, error_bound)));
     }
     BoxTest result;
     const MF sure = hn::AndNot(unsure, maybe);

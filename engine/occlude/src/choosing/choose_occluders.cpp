@@ -65,11 +65,11 @@ EyeLimits limits_of(const FoundOccluder& found, const scene::Transform& transfor
                                                               (i & 2u) ? piece.max.y : piece.min.y,
                                                               (i & 4u) ? piece.max.z : piece.min.z));
     // Four roundings of numbers of these sizes.
-    glm::dvec3 slack = glm::abs(transform.translation);
+    glm::dvec3 error_bound = glm::abs(transform.translation);
     for (int k = 0; k < 3; ++k)
-        slack += glm::abs(transform.linear[k]) * std::max(std::abs(piece.min[k]), std::abs(piece.max[k]));
-    limits.left_out_within.min -= 0x1p-49 * slack;
-    limits.left_out_within.max += 0x1p-49 * slack;
+        error_bound += glm::abs(transform.linear[k]) * std::max(std::abs(piece.min[k]), std::abs(piece.max[k]));
+    limits.left_out_within.min -= 0x1p-49 * error_bound;
+    limits.left_out_within.max += 0x1p-49 * error_bound;
     // An open side at coordinate c of the mesh's axis k: ±(c − row · (x − translation)) ≥ 0, with the row of the
     // inverse that gives this coordinate. What rounding may do, the inverse's included, is taken off generously. A
     // transform that flattens has no inverse: its planes are NaN and keep nothing.
@@ -163,13 +163,13 @@ bool may_use(const EyeLimits& limits, const OcclusionView& view) {
     const Aabb& box = limits.left_out_within;
     const glm::dvec3& eye = view.origin;
     if (view.perspective) {
-        const double reach = (1.0 + 1e-9) * (view.near_reach + view.eye_error);
-        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > reach)) return false;
+        const double near_radius = (1.0 + 1e-9) * (view.near_radius + view.eye_error);
+        if (!box.is_empty() && !(glm::distance(nearest_in(box, eye), eye) > near_radius)) return false;
         for (std::uint32_t i = 0; i < limits.plane_count; ++i) {
             const Plane& plane = limits.planes[i];
-            const double slack =
+            const double error_bound =
                 0x1p-48 * glm::dot(glm::abs(plane.normal), glm::abs(eye)) + view.eye_error * glm::length(plane.normal);
-            if (!(glm::dot(plane.normal, eye) + plane.offset >= slack)) return false;
+            if (!(glm::dot(plane.normal, eye) + plane.offset >= error_bound)) return false;
         }
         return true;
     }
@@ -178,9 +178,9 @@ bool may_use(const EyeLimits& limits, const OcclusionView& view) {
         const glm::dvec3 &normal = near_plane.normal, &origin = view.frustum.origin;
         const glm::dvec3 nearest(normal.x > 0.0 ? box.min.x : box.max.x, normal.y > 0.0 ? box.min.y : box.max.y,
                                  normal.z > 0.0 ? box.min.z : box.max.z);
-        const double slack =
+        const double error_bound =
             0x1p-48 * (glm::dot(glm::abs(normal), glm::abs(nearest) + glm::abs(origin)) + std::abs(near_plane.offset));
-        if (!(glm::dot(normal, nearest - origin) + near_plane.offset >= slack)) return false;
+        if (!(glm::dot(normal, nearest - origin) + near_plane.offset >= error_bound)) return false;
     }
     const glm::dvec3 forward(-view.rows[3][0], -view.rows[3][1], -view.rows[3][2]);
     for (std::uint32_t i = 0; i < limits.plane_count; ++i) {

@@ -11,31 +11,31 @@ namespace crofton::occlude {
 namespace {
 
 // How far the face on side `sign` may move along `axis` before it meets the triangle's part of the box's open prism:
-// the coordinate where that part begins, or `reach` if it is not in the way.
-double nearest_in_way(const Triangle& t, const FrameBox& box, int axis, int sign, double reach) {
+// the coordinate where that part begins, or `limit` if it is not in the way.
+double nearest_in_way(const Triangle& t, const FrameBox& box, int axis, int sign, double limit) {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
     for (const int k : {i, j})
-        if (high[k] <= box.low[k] || low[k] >= box.high[k]) return reach;
+        if (high[k] <= box.low[k] || low[k] >= box.high[k]) return limit;
     const double middle = 0.5 * (box.low[axis] + box.high[axis]);
-    if (sign > 0 ? (high[axis] <= middle || low[axis] >= reach) : (low[axis] >= middle || high[axis] <= reach))
-        return reach;
+    if (sign > 0 ? (high[axis] <= middle || low[axis] >= limit) : (low[axis] >= middle || high[axis] <= limit))
+        return limit;
     CutPolygon part(t);
     for (const int k : {i, j}) {
         part.keep(k, box.high[k], 1);
         part.keep(k, box.low[k], -1);
     }
     for (const glm::dvec3& p : part.corners()) {
-        if (sign > 0 && p[axis] >= middle) reach = std::min(reach, p[axis]);
-        if (sign < 0 && p[axis] <= middle) reach = std::max(reach, p[axis]);
+        if (sign > 0 && p[axis] >= middle) limit = std::min(limit, p[axis]);
+        if (sign < 0 && p[axis] <= middle) limit = std::max(limit, p[axis]);
     }
-    return reach;
+    return limit;
 }
 
 double farthest(const FramedPiece& piece, const FrameBox& box, int axis, int sign) {
-    double reach = sign > 0 ? piece.high[axis] : piece.low[axis];
-    for (const Triangle& t : piece.triangles) reach = nearest_in_way(t, box, axis, sign, reach);
-    return sign > 0 ? std::max(reach, box.high[axis]) : std::min(reach, box.low[axis]);
+    double limit = sign > 0 ? piece.high[axis] : piece.low[axis];
+    for (const Triangle& t : piece.triangles) limit = nearest_in_way(t, box, axis, sign, limit);
+    return sign > 0 ? std::max(limit, box.high[axis]) : std::min(limit, box.low[axis]);
 }
 
 float float_at_most(double value) {
@@ -167,12 +167,12 @@ void push_faces(const FramedPiece& piece, FrameBox& box) {
         for (std::size_t f = 0; f < 6; ++f) {
             if (done[f]) continue;
             const int axis = static_cast<int>(f / 2), sign = f % 2 == 0 ? 1 : -1;
-            const double reach = farthest(piece, box, axis, sign);
+            const double limit = farthest(piece, box, axis, sign);
             FrameBox pushed = box;
-            (sign > 0 ? pushed.high : pushed.low)[axis] = reach;
+            (sign > 0 ? pushed.high : pushed.low)[axis] = limit;
             if (pushed.mean_shadow() > best) {
                 best = pushed.mean_shadow();
-                to = reach;
+                to = limit;
                 face = f;
             }
         }

@@ -62,7 +62,7 @@ struct StoredBox {
 // separating direction for each triangle, evaluated with an error bound.
 [[nodiscard]] std::optional<StoredBox> certify(const FramedPiece& piece, const FrameBox& box);
 
-// Whether the triangle surely does not meet the open box, nor the open hull; false where rounding leaves a doubt.
+// Whether the triangle surely does not meet the open box, nor the open hull; false where rounding cannot decide.
 [[nodiscard]] bool surely_apart(const StoredBox& box, const Triangle& triangle);
 
 }  // namespace crofton::occlude

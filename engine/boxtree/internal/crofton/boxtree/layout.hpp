@@ -49,7 +49,7 @@ struct Axes {
 struct alignas(64) Node {
     double origin[3];
     float unit;
-    float reach;  // ≥ the farthest |x| + |y| + |z|, relative to the origin and along the axes, of every child
+    float l1_radius;  // ≥ the farthest |x| + |y| + |z|, relative to the origin and along the axes, of every child
     std::uint32_t count;
     NodeId parent;  // kNone for the root
     std::uint32_t lane_in_parent;
@@ -91,7 +91,7 @@ struct alignas(64) Node {
 struct alignas(64) Leaf {
     double origin[3];
     float position_unit, edge_unit;
-    float reach;  // ≥ |x| + |y| + |z| of every lane's position, relative to the origin
+    float l1_radius;  // ≥ |x| + |y| + |z| of every lane's position, relative to the origin
     float rounding;
     float per_quantum;
     std::int32_t edge_shift;  // a position_unit is 2^edge_shift edge_units, or more if this is 31
@@ -108,16 +108,16 @@ struct alignas(64) Leaf {
 static_assert(sizeof(Node) == 448 && sizeof(Leaf) == 512);
 
 // A normal's component that is rounded to 2^-14 is off by half of that, so a value by 2^-15 · (|x| + |y| + |z|): the
-// reach's share; the last factor covers the sums' own rounding, and 3 units of 2^-14 of a unit that a kernel loses by
-// cutting off the fractions of an offset, a slack and a shifted sum.
+// L1 radius's share; the last factor covers the sums' own rounding, and 3 units of 2^-14 of a unit that a kernel loses
+// by cutting off the fractions of an offset, an error bound and a shifted sum.
 [[nodiscard]] inline float rounding_of(const Node& node) {
-    return (0x1.01p-15f * node.reach + 0x1p-12f * node.unit) * (1.0f + 0x1p-20f);
+    return (0x1.01p-15f * node.l1_radius + 0x1p-12f * node.unit) * (1.0f + 0x1p-20f);
 }
 // Besides, the rounding of the lanes. Of the position: half a unit along each axis, 2^13 · Σ|normal| ≤ 2^13 · √3 ·
 // 1.0005 < 0.87 · 2^14. Of three edges, no component of which is beyond 2^15: 0.502 of a unit, as the position's, and
 // the normal's, half of the nine components' sum; in all less than 12 edge_units.
 [[nodiscard]] inline float rounding_of(const Leaf& leaf) {
-    return (0x1.01p-15f * leaf.reach + (1.0f + 0x1p-12f) * leaf.position_unit + 12.0f * leaf.edge_unit) *
+    return (0x1.01p-15f * leaf.l1_radius + (1.0f + 0x1p-12f) * leaf.position_unit + 12.0f * leaf.edge_unit) *
            (1.0f + 0x1p-20f);
 }
 

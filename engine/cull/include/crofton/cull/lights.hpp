@@ -118,12 +118,12 @@ class ShadowReceivers {
   public:
     static constexpr std::uint32_t kDefaultTiles = 128;  // along each side of the picture, or of a cube's face
 
-    // A far light. A shadow ends `reach` behind its caster. Errors, here and below: a direction or a light that is
-    // zero, not finite or negative; a view that is not finite; no tiles or more than 1024; a receiver that fails
+    // A far light. A shadow ends `shadow_length` behind its caster. Errors, here and below: a direction or a light that
+    // is zero, not finite or negative; a view that is not finite; no tiles or more than 1024; a receiver that fails
     // validate(Obb), named by its index. A receiver set is then empty, and wants no caster.
     [[nodiscard]] Result<void> set_sun(const Frustum& view, std::span<const Obb> receivers,
                                        const glm::dvec3& toward_light,
-                                       double reach = std::numeric_limits<double>::infinity(),
+                                       double shadow_length = std::numeric_limits<double>::infinity(),
                                        std::uint32_t tiles = kDefaultTiles);
     // A light at a point, of the ball's range: a cube of six pictures.
     [[nodiscard]] Result<void> set_point(const Frustum& view, std::span<const Obb> receivers, const Sphere& light,
@@ -150,7 +150,8 @@ class ShadowReceivers {
     std::uint32_t tiles_ = 0, face_count_ = 0;
     bool is_sun_ = true;
     glm::dvec3 origin_{0.0};
-    double reach_ = 0.0, tangent_ = 0.0;  // of a spot's half angle, or 0
+    double range_ = 0.0;    // how far a shadow goes: of the sun behind its caster, else from the light
+    double tangent_ = 0.0;  // of a spot's half angle, or 0
     Face faces_[6];
     Vector<Tile> grid_;  // by face, row, column
 };
@@ -162,9 +163,9 @@ class ShadowReceivers {
 [[nodiscard]] Result<void> split_depths(double near, double far, double share, std::span<double> splits);
 
 // The sun's orthographic camera around what `camera` sees between two depths. It is the smallest rectangle across the
-// light, and begins `caster_reach` before the first point that is seen. Errors: as validate(Camera) with these depths;
-// a direction that is zero or not finite; a reach that is negative or not finite.
+// light, and begins `caster_distance` before the first point that is seen. Errors: as validate(Camera) with these
+// depths; a direction that is zero or not finite; a distance that is negative or not finite.
 [[nodiscard]] Result<Camera> cascade_camera(const Camera& camera, double near, double far,
-                                            const glm::dvec3& toward_light, double caster_reach);
+                                            const glm::dvec3& toward_light, double caster_distance);
 
 }  // namespace crofton::cull

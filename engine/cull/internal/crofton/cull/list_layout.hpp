@@ -26,13 +26,13 @@ struct ListChunk {
     double quantum;                 // a power of two
     std::int32_t extent[3];         // ≥ |x|, |y|, |z| of its rows
     std::uint32_t largest_radius;   // of its rows
-    float reach;                    // ≥ |x| + |y| + |z| of its records
+    float l1_radius;                // ≥ |x| + |y| + |z| of its records
     std::uint32_t strays;           // rows that say nothing
     std::uint32_t accepted_strays;  // of them, those there when the frame was chosen
 };
 
 // What is asked for where the row cannot tell: the bound itself in floats, its centre relative to the chunk's origin.
-// The centre is off by its own rounding, 2^-23 of reach at most.
+// The centre is off by its own rounding, 2^-23 of l1_radius at most.
 
 struct alignas(32) BoxRecord {
     float center[3];

@@ -31,9 +31,9 @@ struct OcclusionView {
     glm::dvec3 origin{0.0};
     std::array<std::array<double, 4>, 4> rows{};
     bool perspective = true;
-    double least_w = 0.0;     // w of all that the view sees is above it
-    double near_reach = 0.0;  // no point of the near face is farther from the eye; perspective only
-    double eye_error = 0.0;   // the eye is within this of `origin`
+    double least_w = 0.0;      // w of all that the view sees is above it
+    double near_radius = 0.0;  // no point of the near face is farther from the eye; perspective only
+    double eye_error = 0.0;    // the eye is within this of `origin`
 };
 
 // Errors: as frustum_of(Camera).
@@ -57,7 +57,7 @@ struct EyeLimits {
 
 // Whether all that the occluder hides from this camera is hidden by what it lies in. It is, where the eye keeps the
 // limits and is farther away than any point of its near plane. For a parallel view: what it lies in is wholly beyond
-// the near plane, and no open side faces the view. Conservative where rounding leaves a doubt. Requires a valid camera.
+// the near plane, and no open side faces the view. Conservative where rounding cannot decide. Requires a valid camera.
 [[nodiscard]] bool may_use(const EyeLimits& limits, const Camera& camera);
 [[nodiscard]] bool may_use(const EyeLimits& limits, const OcclusionView& view);
 

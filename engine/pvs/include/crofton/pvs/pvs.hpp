@@ -148,7 +148,7 @@ struct PlacedOccluder {
 struct ProofOptions {
     // No point of a camera's near plane is farther from the eye. Bodies nearer to a cell prove nothing for it, as the
     // near plane may cut them.
-    double near_reach = 0.5;
+    double near_radius = 0.5;
     // Halvings of a cell or an object's box, where no single body hides all of it: more prove more and take longer.
     std::uint32_t halvings = 4;
 };

@@ -90,7 +90,7 @@ class LightField {
     };
 
     glm::vec3 sky_{0.0f};
-    double reach_ = 0.0;  // of the scene's box
+    double diagonal_ = 0.0;  // of the scene's box
     std::uint64_t lines_ = 0, crossings_ = 0;
     Vector<Bundle> bundles_;
 };

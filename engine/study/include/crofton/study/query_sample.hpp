@@ -58,7 +58,7 @@ class QuerySample {
     };
     static Result<QuerySample> make(Kind kind, const Sphere& region, std::uint32_t count);
     [[nodiscard]] bool segment_enters(const Query& query, const glm::dvec3& from, const glm::dvec3& to,
-                                      double slack) const;
+                                      double margin) const;
     [[nodiscard]] bool frustum_hits(const Query& query, const Obb& box, bool* contained) const;
 
     Kind kind_ = Kind::plane;
