@@ -28,6 +28,7 @@ constexpr std::uint32_t kWhole = 1u << 31;
 // There too: something below may be beyond a draw limit.
 constexpr std::uint32_t kLimited = 1u << 30;
 
+// The way of one query through the tree, from some entries down to the leaves.
 template <class Limits>
 class Walk {
   public:
@@ -37,8 +38,8 @@ class Walk {
     // A copy of the output travels with the walk, so that the compiler keeps it in registers.
     [[nodiscard]] HWY_INLINE TreeKernelOutput result() const { return out_; }
 
-    // Group after group of entries through the nodes; what lies inside as a whole is noted, and so are the leaves that
-    // stay open. These follow when all nodes are done. The groups set the order of the answer.
+    // Takes group after group of entries through the nodes. Notes what is fully inside, and the leaves that planes
+    // cross. These leaves are tested when all nodes are done. The groups set the order of the answer.
     HWY_INLINE void run(const std::uint64_t* entries, std::size_t entry_count) {
         constexpr std::size_t kMaxGroups = boxtree::kWidth * boxtree::kWidth / kTreeGroup;
         std::size_t one_plane_ends[kMaxGroups + 1] = {}, many_plane_ends[kMaxGroups + 1] = {}, groups = 0;
@@ -61,7 +62,7 @@ class Walk {
   private:
     static constexpr std::size_t kNodesAhead = 4, kRunsAhead = 4, kLeavesAhead = kOpenPadding;
 
-    // Level by level; memory is asked for ahead, and lists grow without a branch on what is found.
+    // Visits the nodes level by level. Prefetches, and appends to lists without a branch on what is found.
     HWY_INLINE void descend(const std::uint64_t* entries, std::size_t count) {
         nodes_.count = whole_count_ = 0;
         for (std::size_t i = 0; i < count; ++i) start(entries[i]);
@@ -122,7 +123,7 @@ class Walk {
             note<false>(node, l, hn::RebindMask(DF(), mask_of(test.alive >> l)), hn::Load(du, test.planes + l));
     }
 
-    // Limits first: few nodes near one are left when all lanes are dropped.
+    // A node near a draw limit: its children are tested against planes and limits.
     HWY_INLINE void visit_limited(const boxtree::Node& node, boxtree::NodeId id, std::uint32_t planes) {
         const DU du;
         const NodeTest test = test_node(*in_.view, turned_.along(node.axes, planes), node, planes);
@@ -134,7 +135,8 @@ class Walk {
         }
     }
 
-    // Where they go, children l on of a node that are not certainly outside; kOnce: none straddles several planes.
+    // Puts the children of a node from lane l on into lists, as far as they are `alive`: not certainly outside. kOnce:
+    // none straddles several planes.
     template <bool kOnce>
     HWY_INLINE void note(const boxtree::Node& node, std::size_t l, MF alive, VU straddled) {
         const DU du;
@@ -176,8 +178,8 @@ class Walk {
         if constexpr (Limits::kAny) limits_.prefetch(node);
     }
 
-    // What lies inside as a whole, as runs of slots. A node whose leaves are not consecutive leaves it to its children,
-    // at the list's end.
+    // Lists what is fully inside as runs of slots. A node whose leaves are not consecutive is replaced by its children,
+    // which are appended to the list.
     HWY_INLINE void list_whole() {
         const std::size_t before = out_.whole_count;
         for (std::size_t i = 0; i < whole_count_; ++i) {
@@ -200,7 +202,7 @@ class Walk {
 
     HWY_INLINE void note_leaf(boxtree::LeafId leaf) { note_run(leaf * boxtree::kWidth, in_.leaf_counts[leaf]); }
 
-    // Joined with the run before it if it follows that.
+    // Appends a run of slots, joined with the last one if it follows that.
     HWY_INLINE void note_run(std::uint32_t first, std::uint32_t items) {
         const bool follows = out_.run_count > 0 && run_end_ == first;
         out_.run_count += !follows;
@@ -338,7 +340,7 @@ void run_limited_tree(const TreeKernelInput& input, const KernelLimits& limits, 
     output = walk.result();
 }
 
-// One level down, without going into leaves; subtrees inside the view and leaves stay as they are.
+// Replaces an entry by those of its children. Leaves, and subtrees inside the view, stay as they are.
 std::size_t expand_tree(const TreeKernelInput& input, std::uint64_t entry, std::uint64_t* entries) {
     const auto child = static_cast<std::uint32_t>(entry >> 32);
     const auto planes = static_cast<std::uint32_t>(entry);
