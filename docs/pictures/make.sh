@@ -14,7 +14,7 @@ cp "$work"/town/*0003.png town.png
 "$crofton" radiosity room --edge 0.1 --error 0.02 --out "$work/room.glb"
 "$crofton" view "$work/room.glb" --no-window --size 800x450 --script room.json --after 3 --screenshot room.png
 "$crofton" frames town --camera street --frames 120 --size 960x540 --png "$work/street"
-cp "$work"/street/*0006.png street.png
+cp "$work"/street/*0035.png street.png
 ./crofton.py >crofton.svg
 ./modules.py >modules.svg
 if command -v chromium >/dev/null; then
