@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Exact verdicts on single bounds: a filter in doubles first, exact arithmetic where it cannot decide.
 #include <crofton/core/error.hpp>
 #include <crofton/cull/classify.hpp>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The lights of each froxel: checks of the input, the work shared among threads, the lists put together.
 #include <algorithm>
 #include <bit>
 #include <cmath>

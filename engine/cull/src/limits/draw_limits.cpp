@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Draw limits for one item, and as the vector kernels read them.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A list prepared for vectors: chunks with a frame, rows and records of their bounds.
 #include <algorithm>
 #include <atomic>
 #include <bit>

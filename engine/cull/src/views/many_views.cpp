@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Many views in one pass through a tree and a list.
 #include <bit>
 #include <crofton/boxtree/box_tree.hpp>
 #include <crofton/boxtree/structure.hpp>
